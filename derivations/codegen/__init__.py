@@ -1,0 +1,1 @@
+"""Expression -> NumPy, CasADi and C text: one path for all."""

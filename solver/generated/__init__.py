@@ -1,0 +1,1 @@
+"""What `semispline generate` wrote; never edited by hand."""

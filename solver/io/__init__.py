@@ -1,0 +1,1 @@
+"""Files: JSON of our own, and CAD formats."""

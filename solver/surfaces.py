@@ -1,0 +1,305 @@
+"""The two surface classes: the classical B-spline surface, and the semi-structured one of the paper.
+
+Values are frozen dataclasses over read-only arrays, checked when they are made. Evaluation is sparse basis matrices
+times (derivative) control points; it is right-continuous at inner knots and left-continuous at the end of the domain.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import cached_property
+from math import comb
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from solver.arrays import FloatArray, finite_array
+from solver.errors import ControlPointError, InputError
+from solver.knots import basis_matrix, checked_knots, derivative_points
+
+
+@dataclass(frozen=True, eq=False)
+class BSplineCurve:
+    """A clamped B-spline curve P_i(v): one v-control curve of a semi-structured surface.
+
+    Parameters
+    ----------
+    degree : int
+    knots : array_like, shape (n_i + degree + 2,)
+        V_i, clamped.
+    control_points : array_like, shape (n_i + 1, 3)
+    name : str
+        How messages call this curve.
+
+    Raises
+    ------
+    KnotError, ControlPointError
+        Naming the index at fault.
+
+    Examples
+    --------
+    >>> BSplineCurve(1, [0, 0, 1, 1], [[0, 0, 0], [2, 0, 0]]).evaluate([0.25])
+    array([[0.5, 0. , 0. ]])
+    """
+
+    degree: int
+    knots: FloatArray
+    control_points: FloatArray
+    name: str = field(default="curve", repr=False)
+
+    def __post_init__(self) -> None:
+        points = finite_array(self.control_points, 2, f"{self.name}.control_points", ControlPointError)
+        _check_dimension(points, f"{self.name}.control_points")
+        object.__setattr__(self, "control_points", points)
+        knots = checked_knots(self.knots, self.degree, len(points), f"{self.name}.knots")
+        object.__setattr__(self, "knots", knots)
+
+    def evaluate(self, v: ArrayLike, derivative: int = 0) -> FloatArray:
+        """Evaluate the curve or a derivative at v, shape (K,); returns shape (K, 3)."""
+        x = _parameters(v, self.knots, "v")
+        if derivative > self.degree:
+            return np.zeros((len(x), 3))
+        points = derivative_points(self.degree, self.knots, self.control_points, derivative)
+        knots = self.knots[derivative : len(self.knots) - derivative]
+        return np.asarray(basis_matrix(self.degree - derivative, knots, x) @ points)
+
+
+@dataclass(frozen=True, eq=False)
+class BSplineSurface:
+    """A clamped tensor-product B-spline surface, rational where `weights` are given.
+
+    Parameters
+    ----------
+    degree_u, degree_v : int
+        p and q, at least 1.
+    knots_u, knots_v : array_like, shapes (n_u + degree_u + 1,), (n_v + degree_v + 1,)
+        Clamped; inner multiplicity at most the degree.
+    control_points : array_like, shape (n_u, n_v, 3)
+        Euclidean (not multiplied by the weights).
+    weights : array_like, shape (n_u, n_v), optional
+        Positive.
+
+    Raises
+    ------
+    KnotError, ControlPointError
+        Naming the index at fault.
+
+    Source: equation (7) of the paper.
+
+    Examples
+    --------
+    >>> square = BSplineSurface(1, 1, [0, 0, 1, 1], [0, 0, 1, 1], [[[0, 0, 0], [0, 1, 0]], [[1, 0, 0], [1, 1, 0]]])
+    >>> square.evaluate([0.25], [0.5])
+    array([[0.25, 0.5 , 0.  ]])
+    """
+
+    degree_u: int
+    degree_v: int
+    knots_u: FloatArray
+    knots_v: FloatArray
+    control_points: FloatArray
+    weights: FloatArray | None = None
+
+    def __post_init__(self) -> None:
+        points = finite_array(self.control_points, 3, "control_points", ControlPointError)
+        _check_dimension(points, "control_points")
+        object.__setattr__(self, "control_points", points)
+        object.__setattr__(self, "knots_u", checked_knots(self.knots_u, self.degree_u, points.shape[0], "knots_u"))
+        object.__setattr__(self, "knots_v", checked_knots(self.knots_v, self.degree_v, points.shape[1], "knots_v"))
+        if self.weights is not None:
+            weights = finite_array(self.weights, 2, "weights", ControlPointError)
+            if weights.shape != points.shape[:2]:
+                raise ControlPointError(f"weights: shape {weights.shape}, expected {points.shape[:2]}")
+            if (weights <= 0).any():
+                i, j = (int(k) for k in np.argwhere(weights <= 0)[0])
+                raise ControlPointError(f"weights[{i}, {j}]: found {weights[i, j]}, expected a positive number")
+            object.__setattr__(self, "weights", weights)
+
+    @property
+    def domain(self) -> tuple[tuple[float, float], tuple[float, float]]:
+        """The ranges of u and v."""
+        return _range(self.knots_u), _range(self.knots_v)
+
+    @property
+    def n_control_points(self) -> int:
+        """Number of control points."""
+        return int(np.prod(self.control_points.shape[:2]))
+
+    @cached_property
+    def _homogeneous(self) -> FloatArray:
+        """Control net with the dimension last: 3, or 4 where rational."""
+        if self.weights is None:
+            return self.control_points
+        w = self.weights[..., None]
+        return np.concatenate([self.control_points * w, w], axis=2)
+
+    def evaluate(self, u: ArrayLike, v: ArrayLike, du: int = 0, dv: int = 0) -> FloatArray:
+        """Evaluate the surface or a mixed derivative at the points (u[k], v[k]); returns shape (K, 3)."""
+        uu, vv = _point_parameters(self, u, v)
+
+        def net(a: int, b: int) -> FloatArray:
+            if a > self.degree_u or b > self.degree_v:
+                return np.zeros((len(uu), self._homogeneous.shape[2]))
+            points, ku, kv = self._derivative_net(a, b)
+            bu, iu = _local_basis(self.degree_u - a, ku, uu)
+            bv, iv = _local_basis(self.degree_v - b, kv, vv)
+            local = points[iu[:, :, None], iv[:, None, :]]
+            return np.asarray(np.einsum("kij,kijd->kd", bu[:, :, None] * bv[:, None, :], local))
+
+        return _quotient(net, du, dv) if self.weights is not None else net(du, dv)
+
+    def evaluate_grid(self, u: ArrayLike, v: ArrayLike, du: int = 0, dv: int = 0) -> FloatArray:
+        """Evaluate on the grid u x v; returns shape (len(u), len(v), 3)."""
+        uu, vv = _parameters(u, self.knots_u, "u"), _parameters(v, self.knots_v, "v")
+
+        def net(a: int, b: int) -> FloatArray:
+            d = self._homogeneous.shape[2]
+            if a > self.degree_u or b > self.degree_v:
+                return np.zeros((len(uu), len(vv), d))
+            points, ku, kv = self._derivative_net(a, b)
+            across = basis_matrix(self.degree_u - a, ku, uu) @ points.reshape(len(points), -1)
+            along = np.ascontiguousarray(across.reshape(len(uu), -1, d).transpose(1, 0, 2))
+            values = basis_matrix(self.degree_v - b, kv, vv) @ along.reshape(len(along), -1)
+            return np.asarray(values.reshape(len(vv), len(uu), d).transpose(1, 0, 2))
+
+        return _quotient(net, du, dv) if self.weights is not None else net(du, dv)
+
+    def _derivative_net(self, a: int, b: int) -> tuple[FloatArray, FloatArray, FloatArray]:
+        points = derivative_points(self.degree_u, self.knots_u, self._homogeneous, a)
+        points = derivative_points(self.degree_v, self.knots_v, points.transpose(1, 0, 2), b).transpose(1, 0, 2)
+        return points, self.knots_u[a : len(self.knots_u) - a], self.knots_v[b : len(self.knots_v) - b]
+
+
+@dataclass(frozen=True, eq=False)
+class SemiStructuredSurface:
+    """A semi-structured B-spline surface: v-control curves with knots (and degrees) of their own, skinned in u.
+
+    Parameters
+    ----------
+    degree_u : int
+    knots_u : array_like, shape (m + degree_u + 2,)
+        U, clamped.
+    control_curves : sequence of BSplineCurve, length m + 1
+        P_i(v), all over one v-domain.
+
+    Raises
+    ------
+    KnotError, ControlPointError
+        Naming the curve at fault.
+
+    Source: Definition 1 of the paper, widened: each curve may have its own degree.
+
+    Examples
+    --------
+    >>> low = BSplineCurve(1, [0, 0, 1, 1], [[0, 0, 0], [0, 1, 0]])
+    >>> high = BSplineCurve(1, [0, 0, 0.5, 1, 1], [[1, 0, 0], [1, 0.5, 1], [1, 1, 0]])
+    >>> SemiStructuredSurface(1, [0, 0, 1, 1], (low, high)).evaluate([0.5], [0.5])
+    array([[0.5, 0.5, 0.5]])
+    """
+
+    degree_u: int
+    knots_u: FloatArray
+    control_curves: tuple[BSplineCurve, ...]
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "control_curves", tuple(self.control_curves))
+        object.__setattr__(
+            self, "knots_u", checked_knots(self.knots_u, self.degree_u, len(self.control_curves), "knots_u")
+        )
+        expected = _range(self.control_curves[0].knots)
+        for i, curve in enumerate(self.control_curves):
+            if _range(curve.knots) != expected:
+                raise ControlPointError(
+                    f"control_curves[{i}]: v-domain {_range(curve.knots)}, expected that of curve 0, {expected}"
+                )
+
+    @property
+    def domain(self) -> tuple[tuple[float, float], tuple[float, float]]:
+        """The ranges of u and v."""
+        return _range(self.knots_u), _range(self.control_curves[0].knots)
+
+    @property
+    def degree_v(self) -> int:
+        """The highest degree among the v-control curves."""
+        return max(curve.degree for curve in self.control_curves)
+
+    @property
+    def n_control_points(self) -> int:
+        """Number of control points, over all curves."""
+        return sum(len(curve.control_points) for curve in self.control_curves)
+
+    def evaluate(self, u: ArrayLike, v: ArrayLike, du: int = 0, dv: int = 0) -> FloatArray:
+        """Evaluate the surface or a mixed derivative at the points (u[k], v[k]); returns shape (K, 3)."""
+        uu, vv = _point_parameters(self, u, v)
+        if du > self.degree_u:
+            return np.zeros((len(uu), 3))
+        rows = self._rows(vv, dv, du)
+        basis, index = _local_basis(self.degree_u - du, self.knots_u[du : len(self.knots_u) - du], uu)
+        local = rows[index, np.arange(len(uu))[:, None]]
+        return np.asarray(np.einsum("ki,kid->kd", basis, local))
+
+    def evaluate_grid(self, u: ArrayLike, v: ArrayLike, du: int = 0, dv: int = 0) -> FloatArray:
+        """Evaluate on the grid u x v; returns shape (len(u), len(v), 3)."""
+        uu, vv = _parameters(u, self.knots_u, "u"), _parameters(v, self.control_curves[0].knots, "v")
+        if du > self.degree_u:
+            return np.zeros((len(uu), len(vv), 3))
+        rows = self._rows(vv, dv, du)
+        basis = basis_matrix(self.degree_u - du, self.knots_u[du : len(self.knots_u) - du], uu)
+        return np.asarray((basis @ rows.reshape(len(rows), -1)).reshape(len(uu), len(vv), 3))
+
+    def _rows(self, v: FloatArray, dv: int, du: int) -> FloatArray:
+        """Rows of the du-th u-derivative at each v, shape (m + 1 - du, len(v), 3)."""
+        values = np.stack([curve.evaluate(v, dv) for curve in self.control_curves])
+        return derivative_points(self.degree_u, self.knots_u, values, du)
+
+
+Surface: TypeAlias = BSplineSurface | SemiStructuredSurface
+
+
+def _range(knots: FloatArray) -> tuple[float, float]:
+    return float(knots[0]), float(knots[-1])
+
+
+def _check_dimension(points: FloatArray, name: str) -> None:
+    if points.shape[-1] != 3:
+        raise ControlPointError(f"{name}: points have {points.shape[-1]} coordinate(s), expected 3")
+
+
+def _parameters(x: ArrayLike, knots: FloatArray, name: str) -> FloatArray:
+    array = np.atleast_1d(np.asarray(x, dtype=np.float64))
+    start, end = _range(knots)
+    outside = ~((array >= start) & (array <= end))
+    if outside.any():
+        raise InputError(f"{name}: found {array[outside][0]}, expected a parameter in [{start}, {end}]")
+    return array
+
+
+def _point_parameters(surface: Surface, u: ArrayLike, v: ArrayLike) -> tuple[FloatArray, FloatArray]:
+    knots_v = surface.knots_v if isinstance(surface, BSplineSurface) else surface.control_curves[0].knots
+    uu, vv = np.broadcast_arrays(_parameters(u, surface.knots_u, "u"), _parameters(v, knots_v, "v"))
+    if uu.ndim != 1:
+        raise InputError(f"u, v: {uu.ndim} dimensions, expected one-dimensional arrays of parameters")
+    return uu, vv
+
+
+def _local_basis(degree: int, knots: FloatArray, x: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Values of the degree + 1 basis functions that live at each x, and their indices, shapes (K, degree + 1)."""
+    matrix = basis_matrix(degree, knots, x)
+    shape = (len(x), degree + 1)
+    return matrix.data.reshape(shape), matrix.indices.reshape(shape)
+
+
+def _quotient(homogeneous: Callable[[int, int], FloatArray], du: int, dv: int) -> FloatArray:
+    """Return derivative (du, dv) of X / w from the derivatives of (X, w), by the product rule on X = w S."""
+    raw = {(a, b): homogeneous(a, b) for a in range(du + 1) for b in range(dv + 1)}
+    result: dict[tuple[int, int], FloatArray] = {}
+    for a, b in raw:
+        value = raw[a, b][..., :3].copy()
+        for i in range(a + 1):
+            for j in range(b + 1):
+                if i or j:
+                    value -= comb(a, i) * comb(b, j) * raw[i, j][..., 3:] * result[a - i, b - j]
+        result[a, b] = value / raw[0, 0][..., 3:]
+    return result[du, dv]
