@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike
 
 from solver.arrays import FloatArray, finite_array
 from solver.errors import ControlPointError, InputError
-from solver.knots import basis_matrix, checked_knots, derivative_points
+from solver.knots import basis_matrix, breakpoints, checked_knots, derivative_points, merge_breakpoints
 
 
 @dataclass(frozen=True, eq=False)
@@ -123,6 +123,11 @@ class BSplineSurface:
         return _range(self.knots_u), _range(self.knots_v)
 
     @property
+    def breakpoints(self) -> tuple[FloatArray, FloatArray]:
+        """The ends of the spans in u and in v."""
+        return breakpoints(self.knots_u), breakpoints(self.knots_v)
+
+    @property
     def n_control_points(self) -> int:
         """Number of control points."""
         return int(np.prod(self.control_points.shape[:2]))
@@ -219,6 +224,12 @@ class SemiStructuredSurface:
     def domain(self) -> tuple[tuple[float, float], tuple[float, float]]:
         """The ranges of u and v."""
         return _range(self.knots_u), _range(self.control_curves[0].knots)
+
+    @property
+    def breakpoints(self) -> tuple[FloatArray, FloatArray]:
+        """The ends of the spans in u, and in v of all curves together."""
+        along = (breakpoints(curve.knots) for curve in self.control_curves)
+        return breakpoints(self.knots_u), merge_breakpoints(*along)
 
     @property
     def degree_v(self) -> int:

@@ -1,0 +1,303 @@
+"""Measured continuity along a shared edge, by the de Boor referee alone."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal, TypeAlias, get_args
+
+import numpy as np
+
+from solver.arrays import FloatArray
+from solver.de_boor import surface_points
+from solver.errors import EdgeError
+from solver.knots import affine_knots, merge_breakpoints, reversed_knots
+from solver.surfaces import BSplineSurface, Surface
+
+Edge: TypeAlias = Literal["u0", "u1", "v0", "v1"]
+Flip: TypeAlias = Literal["auto", "yes", "no"]
+
+# Where each merged span of the edge is sampled: its start and inner points. Knots are seen from the right.
+_FRACTIONS = np.array([0.0, 0.04, 0.2, 0.35, 0.5, 0.65, 0.8, 0.96])
+
+
+@dataclass(frozen=True)
+class Base:
+    """A surface and the edge along which it is met.
+
+    Parameters
+    ----------
+    surface : BSplineSurface or SemiStructuredSurface
+    edge : {"u0", "u1", "v0", "v1"}
+        The parameter that is constant along the edge, and at which end of its range.
+
+    Raises
+    ------
+    EdgeError
+        The edge is not one of the four.
+    """
+
+    surface: Surface
+    edge: Edge
+
+    def __post_init__(self) -> None:
+        if self.edge not in get_args(Edge):
+            raise EdgeError(f"edge: found {self.edge!r}, expected one of u0, u1, v0, v1")
+
+    @property
+    def range_along(self) -> tuple[float, float]:
+        """The range of the parameter that runs along the edge."""
+        return self.surface.domain[1 if self.edge[0] == "u" else 0]
+
+    def derivative(self, s: FloatArray, across: int, along: int) -> FloatArray:
+        """Referee's derivative at parameters s along the edge, shape (K, 3), in the surface's own parameters."""
+        constant = 0 if self.edge[0] == "u" else 1
+        at = np.full_like(s, self.surface.domain[constant][int(self.edge[1])])
+        if constant == 0:
+            return surface_points(self.surface, at, s, across, along)
+        return surface_points(self.surface, s, at, along, across)
+
+    def breakpoints_along(self) -> FloatArray:
+        """Return breakpoints of the parameter that runs along the edge."""
+        return self.surface.breakpoints[1 if self.edge[0] == "u" else 0]
+
+
+@dataclass(frozen=True)
+class Place:
+    """Where a measure is worst: the parameter along edge a, and the point."""
+
+    parameter: float
+    point: tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class Contact:
+    """How two surfaces meet along an edge; the worst over samples in every span of both.
+
+    Attributes
+    ----------
+    gap : float
+        Largest distance, model units.
+    angle_degrees : float
+        Largest angle between the tangent planes, from |n1 x n2|.
+    curvature_jump : float
+        Largest difference of normal curvature across the edge, 1/length.
+    curvature_jump_relative : float
+        The same over the largest such curvature of either side, not below 1e-3 / size.
+    c1_residual, c2_residual : float
+        Largest difference of first and second cross derivative (one side leaving backwards), over the largest such
+        derivative of either side; absolute where both vanish.
+    size : float
+        Largest extent of the control points of both surfaces.
+    rounding : dict
+        What rounding of the input alone may do to each measure above.
+    gap_at, angle_at, curvature_at : Place
+    flipped : bool
+        The two edges run in opposite directions.
+    """
+
+    gap: float
+    angle_degrees: float
+    curvature_jump: float
+    curvature_jump_relative: float
+    c1_residual: float
+    c2_residual: float
+    size: float
+    rounding: dict[str, float]
+    gap_at: Place
+    angle_at: Place
+    curvature_at: Place
+    flipped: bool
+
+
+def measure_contact(a: Base, b: Base, flip: Flip = "auto") -> Contact:
+    """Measure how edge a and edge b meet; parameters along the edges correspond affinely.
+
+    Parameters
+    ----------
+    a, b : Base
+    flip : {"auto", "yes", "no"}
+        Whether the edges run in opposite directions; "auto" takes the closer way.
+
+    Returns
+    -------
+    Contact
+
+    Raises
+    ------
+    EdgeError
+        The edge of a side is a point, or its cross derivative is parallel to the edge, so that there is no normal.
+
+    Examples
+    --------
+    >>> from solver.surfaces import BSplineSurface
+    >>> k = [0, 0, 1, 1]
+    >>> left = BSplineSurface(1, 1, k, k, [[[0, 0, 0], [0, 1, 0]], [[1, 0, 0], [1, 1, 0]]])
+    >>> right = BSplineSurface(1, 1, k, k, [[[1, 0, 0], [1, 1, 0]], [[2, 0, 1], [2, 1, 1]]])
+    >>> round(measure_contact(Base(left, "u1"), Base(right, "u0")).angle_degrees, 12)
+    45.0
+    """
+    s_a, s_b, flipped = corresponding_samples(a, b, flip)
+    side_a, side_b = _Side(a, s_a), _Side(b, s_b)
+    size = model_size(a.surface, b.surface)
+    places = [Place(float(s), (float(p[0]), float(p[1]), float(p[2]))) for s, p in zip(s_a, side_a.point, strict=True)]
+
+    gap = np.linalg.norm(side_a.point - side_b.point, axis=1)
+    normal_b = side_b.normal * np.where(np.sum(side_a.normal * side_b.normal, axis=1) < 0, -1.0, 1.0)[:, None]
+    sine = np.linalg.norm(np.cross(side_a.normal, normal_b), axis=1)
+    angle = np.degrees(np.arcsin(np.minimum(sine, 1.0)))
+    k_a, k_b = side_a.curvature(side_a.normal), side_b.curvature(normal_b)
+    jump = np.abs(k_a - k_b)
+    largest = max(float(np.abs(k_a).max()), float(np.abs(k_b).max()), 1e-3 / size)
+    # One side is left backwards: odd derivatives change sign unless the edges are at opposite ends.
+    sign = -1.0 if a.edge[1] == b.edge[1] else 1.0
+    c1 = _relative(side_a.x_w - sign * side_b.x_w, side_a.x_w, side_b.x_w)
+    c2 = _relative(side_a.x_ww - side_b.x_ww, side_a.x_ww, side_b.x_ww)
+    return Contact(
+        gap=float(gap.max()),
+        angle_degrees=float(angle.max()),
+        curvature_jump=float(jump.max()),
+        curvature_jump_relative=float(jump.max()) / largest,
+        c1_residual=c1,
+        c2_residual=c2,
+        size=size,
+        rounding=_rounding(side_a, side_b, largest),
+        gap_at=places[int(gap.argmax())],
+        angle_at=places[int(angle.argmax())],
+        curvature_at=places[int(jump.argmax())],
+        flipped=flipped,
+    )
+
+
+class _Side:
+    """Referee's values along one edge: w runs across, s along."""
+
+    def __init__(self, base: Base, s: FloatArray) -> None:
+        self.base = base
+        self.point = base.derivative(s, 0, 0)
+        self.x_w, self.x_s = base.derivative(s, 1, 0), base.derivative(s, 0, 1)
+        self.x_ww, self.x_ws, self.x_ss = (base.derivative(s, a, 2 - a) for a in (2, 1, 0))
+        cross = np.cross(self.x_w, self.x_s)
+        length = np.linalg.norm(cross, axis=1)
+        scale = np.linalg.norm(self.x_w, axis=1) * np.linalg.norm(self.x_s, axis=1)
+        degenerate = ~(length > 1e-12 * scale)
+        if degenerate.any():
+            at = float(s[degenerate][0])
+            raise EdgeError(
+                f"edge {base.edge}: no normal at parameter {at:.6g} along it (the edge is a point there, or the cross "
+                "derivative vanishes or is parallel to the edge); choose an edge where the surface is regular"
+            )
+        self.normal = cross / length[:, None]
+
+    def curvature(self, normal: FloatArray) -> FloatArray:
+        """Normal curvature in the direction of the tangent plane that is perpendicular to the edge, shape (K,)."""
+        # d = x_w + y x_s with d . x_s = 0; its normal curvature is II(d, d) / (d . d).
+        y = -np.sum(self.x_w * self.x_s, axis=1) / np.sum(self.x_s**2, axis=1)
+        d = self.x_w + y[:, None] * self.x_s
+        second = self.x_ww + 2 * y[:, None] * self.x_ws + (y**2)[:, None] * self.x_ss
+        return np.asarray(np.sum(second * normal, axis=1) / np.sum(d**2, axis=1))
+
+    def least_cross_speed(self) -> float:
+        """Return the least speed across the edge."""
+        along = self.x_s / np.linalg.norm(self.x_s, axis=1)[:, None]
+        across = self.x_w - np.sum(self.x_w * along, axis=1)[:, None] * along
+        return float(np.linalg.norm(across, axis=1).min())
+
+
+def corresponding_samples(a: Base, b: Base, flip: Flip = "auto") -> tuple[FloatArray, FloatArray, bool]:
+    """Return parameters along edge a and along edge b that correspond, in every span of both, and whether b is flipped.
+
+    Raises
+    ------
+    EdgeError
+        `flip` is not one of auto, yes, no.
+    """
+    if flip not in get_args(Flip):
+        raise EdgeError(f"flip: found {flip!r}, expected one of auto, yes, no")
+    flipped = edges_opposed(a, b) if flip == "auto" else flip == "yes"
+    start, end = a.range_along
+    breaks_b = b.breakpoints_along()
+    breaks = affine_knots(reversed_knots(breaks_b) if flipped else breaks_b, start, end)
+    merged = merge_breakpoints(a.breakpoints_along(), breaks)
+    s_a = np.append((merged[:-1, None] + np.diff(merged)[:, None] * _FRACTIONS).ravel(), end)
+    t = (s_a - start) / (end - start)
+    b_start, b_end = b.range_along
+    if flipped:
+        t = 1 - t
+    return s_a, np.clip(b_start + t * (b_end - b_start), b_start, b_end), flipped
+
+
+def edges_opposed(a: Base, b: Base) -> bool:
+    """Tell whether b's edge lies closer to a's when it runs backwards; a tie keeps the direction.
+
+    Closeness is the mean squared distance of corresponding points. Both curves are centred first, which changes the
+    two sums alike but keeps the rounding of a large offset out of the comparison.
+    """
+    t = (np.arange(64) + 0.5) / 64
+    points = [base.derivative(base.range_along[0] + t * np.diff(base.range_along), 0, 0) for base in (a, b)]
+    first, second = (p - p.mean(axis=0) for p in points)
+    straight = float(np.sum((first - second) ** 2))
+    backwards = float(np.sum((first - second[::-1]) ** 2))
+    return backwards < straight * (1 - 1e-9)
+
+
+def control_point_cloud(surface: Surface) -> FloatArray:
+    """Return all control points of a surface, shape (K, 3)."""
+    if isinstance(surface, BSplineSurface):
+        return surface.control_points.reshape(-1, 3)
+    return np.concatenate([curve.control_points for curve in surface.control_curves])
+
+
+def model_size(*surfaces: Surface) -> float:
+    """Return the largest extent of the control points of all surfaces, model units."""
+    points = np.concatenate([control_point_cloud(surface) for surface in surfaces])
+    return float(np.ptp(points, axis=0).max())
+
+
+def _relative(difference: FloatArray, x: FloatArray, y: FloatArray) -> float:
+    worst = float(np.linalg.norm(difference, axis=1).max())
+    largest = max(float(np.linalg.norm(x, axis=1).max()), float(np.linalg.norm(y, axis=1).max()))
+    return worst / largest if largest > 0 else worst
+
+
+def _rounding(a: _Side, b: _Side, largest_curvature: float) -> dict[str, float]:
+    """Bound what rounding of the control points to float64 may do to each measure."""
+    noise = [[0.0] * 3, [0.0] * 3]
+    for k, side in enumerate((a, b)):
+        coordinate = float(np.abs(control_point_cloud(side.base.surface)).max())
+        for order in range(3):
+            noise[k][order] = np.finfo(float).eps * coordinate * _derivative_factor(side.base, order)
+    c = [noise[0][d] + noise[1][d] for d in range(3)]
+    largest = [max(float(np.linalg.norm(x, axis=1).max()) for x in pair) for pair in ((a.x_w, b.x_w), (a.x_ww, b.x_ww))]
+    angle, jump = 0.0, 0.0
+    for k, side in enumerate((a, b)):
+        speed = side.least_cross_speed()
+        angle += noise[k][1] / speed
+        jump += noise[k][2] / speed**2 + 2 * largest_curvature * noise[k][1] / speed
+    return {
+        "gap": c[0],
+        "angle_degrees": float(np.degrees(angle)),
+        "curvature_jump_relative": jump / largest_curvature,
+        "c1_residual": c[1] / largest[0] if largest[0] else c[1],
+        "c2_residual": c[2] / largest[1] if largest[1] else c[2],
+    }
+
+
+def _derivative_factor(base: Base, order: int) -> float:
+    """How much the `order`-th cross derivative at the edge may magnify an error of the control points."""
+    across_u = base.edge[0] == "u"
+    surface = base.surface
+    if across_u:
+        knots, degree = surface.knots_u, surface.degree_u
+    elif isinstance(surface, BSplineSurface):
+        knots, degree = surface.knots_v, surface.degree_v
+    else:
+        curve = max(surface.control_curves, key=lambda c: c.degree)
+        knots, degree = curve.knots, curve.degree
+    if order > degree:
+        return 0.0
+    at_end = base.edge[1] == "1"
+    steps = np.abs(knots[::-1] - knots[-1]) if at_end else knots - knots[0]
+    factor = 1.0
+    for s in range(order):
+        factor *= 2 * (degree - s) / float(steps[degree + 1])
+    return factor
