@@ -10,16 +10,17 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
 from math import comb
-from typing import TypeAlias
+from typing import TypeAlias, final
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from solver.arrays import FloatArray, finite_array
 from solver.errors import ControlPointError, InputError
-from solver.knots import basis_matrix, breakpoints, checked_knots, derivative_points, merge_breakpoints
+from solver.knots import MERGE_TOLERANCE, basis_matrix, breakpoints, checked_knots, derivative_points, merge_breakpoints
 
 
+@final
 @dataclass(frozen=True, eq=False)
 class BSplineCurve:
     """A clamped B-spline curve P_i(v): one v-control curve of a semi-structured surface.
@@ -66,6 +67,7 @@ class BSplineCurve:
         return np.asarray(basis_matrix(self.degree - derivative, knots, x) @ points)
 
 
+@final
 @dataclass(frozen=True, eq=False)
 class BSplineSurface:
     """A clamped tensor-product B-spline surface, rational where `weights` are given.
@@ -133,8 +135,8 @@ class BSplineSurface:
         return int(np.prod(self.control_points.shape[:2]))
 
     @cached_property
-    def _homogeneous(self) -> FloatArray:
-        """Control net with the dimension last: 3, or 4 where rational."""
+    def homogeneous(self) -> FloatArray:
+        """Control net, shape (n_u, n_v, 3), or (n_u, n_v, 4) with (w x, w y, w z, w) where rational."""
         if self.weights is None:
             return self.control_points
         w = self.weights[..., None]
@@ -146,7 +148,7 @@ class BSplineSurface:
 
         def net(a: int, b: int) -> FloatArray:
             if a > self.degree_u or b > self.degree_v:
-                return np.zeros((len(uu), self._homogeneous.shape[2]))
+                return np.zeros((len(uu), self.homogeneous.shape[2]))
             points, ku, kv = self._derivative_net(a, b)
             bu, iu = _local_basis(self.degree_u - a, ku, uu)
             bv, iv = _local_basis(self.degree_v - b, kv, vv)
@@ -160,7 +162,7 @@ class BSplineSurface:
         uu, vv = _parameters(u, self.knots_u, "u"), _parameters(v, self.knots_v, "v")
 
         def net(a: int, b: int) -> FloatArray:
-            d = self._homogeneous.shape[2]
+            d = self.homogeneous.shape[2]
             if a > self.degree_u or b > self.degree_v:
                 return np.zeros((len(uu), len(vv), d))
             points, ku, kv = self._derivative_net(a, b)
@@ -172,11 +174,12 @@ class BSplineSurface:
         return _quotient(net, du, dv) if self.weights is not None else net(du, dv)
 
     def _derivative_net(self, a: int, b: int) -> tuple[FloatArray, FloatArray, FloatArray]:
-        points = derivative_points(self.degree_u, self.knots_u, self._homogeneous, a)
+        points = derivative_points(self.degree_u, self.knots_u, self.homogeneous, a)
         points = derivative_points(self.degree_v, self.knots_v, points.transpose(1, 0, 2), b).transpose(1, 0, 2)
         return points, self.knots_u[a : len(self.knots_u) - a], self.knots_v[b : len(self.knots_v) - b]
 
 
+@final
 @dataclass(frozen=True, eq=False)
 class SemiStructuredSurface:
     """A semi-structured B-spline surface: v-control curves with knots (and degrees) of their own, skinned in u.
@@ -259,6 +262,16 @@ class SemiStructuredSurface:
         rows = self._rows(vv, dv, du)
         basis = basis_matrix(self.degree_u - du, self.knots_u[du : len(self.knots_u) - du], uu)
         return np.asarray((basis @ rows.reshape(len(rows), -1)).reshape(len(uu), len(vv), 3))
+
+    def to_bspline(self, tolerance: float = MERGE_TOLERANCE) -> BSplineSurface:
+        """Return the same surface with one v-knot vector, by exact degree elevation and knot insertion.
+
+        Knots of different curves closer than `tolerance` times the v-domain become one; `convert_to_bspline` says what
+        that changed and how many control points the conversion added.
+        """
+        from solver.compatible import convert_to_bspline
+
+        return convert_to_bspline(self, tolerance).surface
 
     def _rows(self, v: FloatArray, dv: int, du: int) -> FloatArray:
         """Rows of the du-th u-derivative at each v, shape (m + 1 - du, len(v), 3)."""

@@ -1,0 +1,163 @@
+"""Operations on one v-control curve: reversal, degree, knots, splitting, continuity at a knot."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from solver.arrays import FloatArray, finite_array
+from solver.errors import KnotError, OptionError
+from solver.knots import reversed_knots
+from solver.refinement import (
+    elevated_knots,
+    elevation_matrix,
+    refinement_matrix,
+    restriction_matrix,
+    snapped,
+    with_knots,
+)
+from solver.surfaces import BSplineCurve
+
+
+def reverse_curve(curve: BSplineCurve) -> BSplineCurve:
+    """Return the curve run backwards over the same domain.
+
+    Examples
+    --------
+    >>> reverse_curve(BSplineCurve(1, [0, 0, 1, 1], [[0, 0, 0], [2, 0, 0]])).evaluate([0.25])
+    array([[1.5, 0. , 0. ]])
+    """
+    return replace(curve, knots=reversed_knots(curve.knots), control_points=curve.control_points[::-1])
+
+
+def elevate_curve(curve: BSplineCurve, degree: int) -> BSplineCurve:
+    """Return the same curve with a higher degree; exact for inner knots of any multiplicity.
+
+    Examples
+    --------
+    >>> elevate_curve(BSplineCurve(1, [0, 0, 1, 1], [[0, 0, 0], [2, 0, 0]]), 2).control_points[:, 0]
+    array([0., 1., 2.])
+    """
+    if degree == curve.degree:
+        return curve
+    points = elevation_matrix(curve.degree, curve.knots, degree) @ curve.control_points
+    return replace(
+        curve, degree=degree, knots=elevated_knots(curve.knots, degree - curve.degree), control_points=points
+    )
+
+
+def insert_curve_knots(curve: BSplineCurve, knots: ArrayLike) -> BSplineCurve:
+    """Return the same curve with knots inserted; a knot is repeated to insert it several times.
+
+    A value within 1e-12 of the domain of a knot means that knot.
+
+    Examples
+    --------
+    >>> insert_curve_knots(BSplineCurve(1, [0, 0, 1, 1], [[0, 0, 0], [2, 0, 0]]), [0.25]).control_points[:, 0]
+    array([0. , 0.5, 2. ])
+    """
+    more = finite_array(knots, 1, "knots", KnotError)
+    refined = with_knots(curve.degree, curve.knots, more, "knots")
+    points = refinement_matrix(curve.degree, curve.knots, refined) @ curve.control_points
+    return replace(curve, knots=refined, control_points=points)
+
+
+def restrict_curve(curve: BSplineCurve, start: float, end: float) -> BSplineCurve:
+    """Return the piece of the curve over [start, end]."""
+    matrix, knots = restriction_matrix(curve.degree, curve.knots, start, end)
+    return replace(curve, knots=knots, control_points=matrix @ curve.control_points)
+
+
+def split_curve(curve: BSplineCurve, v: float) -> tuple[BSplineCurve, BSplineCurve]:
+    """Return the two pieces below and above v, each over its own part of the domain."""
+    at = snapped(v, curve.knots)
+    return restrict_curve(curve, float(curve.knots[0]), at), restrict_curve(curve, at, float(curve.knots[-1]))
+
+
+def set_curve_continuity(curve: BSplineCurve, v: float, continuity: int, tolerance: float = 1e-12) -> BSplineCurve:
+    """Return the curve with a knot at v of multiplicity degree - continuity.
+
+    More continuity takes knots away, which only a curve that already has it allows; less inserts knots, which is exact
+    and leaves the shape as it is, free to be bent at v.
+
+    Parameters
+    ----------
+    curve : BSplineCurve
+    v : float
+        Inside the domain.
+    continuity : int
+        The number of continuous derivatives that the form of the curve guarantees at v, from 0 to the degree; the
+        degree itself means no knot at v.
+    tolerance : float
+        The farthest that a control point may move for it, as a fraction of the largest extent of the control points;
+        rounding of their coordinates is allowed on top.
+
+    Raises
+    ------
+    OptionError
+        A continuity outside 0 .. degree.
+    KnotError
+        v not inside the domain, or the curve is not as smooth as asked.
+
+    Source: the blossom formulation of knot removal; T. Lyche and K. Mørken, Knot removal for parametric B-spline
+    curves and surfaces, 1987.
+
+    Examples
+    --------
+    >>> line = BSplineCurve(2, [0, 0, 0, 1, 1, 1], [[0, 0, 0], [1, 0, 0], [2, 0, 0]])
+    >>> creased = set_curve_continuity(line, 0.5, 0)
+    >>> creased.knots
+    array([0. , 0. , 0. , 0.5, 0.5, 1. , 1. , 1. ])
+    >>> set_curve_continuity(creased, 0.5, 2).knots
+    array([0., 0., 0., 1., 1., 1.])
+    """
+    if not 0 <= continuity <= curve.degree:
+        raise OptionError(
+            f"continuity: found {continuity}, expected a whole number from 0 to the degree {curve.degree}"
+        )
+    at = snapped(v, curve.knots)
+    if not curve.knots[0] < at < curve.knots[-1]:
+        raise KnotError(f"v: found {v}, expected a value inside ({curve.knots[0]}, {curve.knots[-1]})")
+    present = int(np.count_nonzero(curve.knots == at))
+    wanted = curve.degree - continuity
+    if wanted >= present:
+        return insert_curve_knots(curve, np.full(wanted - present, at)) if wanted > present else curve
+    first = int(np.searchsorted(curve.knots, at))
+    knots = np.delete(curve.knots, slice(first, first + present - wanted))
+    points, moved = _coarser_points(curve, knots)
+    extent = float(np.ptp(curve.control_points, axis=0).max())
+    limit = tolerance * extent + 16 * np.finfo(float).eps * float(np.abs(curve.control_points).max())
+    if moved > limit:
+        raise KnotError(
+            f"continuity: the curve cannot be C{continuity} at v = {at}: its control points would move by "
+            f"{moved:.3g}, at most {limit:.3g} is allowed"
+        )
+    return replace(curve, knots=knots, control_points=points)
+
+
+def _coarser_points(curve: BSplineCurve, knots: FloatArray) -> tuple[FloatArray, float]:
+    """Return control points over fewer knots, and the farthest that refining them again misses the old ones.
+
+    Points whose basis functions do not reach the removed knot stay as they are; the few others come from a local least
+    squares fit.
+    """
+    matrix = refinement_matrix(curve.degree, knots, curve.knots).toarray()
+    n = matrix.shape[1]
+    added = len(curve.control_points) - n
+    # The first `head` rows and the last `tail` rows of the matrix are those of the identity.
+    same_head = np.all(matrix[:n] == np.eye(n), axis=1)
+    same_tail = np.all(matrix[added:] == np.eye(n), axis=1)[::-1]
+    head = n if same_head.all() else int(np.argmin(same_head))
+    tail = min(n - head, n if same_tail.all() else int(np.argmin(same_tail)))
+    points = np.empty((n, 3))
+    points[:head] = curve.control_points[:head]
+    points[n - tail :] = curve.control_points[len(curve.control_points) - tail :]
+    known = np.r_[0:head, n - tail : n]
+    unknown = np.arange(head, n - tail)
+    rest = curve.control_points - matrix[:, known] @ points[known]
+    if len(unknown):
+        points[unknown] = np.linalg.lstsq(matrix[:, unknown], rest, rcond=None)[0]
+    miss = np.linalg.norm(matrix @ points - curve.control_points, axis=1)
+    return points, float(miss.max())
