@@ -1,0 +1,130 @@
+"""Which routines there are, and into which files they go."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from sympy import Expr, Matrix, Symbol
+
+from derivations.codegen.python_backends import CASADI, NUMPY, python_module
+from derivations.codegen.routines import Argument, Routine, plain_symbols
+from derivations.contact import contact_conditions, contact_rows
+from derivations.energy import SECOND_DERIVATIVES, gram_block, thin_plate_density
+from derivations.splines import end_derivatives, span_symbols
+
+MAX_ORDER = 3
+
+
+def _spans(letter: str, order: int, whose: str, degree: str) -> list[Argument]:
+    return [
+        Argument(f"{letter}{r}", "span", f"U[{degree} + {r}] - U[{degree}] of {whose}.") for r in range(1, order + 1)
+    ]
+
+
+def _rows(matrix: Matrix) -> tuple[tuple[Expr, ...], ...]:
+    return tuple(plain_symbols(list(matrix.row(i))) for i in range(matrix.rows))
+
+
+def end_derivative_routine(order: int) -> Routine:
+    """Return `end_derivatives_n(p, h1, .., hn)`."""
+    return Routine(
+        name=f"end_derivatives_{order}",
+        summary=f"Derivatives of order 0..{order} at the clamped start; [d, i] multiplies row i in the d-th.",
+        source="Cox-de Boor, derivations/splines.py",
+        arguments=(Argument("p", "degree", "Degree."), *_spans("h", order, "the knots", "p")),
+        form="matrix",
+        values=_rows(end_derivatives(order, Symbol("p"), span_symbols(order))),
+        names=("D",),
+    )
+
+
+def contact_routine(order: int) -> Routine:
+    """Return `contact_rows_n(a, p, h1, .., hn, q, H1, .., Hn)`, without arguments for order 0."""
+    arguments: tuple[Argument, ...] = ()
+    if order:
+        arguments = (
+            Argument("a", "number", "alpha^2: the blend leaves the base backwards, P_u = -a R_w."),
+            Argument("p", "degree", "Degree of the blend in u.", order),
+            *_spans("h", order, "the blend, counted from the contact", "p"),
+            Argument("q", "degree", "Degree of the base across the contact."),
+            *_spans("H", order, "the base; any positive number where there is no such knot", "q"),
+        )
+    rows = contact_rows(order, Symbol("p"), span_symbols(order), Symbol("q"), span_symbols(order, "H"))
+    return Routine(
+        name=f"contact_rows_{order}",
+        summary=f"Rows of a blend in G{order} contact: P_i = sum_j C[i, j] R_j, counted from the contact.",
+        source=f"chain rule of order {order} with p1 = -a, the rest zero; derivations/contact.py",
+        arguments=arguments,
+        form="matrix",
+        values=_rows(rows),
+        names=("C",),
+    )
+
+
+def conditions_routine() -> Routine:
+    """Return `contact_derivatives_2`: the general conditions of order 1 and 2."""
+    _, first, second = contact_conditions(2)
+    vectors = ("w", "v", "ww", "wv", "vv")
+    values = plain_symbols((first, second), {f"R_{name}": f"r_{name}" for name in vectors})
+    functions = (("p1", "w_u"), ("q1", "v~_u"), ("p2", "w_uu"), ("q2", "v~_uu"))
+    return Routine(
+        name="contact_derivatives_2",
+        summary="P_u and P_uu along the contact for general p_i, q_i, where P(u, v) = R(w(u, v), v~(u, v)).",
+        source="chain rule, derivations/contact.py; equations (15) and (16)",
+        arguments=(
+            *(Argument(f"r_{name}", "vector", f"R_{name} along the contact.") for name in vectors),
+            *(Argument(name, "function", f"{meaning} along the contact.") for name, meaning in functions),
+        ),
+        form="vectors",
+        values=tuple((value,) for value in values),
+        names=("p_u", "p_uu"),
+    )
+
+
+def density_routine() -> Routine:
+    """Return `thin_plate_density(p_uu, p_uv, p_vv)`."""
+    names = {symbol.name: symbol.name.lower() for symbol in SECOND_DERIVATIVES}
+    return Routine(
+        name="thin_plate_density",
+        summary="Integrand of the thin-plate energy.",
+        source="equation (11), derivations/energy.py",
+        arguments=tuple(Argument(names[s.name], "vector", f"{s.name}.") for s in SECOND_DERIVATIVES),
+        form="density",
+        values=(plain_symbols((thin_plate_density(),), names),),
+        names=("density",),
+    )
+
+
+def gram_routine() -> Routine:
+    """Return `gram_block(A0, A1, A2, G0, G1, G2)`."""
+    return Routine(
+        name="gram_block",
+        summary="Block of the quadratic form of the energy that couples v-control curves i and i'.",
+        source="equation (11), derivations/energy.py",
+        arguments=(
+            *(Argument(f"A{d}", "number", f"Integral of N_i^({d}) N_i'^({d}) du.") for d in range(3)),
+            *(Argument(f"G{d}", "block", f"Integrals of B_j^({d}) B_j'^({d}) dv over V_i and V_i'.") for d in range(3)),
+        ),
+        form="block",
+        values=((gram_block(),),),
+        names=("K",),
+    )
+
+
+def generated_files() -> dict[str, str]:
+    """Return the name and text of each file of `solver/generated`, sorted by name."""
+    contact: Sequence[Routine] = (
+        *(end_derivative_routine(order) for order in range(1, MAX_ORDER + 1)),
+        *(contact_routine(order) for order in range(MAX_ORDER + 1)),
+        conditions_routine(),
+    )
+    energy = (density_routine(), gram_routine())
+    contact_sources = ("derivations/splines.py", "derivations/contact.py")
+    files = {"__init__.py": '"""What `semispline generate` wrote; never edited by hand."""\n'}
+    for backend in (CASADI, NUMPY):
+        suffix = backend.title.lower()
+        title = "Contact of a blend with a base: end derivatives, rows P_0..P_n, general conditions"
+        files[f"contact_{suffix}.py"] = python_module(title, contact_sources, contact, backend)
+        title = "Thin-plate energy: integrand and blocks of its quadratic form"
+        files[f"energy_{suffix}.py"] = python_module(title, ("derivations/energy.py",), energy, backend)
+    return dict(sorted(files.items()))

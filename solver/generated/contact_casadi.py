@@ -1,0 +1,410 @@
+"""Contact of a blend with a base: end derivatives, rows P_0..P_n, general conditions (CasADi).
+
+Written by `semispline generate` from derivations/splines.py and derivations/contact.py.
+Do not edit: change the derivation and generate again.
+Operations: 176 in 8 functions.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import casadi
+
+
+def _number(name: str, value: Any) -> Any:
+    shape = tuple(getattr(value, "shape", ()))
+    if shape not in ((), (1, 1)):
+        raise ValueError(f"{name}: shape {shape}, expected a single number of shape () or (1, 1)")
+    return value
+
+
+def _degree(name: str, value: Any, least: int) -> Any:
+    degree = _number(name, value)
+    if not isinstance(degree, (casadi.SX, casadi.MX)) and not float(degree) >= least:
+        raise ValueError(f"{name}: found {value}, expected a degree of at least {least}")
+    return degree
+
+
+def _span(name: str, value: Any) -> Any:
+    span = _number(name, value)
+    if not isinstance(span, (casadi.SX, casadi.MX)) and not float(span) > 0:
+        raise ValueError(f"{name}: found {value}, expected a positive distance of knots")
+    return span
+
+
+def _vector(name: str, value: Any) -> Any:
+    vector = value if isinstance(value, (casadi.SX, casadi.MX, casadi.DM)) else casadi.DM(value)
+    if tuple(vector.shape) != (3, 1):
+        raise ValueError(f"{name}: shape {tuple(vector.shape)}, expected (3, 1)")
+    return vector
+
+
+def _function(name: str, value: Any) -> Any:
+    shape = tuple(getattr(value, "shape", ()))
+    if shape not in ((), (1, 1)):
+        raise ValueError(f"{name}: shape {shape}, expected a single number of shape () or (1, 1)")
+    return value
+
+
+def end_derivatives_1(p: Any, h1: Any) -> Any:
+    """Derivatives of order 0..1 at the clamped start; [d, i] multiplies row i in the d-th.
+
+    Parameters
+    ----------
+    p : a number, at least 1
+        Degree.
+    h1 : a positive number
+        U[p + 1] - U[p] of the knots.
+
+    Returns
+    -------
+    D : matrix, shape (2, 2)
+
+    Raises
+    ------
+    ValueError
+        Naming the argument and what it should be.
+
+    Source: Cox-de Boor, derivations/splines.py. Operations: 2.
+    """
+    p = _degree("p", p, 1)
+    h1 = _span("h1", h1)
+    x0 = p / h1
+    c10 = -x0
+    return casadi.vertcat(casadi.horzcat(1.0, 0.0), casadi.horzcat(c10, x0))
+
+
+def end_derivatives_2(p: Any, h1: Any, h2: Any) -> Any:
+    """Derivatives of order 0..2 at the clamped start; [d, i] multiplies row i in the d-th.
+
+    Parameters
+    ----------
+    p : a number, at least 1
+        Degree.
+    h1 : a positive number
+        U[p + 1] - U[p] of the knots.
+    h2 : a positive number
+        U[p + 2] - U[p] of the knots.
+
+    Returns
+    -------
+    D : matrix, shape (3, 3)
+
+    Raises
+    ------
+    ValueError
+        Naming the argument and what it should be.
+
+    Source: Cox-de Boor, derivations/splines.py. Operations: 13.
+    """
+    p = _degree("p", p, 1)
+    h1 = _span("h1", h1)
+    h2 = _span("h2", h2)
+    x0 = p / h1
+    x1 = p - 1
+    x2 = p * x1 / h1**2
+    x3 = 1 / h2
+    c10 = -x0
+    c21 = -x2 * x3 * (h1 + h2)
+    c22 = x0 * x1 * x3
+    return casadi.vertcat(casadi.horzcat(1.0, 0.0, 0.0), casadi.horzcat(c10, x0, 0.0), casadi.horzcat(x2, c21, c22))
+
+
+def end_derivatives_3(p: Any, h1: Any, h2: Any, h3: Any) -> Any:
+    """Derivatives of order 0..3 at the clamped start; [d, i] multiplies row i in the d-th.
+
+    Parameters
+    ----------
+    p : a number, at least 1
+        Degree.
+    h1 : a positive number
+        U[p + 1] - U[p] of the knots.
+    h2 : a positive number
+        U[p + 2] - U[p] of the knots.
+    h3 : a positive number
+        U[p + 3] - U[p] of the knots.
+
+    Returns
+    -------
+    D : matrix, shape (4, 4)
+
+    Raises
+    ------
+    ValueError
+        Naming the argument and what it should be.
+
+    Source: Cox-de Boor, derivations/splines.py. Operations: 35.
+    """
+    p = _degree("p", p, 1)
+    h1 = _span("h1", h1)
+    h2 = _span("h2", h2)
+    h3 = _span("h3", h3)
+    x0 = p / h1
+    x1 = h1**2
+    x2 = p - 1
+    x3 = p * x2
+    x4 = x3 / x1
+    x5 = 1 / h2
+    x6 = x0 * x2 * x5
+    x7 = p - 2
+    x8 = x3 * x7 / h1**3
+    x9 = h2**2
+    x10 = 1 / x9
+    x11 = h1 * h2
+    x12 = x7 / h3
+    c10 = -x0
+    c21 = -x4 * x5 * (h1 + h2)
+    c30 = -x8
+    c31 = x10 * x8 * (x1 + x11 + x9)
+    c32 = -x10 * x12 * x4 * (h1 * h3 + h2 * h3 + x11)
+    c33 = x12 * x6
+    return casadi.vertcat(
+        casadi.horzcat(1.0, 0.0, 0.0, 0.0),
+        casadi.horzcat(c10, x0, 0.0, 0.0),
+        casadi.horzcat(x4, c21, x6, 0.0),
+        casadi.horzcat(c30, c31, c32, c33),
+    )
+
+
+def contact_rows_0() -> Any:
+    """Rows of a blend in G0 contact: P_i = sum_j C[i, j] R_j, counted from the contact.
+
+    Returns
+    -------
+    C : matrix, shape (1, 1)
+
+    Source: chain rule of order 0 with p1 = -a, the rest zero; derivations/contact.py. Operations: 0.
+    """
+    return casadi.vertcat(casadi.horzcat(1.0))
+
+
+def contact_rows_1(a: Any, p: Any, h1: Any, q: Any, H1: Any) -> Any:
+    """Rows of a blend in G1 contact: P_i = sum_j C[i, j] R_j, counted from the contact.
+
+    Parameters
+    ----------
+    a : a number
+        alpha^2: the blend leaves the base backwards, P_u = -a R_w.
+    p : a number, at least 1
+        Degree of the blend in u.
+    h1 : a positive number
+        U[p + 1] - U[p] of the blend, counted from the contact.
+    q : a number, at least 1
+        Degree of the base across the contact.
+    H1 : a positive number
+        U[q + 1] - U[q] of the base; any positive number where there is no such knot.
+
+    Returns
+    -------
+    C : matrix, shape (2, 2)
+
+    Raises
+    ------
+    ValueError
+        Naming the argument and what it should be.
+
+    Source: chain rule of order 1 with p1 = -a, the rest zero; derivations/contact.py. Operations: 6.
+    """
+    a = _number("a", a)
+    p = _degree("p", p, 1)
+    h1 = _span("h1", h1)
+    q = _degree("q", q, 1)
+    H1 = _span("H1", H1)
+    x0 = a * h1 * q / (H1 * p)
+    c10 = x0 + 1
+    c11 = -x0
+    return casadi.vertcat(casadi.horzcat(1.0, 0.0), casadi.horzcat(c10, c11))
+
+
+def contact_rows_2(a: Any, p: Any, h1: Any, h2: Any, q: Any, H1: Any, H2: Any) -> Any:
+    """Rows of a blend in G2 contact: P_i = sum_j C[i, j] R_j, counted from the contact.
+
+    Parameters
+    ----------
+    a : a number
+        alpha^2: the blend leaves the base backwards, P_u = -a R_w.
+    p : a number, at least 2
+        Degree of the blend in u.
+    h1 : a positive number
+        U[p + 1] - U[p] of the blend, counted from the contact.
+    h2 : a positive number
+        U[p + 2] - U[p] of the blend, counted from the contact.
+    q : a number, at least 1
+        Degree of the base across the contact.
+    H1 : a positive number
+        U[q + 1] - U[q] of the base; any positive number where there is no such knot.
+    H2 : a positive number
+        U[q + 2] - U[q] of the base; any positive number where there is no such knot.
+
+    Returns
+    -------
+    C : matrix, shape (3, 3)
+
+    Raises
+    ------
+    ValueError
+        Naming the argument and what it should be.
+
+    Source: chain rule of order 2 with p1 = -a, the rest zero; derivations/contact.py. Operations: 31.
+    """
+    a = _number("a", a)
+    p = _degree("p", p, 2)
+    h1 = _span("h1", h1)
+    h2 = _span("h2", h2)
+    q = _degree("q", q, 1)
+    H1 = _span("H1", H1)
+    H2 = _span("H2", H2)
+    x0 = 1 / p
+    x1 = h1 * q * x0
+    x2 = 1 / H1
+    x3 = a * x2
+    x4 = x1 * x3
+    x5 = q * x0 * x3 * (h1 + h2)
+    x6 = a**2 * h2 * x1 * (q - 1) / (p - 1)
+    x7 = x6 / H1**2
+    x8 = 1 / H2
+    c10 = x4 + 1
+    c11 = -x4
+    c20 = x5 + x7 + 1
+    c21 = -x5 - x7 * x8 * (H1 + H2)
+    c22 = x2 * x6 * x8
+    return casadi.vertcat(casadi.horzcat(1.0, 0.0, 0.0), casadi.horzcat(c10, c11, 0.0), casadi.horzcat(c20, c21, c22))
+
+
+def contact_rows_3(a: Any, p: Any, h1: Any, h2: Any, h3: Any, q: Any, H1: Any, H2: Any, H3: Any) -> Any:
+    """Rows of a blend in G3 contact: P_i = sum_j C[i, j] R_j, counted from the contact.
+
+    Parameters
+    ----------
+    a : a number
+        alpha^2: the blend leaves the base backwards, P_u = -a R_w.
+    p : a number, at least 3
+        Degree of the blend in u.
+    h1 : a positive number
+        U[p + 1] - U[p] of the blend, counted from the contact.
+    h2 : a positive number
+        U[p + 2] - U[p] of the blend, counted from the contact.
+    h3 : a positive number
+        U[p + 3] - U[p] of the blend, counted from the contact.
+    q : a number, at least 1
+        Degree of the base across the contact.
+    H1 : a positive number
+        U[q + 1] - U[q] of the base; any positive number where there is no such knot.
+    H2 : a positive number
+        U[q + 2] - U[q] of the base; any positive number where there is no such knot.
+    H3 : a positive number
+        U[q + 3] - U[q] of the base; any positive number where there is no such knot.
+
+    Returns
+    -------
+    C : matrix, shape (4, 4)
+
+    Raises
+    ------
+    ValueError
+        Naming the argument and what it should be.
+
+    Source: chain rule of order 3 with p1 = -a, the rest zero; derivations/contact.py. Operations: 73.
+    """
+    a = _number("a", a)
+    p = _degree("p", p, 3)
+    h1 = _span("h1", h1)
+    h2 = _span("h2", h2)
+    h3 = _span("h3", h3)
+    q = _degree("q", q, 1)
+    H1 = _span("H1", H1)
+    H2 = _span("H2", H2)
+    H3 = _span("H3", H3)
+    x0 = q / p
+    x1 = x0 / H1
+    x2 = a * x1
+    x3 = h1 * x2
+    x4 = h1 + h2
+    x5 = x2 * x4
+    x6 = H1**2
+    x7 = x0 / x6
+    x8 = h1 * h2
+    x9 = (q - 1) / (p - 1)
+    x10 = a**2 * x9
+    x11 = x10 * x8
+    x12 = x11 * x7
+    x13 = 1 / H2
+    x14 = x13 * (H1 + H2)
+    x15 = x1 * x13
+    x16 = x2 * (h3 + x4)
+    x17 = x10 * (h1 * h3 + h2 * h3 + x8)
+    x18 = x17 * x7
+    x19 = a**3 * h3 * x8 * x9 * (q - 2) / (p - 2)
+    x20 = x0 * x19 / H1**3
+    x21 = H2**2
+    x22 = 1 / x21
+    x23 = H1 * H2
+    x24 = x19 / H3
+    c10 = x3 + 1
+    c11 = -x3
+    c20 = x12 + x5 + 1
+    c21 = -x12 * x14 - x5
+    c22 = x11 * x15
+    c30 = x16 + x18 + x20 + 1
+    c31 = -x14 * x18 - x16 - x20 * x22 * (x21 + x23 + x6)
+    c32 = x15 * x17 + x22 * x24 * x7 * (H1 * H3 + H2 * H3 + x23)
+    c33 = -x15 * x24
+    return casadi.vertcat(
+        casadi.horzcat(1.0, 0.0, 0.0, 0.0),
+        casadi.horzcat(c10, c11, 0.0, 0.0),
+        casadi.horzcat(c20, c21, c22, 0.0),
+        casadi.horzcat(c30, c31, c32, c33),
+    )
+
+
+def contact_derivatives_2(
+    r_w: Any, r_v: Any, r_ww: Any, r_wv: Any, r_vv: Any, p1: Any, q1: Any, p2: Any, q2: Any
+) -> tuple[Any, Any]:
+    """P_u and P_uu along the contact for general p_i, q_i, where P(u, v) = R(w(u, v), v~(u, v)).
+
+    Parameters
+    ----------
+    r_w : shape (3, 1)
+        R_w along the contact.
+    r_v : shape (3, 1)
+        R_v along the contact.
+    r_ww : shape (3, 1)
+        R_ww along the contact.
+    r_wv : shape (3, 1)
+        R_wv along the contact.
+    r_vv : shape (3, 1)
+        R_vv along the contact.
+    p1 : a number
+        w_u along the contact.
+    q1 : a number
+        v~_u along the contact.
+    p2 : a number
+        w_uu along the contact.
+    q2 : a number
+        v~_uu along the contact.
+
+    Returns
+    -------
+    p_u : shape (3, 1)
+    p_uu : shape (3, 1)
+
+    Raises
+    ------
+    ValueError
+        Naming the argument and what it should be.
+
+    Source: chain rule, derivations/contact.py; equations (15) and (16). Operations: 16.
+    """
+    r_w = _vector("r_w", r_w)
+    r_v = _vector("r_v", r_v)
+    r_ww = _vector("r_ww", r_ww)
+    r_wv = _vector("r_wv", r_wv)
+    r_vv = _vector("r_vv", r_vv)
+    p1 = _function("p1", p1)
+    q1 = _function("q1", q1)
+    p2 = _function("p2", p2)
+    q2 = _function("q2", q2)
+    p_u = p1 * r_w + q1 * r_v
+    p_uu = p1**2 * r_ww + 2 * p1 * q1 * r_wv + p2 * r_w + q1**2 * r_vv + q2 * r_v
+    return p_u, p_uu
