@@ -134,7 +134,8 @@ def inside_square(hole: Hole) -> bool:
 def areas(hole: Hole) -> dict[str, Fraction]:
     """Return the areas of the eight pieces in the parameter domain, and that of the hole by Green's formula.
 
-    The hole's area is the integral of -v du around it, so the sum of all nine says something: 1 for a tiling.
+    The hole's area is half the integral of u dv - v du around it, found apart from the others: all nine sum to 1 for a
+    tiling.
     """
     left, right, bottom, top = hole.left, hole.right, hole.bottom, hole.top
     result = {
@@ -147,10 +148,9 @@ def areas(hole: Hole) -> dict[str, Fraction]:
         "upper right": (1 - top.end) * (1 - right.end),
         "upper left": top.start * (1 - left.end),
     }
-    # -v du around the hole, counterclockwise: bottom and right forwards, top and left backwards.
-    result["hole"] = -(
-        (bottom.end - bottom.start) * bottom.mean + _v_du(right) - (top.end - top.start) * top.mean - _v_du(left)
-    )
+    # Counterclockwise: bottom and right forwards, top and left backwards.
+    turning = {name: _moment(name, getattr(hole, name)) for name in SIDES}
+    result["hole"] = (turning["bottom"] + turning["right"] - turning["top"] - turning["left"]) / 2
     return result
 
 
@@ -262,10 +262,11 @@ def _roots(polynomial: sp.Poly, start: Fraction, end: Fraction) -> list[Any]:
     return [r for r in sorted(set(polynomial.real_roots())) if start <= r <= end]
 
 
-def _v_du(side: Side) -> Fraction:
-    """Integrate v du along u = side(v), by parts."""
-    first, last = side.coefficients[0], side.coefficients[-1]
-    return side.end * last - side.start * first - (side.end - side.start) * side.mean
+def _moment(name: str, side: Side) -> Fraction:
+    """Integrate u dv - v du along a side."""
+    ends = side.end * side.coefficients[-1] - side.start * side.coefficients[0]
+    twice = 2 * (side.end - side.start) * side.mean
+    return twice - ends if name in ("left", "right") else ends - twice
 
 
 def _transpose(rows: Sequence[Sequence[Any]]) -> Net:
