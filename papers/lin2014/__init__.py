@@ -1,1 +1,1 @@
-"""The 2014 paper: what it prints, decided and run again."""
+"""Lin, Wang, Hu: Semi-structured B-spline for blending two B-spline surfaces (2014)."""

@@ -1,0 +1,147 @@
+"""Deciding the contact conditions: a printed row against the row that Cox-de Boor and the chain rule give.
+
+The oracle is `derivations.contact`; nothing printed enters it. Letters of the residuals: h_r is the distance from the
+contact to the r-th knot of U after it, H_r the same of the base across the contact, a = alpha^2 or beta^2; for a
+contact at u = 0, h_r = u_r, and for one at u = 1, h_r = 1 - u_(m-k+2-r).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import cache, partial
+from typing import Any, Literal
+
+import sympy as sp
+
+from derivations.contact import A, contact_rows, contact_rows_from_pieces
+from derivations.splines import end_derivatives, end_derivatives_from_pieces, span_symbols
+from papers.ledger import Case, Check, Formula, Strength
+from papers.lin2014 import printed as pr
+
+ORDERS = range(2, 9)
+CUBIC = 4
+
+Side = Literal["start", "end"]
+
+# Symbols of corrected formulas that the paper does not print there.
+u_last, u_before = sp.symbols("u_{m-k+1} u_{m-k}", positive=True)
+w_kr1, t_ks1 = sp.symbols("w_{k_r+1} t_{k_s+1}", real=True)
+
+_H, _BASE_H = span_symbols(3), span_symbols(2, "H")
+_ROWS = {"start": (pr.P_0, pr.P_1, pr.P_2), "end": (pr.P_m, pr.P_m1, pr.P_m2)}
+_BASE_ROWS = {"start": (pr.R_0, pr.R_1, pr.R_2), "end": (pr.S_0, pr.S_1, pr.S_2)}
+
+
+def row_check(side: Side, row: int) -> Check:
+    """Return the check of the condition for row 0, 1 or 2 counted from the contact at `side`."""
+    return Check(
+        partial(_row_cases, side, row),
+        Strength.SYMBOLIC_ORDER if side == "start" else Strength.EACH_ORDER,
+        "the row from Cox-de Boor end derivatives and the chain rule, over symbolic knots; orders k and k_s from 2 to 8"
+        if side == "end"
+        else "the row from end derivatives and the chain rule for symbolic orders and knots, and from the Cox-de Boor "
+        "pieces for each pair of orders from 2 to 8",
+        proof=True,
+    )
+
+
+def derivative_check(surface: Literal["P", "R"], order: int) -> Check:
+    """Return the check of an end derivative of the blend or of the base."""
+    return Check(
+        partial(_derivative_cases, surface, order),
+        Strength.SYMBOLIC_ORDER,
+        "end derivatives for a symbolic order (by induction from the recurrence), and those of the Cox-de Boor pieces "
+        "for each order from 2 to 8, over symbolic knots",
+        proof=True,
+    )
+
+
+def _row_cases(side: Side, row: int, formula: Formula | None) -> Iterator[Case]:
+    relation = _relation(formula)
+    right = relation.rhs if relation.lhs == _ROWS[side][row] else relation.rhs - relation.lhs + _ROWS[side][row]
+    if not right.has(pr.u_m3):
+        k, k_b = pr.k, _base_order(side)
+        values = _symbols(side, k, k_b, contact_rows(2, k - 1, _H, k_b - 1, _BASE_H))
+        yield _row_case(right, side, row, values, "every order k, k_r", own=True, meets=True)
+    for k in ORDERS:
+        if k <= row:
+            continue
+        for k_b in ORDERS:
+            matrix = _rows_from_pieces(row, k - 1, k_b - 1, side)
+            own = k == CUBIC and k_b == CUBIC
+            values = _symbols(side, k, k_b, matrix)
+            yield _row_case(right, side, row, values, f"orders {k}, {k_b}", own=own, meets=k == CUBIC)
+
+
+def _row_case(
+    right: Any, side: Side, row: int, values: dict[Any, Any], label: str, *, own: bool, meets: bool
+) -> Case:
+    residual = difference_form((right - _ROWS[side][row]).subs(values, simultaneous=True), _BASE_ROWS[side])
+    return Case(label, residual == 0, own, meets, residual)
+
+
+def _relation(formula: Formula | None) -> Any:
+    if formula is None:
+        raise ValueError("formula: found None, expected a relation")
+    return formula.relation
+
+
+def _base_order(side: Side) -> Any:
+    return pr.k_r if side == "start" else pr.k_s
+
+
+@cache
+def _rows_from_pieces(order: int, degree: int, base_degree: int, side: Side) -> sp.Matrix:
+    return contact_rows_from_pieces(order, degree, base_degree, side)
+
+
+def _symbols(side: Side, k: Any, k_b: Any, matrix: sp.Matrix) -> dict[Any, Any]:
+    """Return what each printed letter stands for: knots as distances from the contact, blend rows by the oracle."""
+    shape = pr.alpha if side == "start" else pr.beta
+    base = _BASE_ROWS[side]
+    rows = matrix.subs(A, shape**2) * sp.Matrix(base[: matrix.cols])
+    values = dict(zip(_ROWS[side], rows, strict=False)) | {_base_order(side): k_b, pr.k: k}
+    h, b = _H, _BASE_H
+    if side == "start":
+        return values | {pr.u_1: h[0], pr.u_2: h[1], pr.w_kr: pr.w_s + b[0], w_kr1: pr.w_s + b[1]}
+    values |= {u_last: 1 - h[0], u_before: 1 - h[1], pr.t_ks: pr.t_s + b[0], t_ks1: pr.t_s + b[1]}
+    if isinstance(k, int):
+        # u_(m-3) counted from the end of the inner knots u_1 .. u_(m-k+1); past them the vector goes on with ones.
+        from_end = 5 - k
+        values[pr.u_m3] = 1 - h[from_end - 1] if from_end > 0 else sp.Integer(1)
+    return values
+
+
+def _derivative_cases(surface: Literal["P", "R"], order: int, formula: Formula | None) -> Iterator[Case]:
+    relation = _relation(formula)
+    is_blend = surface == "P"
+    rows = (pr.P_0, pr.P_1, pr.P_2) if is_blend else (pr.R_0, pr.R_1, pr.R_2)
+    k = pr.k if is_blend else pr.k_r
+    h = span_symbols(2, "h" if is_blend else "H")
+    knots = {pr.u_1: h[0], pr.u_2: h[1], pr.w_kr: pr.w_s + h[0], w_kr1: pr.w_s + h[1]}
+    for number in (k, *ORDERS):
+        if number is k:
+            true = end_derivatives(2, k - 1, h)[order, :]
+        else:
+            pieces = end_derivatives_from_pieces(2, number - 1)[order, :]
+            true = pieces.subs(dict(zip(span_symbols(2), h, strict=True)), simultaneous=True)
+        right = relation.rhs.subs({k: number, **knots}, simultaneous=True)
+        residual = difference_form(right - (true * sp.Matrix(rows))[0], rows)
+        label = f"every order {k}" if number is k else f"order {number}"
+        yield Case(label, residual == 0, number in (k, CUBIC), residual=residual)
+
+
+def difference_form(expression: Any, rows: tuple[Any, ...]) -> Any:
+    """Return an expression, linear in control rows, by differences of neighbouring rows and powers of alpha, beta.
+
+    Each coefficient is factored, so that zero is literally 0, and equal things look the same.
+    """
+    first, second, third = rows
+    d1, d2 = sp.Symbol(f"({second}-{first})"), sp.Symbol(f"({third}-{second})")
+    moved = expression.subs({second: first + d1, third: first + d1 + d2}, simultaneous=True)
+    numerator, denominator = sp.fraction(sp.together(moved))
+    generators = (first, d1, d2, pr.alpha, pr.beta)
+    return sum(
+        (sp.factor(coefficient / denominator) * sp.prod(x**n for x, n in zip(generators, powers, strict=True)))
+        for powers, coefficient in sp.Poly(numerator, *generators).terms()
+    )

@@ -1,0 +1,285 @@
+"""Deciding a paper: every check is run anew, and its verdict compared with the recorded one."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from dataclasses import dataclass
+from multiprocessing import get_context
+
+from papers.ledger import (
+    Case,
+    CheckFailedError,
+    Claim,
+    Consequence,
+    Paper,
+    Part,
+    Reading,
+    Strength,
+    Verdict,
+    load_paper,
+)
+from papers.mutation import MutationResult, try_mutants
+
+
+@dataclass(frozen=True)
+class ReadingDecision:
+    """What one reading came to.
+
+    Attributes
+    ----------
+    label, condition : str
+        As in the record.
+    verdict : Verdict
+    strength : Strength
+        The weakest among the parts.
+    proof : bool
+        Every part is proved, not only checked on instances.
+    method : str
+    cases : int
+    residual : str
+        What the first false case leaves; empty where nothing is left.
+    false_case, true_case : str
+        One instance on each side; empty where there is none.
+    """
+
+    label: str
+    condition: str
+    verdict: Verdict
+    strength: Strength
+    proof: bool
+    method: str
+    cases: int
+    residual: str
+    false_case: str
+    true_case: str
+
+
+@dataclass(frozen=True)
+class Decision:
+    """One record, decided anew.
+
+    Attributes
+    ----------
+    id : str
+    recorded : Verdict
+    verdict : Verdict or None
+        None where a check gave no answer.
+    problem : str
+        Why there is no verdict, or what the record lacks; empty where all is well.
+    vacuous : bool
+        Some check had no instance.
+    readings : tuple of ReadingDecision
+    counterexample : str
+    correction : ReadingDecision or None
+        Decided like a reading; it must hold.
+    consequence : Consequence or None
+    mutation : MutationResult
+        Of all printed and corrected formulas.
+    seconds : float
+    """
+
+    id: str
+    recorded: Verdict
+    verdict: Verdict | None
+    problem: str
+    vacuous: bool
+    readings: tuple[ReadingDecision, ...]
+    counterexample: str
+    correction: ReadingDecision | None
+    consequence: Consequence | None
+    mutation: MutationResult
+    seconds: float
+
+    @property
+    def ok(self) -> bool:
+        """The verdict is the recorded one and nothing is missing."""
+        return self.verdict is self.recorded and not self.problem and not self.vacuous and not self.mutation.survivors
+
+
+class VacuousError(CheckFailedError):
+    """A check without a single instance."""
+
+
+def decide(claim: Claim) -> Decision:
+    """Run every check of one record.
+
+    A check without an answer does not raise: it leaves a decision without a verdict, which is never `ok`.
+    """
+    started = time.perf_counter()
+    readings: tuple[ReadingDecision, ...] = ()
+    verdict, problem, vacuous = None, "", False
+    counterexample, correction, consequence = "", None, None
+    mutation = MutationResult(0, 0, ())
+    try:
+        readings = tuple(_decide_reading(reading) for reading in claim.readings)
+        verdict = _combined(readings)
+        if verdict is Verdict.FAILS:
+            found = claim.counterexample() if claim.counterexample else None
+            if found is None:
+                raise CheckFailedError("the search found no counterexample, expected one for a claim that fails")
+            counterexample = str(found)
+        if claim.correction:
+            correction = _decide_reading(Reading(claim.correction.parts))
+            if correction.verdict is not Verdict.HOLDS:
+                raise CheckFailedError(f"the correction {correction.verdict}, expected a formula that holds")
+        if claim.consequence:
+            consequence = claim.consequence()
+        mutation = _mutation(claim)
+    except VacuousError as error:
+        verdict, problem, vacuous = None, str(error), True
+    except Exception as error:  # a check may fail in any way; none may pass for it
+        verdict, problem = None, f"{type(error).__name__}: {error}"
+    return Decision(
+        claim.id,
+        claim.verdict,
+        verdict,
+        problem,
+        vacuous,
+        readings,
+        counterexample,
+        correction,
+        consequence,
+        mutation,
+        time.perf_counter() - started,
+    )
+
+
+def _decide_reading(reading: Reading) -> ReadingDecision:
+    cases: list[Case] = []
+    for part in reading.parts:
+        found = list(part.check.cases(part.formula))
+        if not found:
+            raise VacuousError(f"no instance satisfies the assumptions of: {part.check.method}")
+        cases += found
+    unknown = [case.label for case in cases if case.true is None]
+    if unknown:
+        raise CheckFailedError(f"no answer for {', '.join(unknown[:3])}")
+    wrong = [case for case in cases if not case.true]
+    right = [case for case in cases if case.true]
+    # The residual shown is that of the paper's own setting where it has one.
+    shown = next((c for c in wrong if c.own), wrong[0] if wrong else None)
+    return ReadingDecision(
+        reading.label,
+        reading.condition,
+        _verdict(cases, reading.condition),
+        max(part.check.strength for part in reading.parts),
+        all(part.check.proof for part in reading.parts),
+        "; ".join(dict.fromkeys(part.check.method for part in reading.parts)),
+        len(cases),
+        "" if shown is None or shown.residual is None else str(shown.residual),
+        shown.label if shown else "",
+        next((c.label for c in right if c.own), right[0].label if right else ""),
+    )
+
+
+def _verdict(cases: list[Case], condition: str) -> Verdict:
+    """Decide one reading: false in the paper's own setting is `fails`, false only outside it needs a condition."""
+    if all(case.true for case in cases):
+        return Verdict.HOLDS
+    if any(case.own and not case.true for case in cases):
+        return Verdict.FAILS
+    if not condition:
+        raise CheckFailedError(f"false for {next(c.label for c in cases if not c.true)}, expected a stated condition")
+    for case in cases:
+        if case.true != case.meets:
+            raise CheckFailedError(f"the condition «{condition}» does not separate true from false at {case.label}")
+    if not any(case.own for case in cases):
+        raise CheckFailedError("no instance of the paper's own setting, expected one that meets the condition")
+    return Verdict.HOLDS_IF
+
+
+def _combined(readings: tuple[ReadingDecision, ...]) -> Verdict:
+    """Combine readings: where they differ the claim is ambiguous, else it is what they all are."""
+    if not readings:
+        return Verdict.NOT_CHECKABLE
+    verdicts = {reading.verdict for reading in readings}
+    return verdicts.pop() if len(verdicts) == 1 else Verdict.AMBIGUOUS
+
+
+def _mutation(claim: Claim) -> MutationResult:
+    parts: tuple[Part, ...] = claim.parts + (claim.correction.parts if claim.correction else ())
+    results = [try_mutants(part) for part in parts]
+    return MutationResult(
+        sum(r.tried for r in results), sum(r.explained for r in results), tuple(s for r in results for s in r.survivors)
+    )
+
+
+@dataclass(frozen=True)
+class Ledger:
+    """A paper, decided: the records and their decisions in the same order."""
+
+    paper: Paper
+    decisions: tuple[Decision, ...]
+
+    @property
+    def ok(self) -> bool:
+        """Every verdict is the recorded one, nothing vacuous, no mutant survived without a reason."""
+        return all(decision.ok for decision in self.decisions)
+
+    def counts(self) -> dict[str, int]:
+        """Return how many records are printed, decided, proved; each verdict; vacuous, changed; mutants."""
+        decided = [d for d in self.decisions if d.verdict not in (None, Verdict.NOT_CHECKABLE)]
+        return {
+            "printed": len(self.decisions),
+            "decided": len(decided),
+            "proved": sum(all(r.proof for r in d.readings) for d in decided),
+            **{str(v): sum(d.verdict is v for d in self.decisions) for v in Verdict},
+            "vacuous": sum(d.vacuous for d in self.decisions),
+            "changed": sum(d.verdict is not d.recorded for d in self.decisions),
+            "mutants": sum(d.mutation.tried for d in self.decisions),
+            "mutants_equivalent": sum(d.mutation.explained for d in self.decisions),
+            "mutants_survived": sum(len(d.mutation.survivors) for d in self.decisions),
+        }
+
+
+def verify(
+    name: str,
+    *,
+    workers: int = 2,
+    progress: Callable[[Decision], None] | None = None,
+) -> Ledger:
+    """Load a paper and decide all its records.
+
+    Parameters
+    ----------
+    name : str
+        Folder name under `papers/`, or the path of a folder.
+    workers : int
+        Processes; 1 decides in this one.
+    progress : callable, optional
+        Told of each decision as it comes.
+
+    Raises
+    ------
+    LedgerError
+        The paper cannot be found, or a record is not well formed.
+    """
+    paper = load_paper(name)
+    decisions: dict[str, Decision] = {}
+    for decision in _decisions(paper, workers):
+        decisions[decision.id] = decision
+        if progress:
+            progress(decision)
+    return Ledger(paper, tuple(decisions[claim.id] for claim in paper.claims))
+
+
+def _decisions(paper: Paper, workers: int) -> Iterator[Decision]:
+    if workers == 1:
+        yield from map(decide, paper.claims)
+        return
+    # A fresh interpreter for each worker: forking a process with threads (BLAS, progress bar) is not safe.
+    with ProcessPoolExecutor(workers, mp_context=get_context("spawn")) as pool:
+        waiting = [pool.submit(_decide_by_id, paper.name, claim.id) for claim in paper.claims]
+        yield from (future.result() for future in as_completed(waiting))
+
+
+_LOADED: dict[str, Paper] = {}
+
+
+def _decide_by_id(name: str, identifier: str) -> Decision:
+    """Decide one record in a worker, which loads the paper once: checks are functions and do not travel."""
+    if name not in _LOADED:
+        _LOADED[name] = load_paper(name)
+    return decide(_LOADED[name].claim(identifier))
