@@ -9,15 +9,68 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from solver.blending import BlendResult, blend
+    from solver.continuity import Base, Contact, measure_contact
+    from solver.errors import (
+        ComputationError,
+        ContactError,
+        ControlPointError,
+        EdgeError,
+        FileError,
+        InputError,
+        KnotError,
+        OptionError,
+        SemisplineError,
+    )
+    from solver.gram import thin_plate_energy
+    from solver.regularity import Regularity, measure_regularity
     from solver.surfaces import BSplineCurve, BSplineSurface, SemiStructuredSurface
 
 _EXPORTS = {
     "BSplineCurve": "solver.surfaces",
     "BSplineSurface": "solver.surfaces",
+    "Base": "solver.continuity",
+    "BlendResult": "solver.blending",
+    "ComputationError": "solver.errors",
+    "Contact": "solver.continuity",
+    "ContactError": "solver.errors",
+    "ControlPointError": "solver.errors",
+    "EdgeError": "solver.errors",
+    "FileError": "solver.errors",
+    "InputError": "solver.errors",
+    "KnotError": "solver.errors",
+    "OptionError": "solver.errors",
+    "Regularity": "solver.regularity",
     "SemiStructuredSurface": "solver.surfaces",
+    "SemisplineError": "solver.errors",
+    "blend": "solver.blending",
+    "measure_contact": "solver.continuity",
+    "measure_regularity": "solver.regularity",
+    "thin_plate_energy": "solver.gram",
 }
 
-__all__ = ["BSplineCurve", "BSplineSurface", "SemiStructuredSurface"]
+__all__ = [
+    "BSplineCurve",
+    "BSplineSurface",
+    "Base",
+    "BlendResult",
+    "ComputationError",
+    "Contact",
+    "ContactError",
+    "ControlPointError",
+    "EdgeError",
+    "FileError",
+    "InputError",
+    "KnotError",
+    "OptionError",
+    "Regularity",
+    "SemiStructuredSurface",
+    "SemisplineError",
+    "blend",
+    "measure_contact",
+    "measure_regularity",
+    "thin_plate_energy",
+]
 
 
 def __getattr__(name: str) -> Any:

@@ -16,8 +16,8 @@ from solver.surfaces import BSplineSurface, Surface
 Edge: TypeAlias = Literal["u0", "u1", "v0", "v1"]
 Flip: TypeAlias = Literal["auto", "yes", "no"]
 
-# Where each merged span of the edge is sampled: its start and inner points. Knots are seen from the right.
-_FRACTIONS = np.array([0.0, 0.04, 0.2, 0.35, 0.5, 0.65, 0.8, 0.96])
+# Where each merged span of the edge is sampled: inside, since at a knot the two sides may be seen from different spans.
+_FRACTIONS = np.array([0.002, 0.1, 0.3, 0.5, 0.7, 0.9, 0.998])
 
 
 @dataclass(frozen=True)
@@ -150,17 +150,25 @@ def measure_contact(a: Base, b: Base, flip: Flip = "auto") -> Contact:
     largest = max(float(np.abs(k_a).max()), float(np.abs(k_b).max()), 1e-3 / size)
     # One side is left backwards: odd derivatives change sign unless the edges are at opposite ends.
     sign = -1.0 if a.edge[1] == b.edge[1] else 1.0
-    c1 = _relative(side_a.x_w - sign * side_b.x_w, side_a.x_w, side_b.x_w)
-    c2 = _relative(side_a.x_ww - side_b.x_ww, side_a.x_ww, side_b.x_ww)
+    noise = [_noise(side_a, order) + _noise(side_b, order) for order in range(3)]
+    c1 = _relative(side_a.x_w - sign * side_b.x_w, (side_a.x_w, side_b.x_w), noise[1])
+    c2 = _relative(side_a.x_ww - side_b.x_ww, (side_a.x_ww, side_b.x_ww), noise[2])
+    geometric = [_geometric_noise(side, largest) for side in (side_a, side_b)]
     return Contact(
         gap=float(gap.max()),
         angle_degrees=float(angle.max()),
         curvature_jump=float(jump.max()),
         curvature_jump_relative=float(jump.max()) / largest,
-        c1_residual=c1,
-        c2_residual=c2,
+        c1_residual=c1[0],
+        c2_residual=c2[0],
         size=size,
-        rounding=_rounding(side_a, side_b, largest),
+        rounding={
+            "gap": noise[0],
+            "angle_degrees": float(np.degrees(geometric[0][0] + geometric[1][0])),
+            "curvature_jump_relative": (geometric[0][1] + geometric[1][1]) / largest,
+            "c1_residual": c1[1],
+            "c2_residual": c2[1],
+        },
         gap_at=places[int(gap.argmax())],
         angle_at=places[int(angle.argmax())],
         curvature_at=places[int(jump.argmax())],
@@ -189,7 +197,7 @@ class _Side:
         self.normal = cross / length[:, None]
 
     def curvature(self, normal: FloatArray) -> FloatArray:
-        """Normal curvature in the direction of the tangent plane that is perpendicular to the edge, shape (K,)."""
+        """Return normal curvature in the direction of the tangent plane perpendicular to the edge, shape (K,)."""
         # d = x_w + y x_s with d . x_s = 0; its normal curvature is II(d, d) / (d . d).
         y = -np.sum(self.x_w * self.x_s, axis=1) / np.sum(self.x_s**2, axis=1)
         d = self.x_w + y[:, None] * self.x_s
@@ -218,7 +226,8 @@ def corresponding_samples(a: Base, b: Base, flip: Flip = "auto") -> tuple[FloatA
     breaks_b = b.breakpoints_along()
     breaks = affine_knots(reversed_knots(breaks_b) if flipped else breaks_b, start, end)
     merged = merge_breakpoints(a.breakpoints_along(), breaks)
-    s_a = np.append((merged[:-1, None] + np.diff(merged)[:, None] * _FRACTIONS).ravel(), end)
+    inside = (merged[:-1, None] + np.diff(merged)[:, None] * _FRACTIONS).ravel()
+    s_a = np.concatenate([[start], inside, [end]])
     t = (s_a - start) / (end - start)
     b_start, b_end = b.range_along
     if flipped:
@@ -253,33 +262,28 @@ def model_size(*surfaces: Surface) -> float:
     return float(np.ptp(points, axis=0).max())
 
 
-def _relative(difference: FloatArray, x: FloatArray, y: FloatArray) -> float:
+def _relative(difference: FloatArray, sides: tuple[FloatArray, FloatArray], noise: float) -> tuple[float, float]:
+    """Return the largest difference over the largest derivative, and what `noise` amounts to in that measure.
+
+    A derivative that is nothing but rounding counts as vanishing: then the absolute figure decides.
+    """
     worst = float(np.linalg.norm(difference, axis=1).max())
-    largest = max(float(np.linalg.norm(x, axis=1).max()), float(np.linalg.norm(y, axis=1).max()))
-    return worst / largest if largest > 0 else worst
+    largest = max(float(np.linalg.norm(x, axis=1).max()) for x in sides)
+    scale = largest if largest > 8 * noise else 1.0
+    return worst / scale, noise / scale
 
 
-def _rounding(a: _Side, b: _Side, largest_curvature: float) -> dict[str, float]:
-    """Bound what rounding of the control points to float64 may do to each measure."""
-    noise = [[0.0] * 3, [0.0] * 3]
-    for k, side in enumerate((a, b)):
-        coordinate = float(np.abs(control_point_cloud(side.base.surface)).max())
-        for order in range(3):
-            noise[k][order] = np.finfo(float).eps * coordinate * _derivative_factor(side.base, order)
-    c = [noise[0][d] + noise[1][d] for d in range(3)]
-    largest = [max(float(np.linalg.norm(x, axis=1).max()) for x in pair) for pair in ((a.x_w, b.x_w), (a.x_ww, b.x_ww))]
-    angle, jump = 0.0, 0.0
-    for k, side in enumerate((a, b)):
-        speed = side.least_cross_speed()
-        angle += noise[k][1] / speed
-        jump += noise[k][2] / speed**2 + 2 * largest_curvature * noise[k][1] / speed
-    return {
-        "gap": c[0],
-        "angle_degrees": float(np.degrees(angle)),
-        "curvature_jump_relative": jump / largest_curvature,
-        "c1_residual": c[1] / largest[0] if largest[0] else c[1],
-        "c2_residual": c[2] / largest[1] if largest[1] else c[2],
-    }
+def _noise(side: _Side, order: int) -> float:
+    """Bound what rounding of the control points to float64 may do to a cross derivative."""
+    coordinate = float(np.abs(control_point_cloud(side.base.surface)).max())
+    return float(np.finfo(float).eps) * coordinate * _derivative_factor(side.base, order)
+
+
+def _geometric_noise(side: _Side, largest_curvature: float) -> tuple[float, float]:
+    """Bound what that rounding may do to the angle (radians) and to the curvature across the edge (1/length)."""
+    speed = side.least_cross_speed()
+    angle = _noise(side, 1) / speed
+    return angle, _noise(side, 2) / speed**2 + 2 * largest_curvature * angle
 
 
 def _derivative_factor(base: Base, order: int) -> float:

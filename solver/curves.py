@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from solver.arrays import FloatArray, finite_array
 from solver.errors import KnotError, OptionError
@@ -143,21 +143,23 @@ def _coarser_points(curve: BSplineCurve, knots: FloatArray) -> tuple[FloatArray,
     Points whose basis functions do not reach the removed knot stay as they are; the few others come from a local least
     squares fit.
     """
-    matrix = refinement_matrix(curve.degree, knots, curve.knots).toarray()
-    n = matrix.shape[1]
-    added = len(curve.control_points) - n
+    matrix = refinement_matrix(curve.degree, knots, curve.knots)
+    rows, n = matrix.shape
     # The first `head` rows and the last `tail` rows of the matrix are those of the identity.
-    same_head = np.all(matrix[:n] == np.eye(n), axis=1)
-    same_tail = np.all(matrix[added:] == np.eye(n), axis=1)[::-1]
-    head = n if same_head.all() else int(np.argmin(same_head))
-    tail = min(n - head, n if same_tail.all() else int(np.argmin(same_tail)))
-    points = np.empty((n, 3))
-    points[:head] = curve.control_points[:head]
-    points[n - tail :] = curve.control_points[len(curve.control_points) - tail :]
-    known = np.r_[0:head, n - tail : n]
-    unknown = np.arange(head, n - tail)
-    rest = curve.control_points - matrix[:, known] @ points[known]
-    if len(unknown):
-        points[unknown] = np.linalg.lstsq(matrix[:, unknown], rest, rcond=None)[0]
-    miss = np.linalg.norm(matrix @ points - curve.control_points, axis=1)
+    alone = np.diff(matrix.indptr) == 1
+    only = matrix.indices[matrix.indptr[:-1]]
+    head = _leading(alone & (only == np.arange(rows)))
+    tail = min(n - head, _leading((alone & (only == np.arange(rows) - (rows - n)))[::-1]))
+    old = curve.control_points
+    points = np.concatenate([old[:head], np.zeros((n - head - tail, 3)), old[rows - tail :]])
+    rest = old - matrix @ points
+    if n > head + tail:
+        block = matrix[head : rows - tail, head : n - tail].toarray()
+        points[head : n - tail] = np.linalg.lstsq(block, rest[head : rows - tail], rcond=None)[0]
+    miss = np.linalg.norm(matrix @ points - old, axis=1)
     return points, float(miss.max())
+
+
+def _leading(flags: NDArray[np.bool_]) -> int:
+    """Count the leading True values."""
+    return len(flags) if flags.all() else int(np.argmin(flags))

@@ -50,9 +50,11 @@ def blossom_matrix(degree: int, knots: FloatArray, start: FloatArray, arguments:
         carried = np.zeros(len(start))
         for s in range(level):
             right, left = knots[k + s + 1], knots[k + 1 - level + s]
-            part = values[:, s] / (right - left)
-            values[:, s] = carried + (right - x) * part
-            carried = (x - left) * part
+            # 1 - a, not (right - x) / width: a knot that meets an argument then gives exactly 0 and 1.
+            a = (x - left) / (right - left)
+            passed = a * values[:, s]
+            values[:, s] = carried + (1.0 - a) * values[:, s]
+            carried = passed
         values[:, level] = carried
     columns = (k - degree)[:, None] + np.arange(degree + 1)
     rows = np.arange(0, values.size + 1, degree + 1)

@@ -7,16 +7,17 @@ times (derivative) control points; it is right-continuous at inner knots and lef
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from math import comb
+from numbers import Integral
 from typing import TypeAlias, final
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from solver.arrays import FloatArray, finite_array
-from solver.errors import ControlPointError, InputError
+from solver.errors import ControlPointError, InputError, OptionError
 from solver.knots import MERGE_TOLERANCE, basis_matrix, breakpoints, checked_knots, derivative_points, merge_breakpoints
 
 
@@ -59,6 +60,7 @@ class BSplineCurve:
 
     def evaluate(self, v: ArrayLike, derivative: int = 0) -> FloatArray:
         """Evaluate the curve or a derivative at v, shape (K,); returns shape (K, 3)."""
+        check_orders(derivative=derivative)
         x = _parameters(v, self.knots, "v")
         if derivative > self.degree:
             return np.zeros((len(x), 3))
@@ -144,6 +146,7 @@ class BSplineSurface:
 
     def evaluate(self, u: ArrayLike, v: ArrayLike, du: int = 0, dv: int = 0) -> FloatArray:
         """Evaluate the surface or a mixed derivative at the points (u[k], v[k]); returns shape (K, 3)."""
+        check_orders(du=du, dv=dv)
         uu, vv = _point_parameters(self, u, v)
 
         def net(a: int, b: int) -> FloatArray:
@@ -159,6 +162,7 @@ class BSplineSurface:
 
     def evaluate_grid(self, u: ArrayLike, v: ArrayLike, du: int = 0, dv: int = 0) -> FloatArray:
         """Evaluate on the grid u x v; returns shape (len(u), len(v), 3)."""
+        check_orders(du=du, dv=dv)
         uu, vv = _parameters(u, self.knots_u, "u"), _parameters(v, self.knots_v, "v")
 
         def net(a: int, b: int) -> FloatArray:
@@ -166,12 +170,19 @@ class BSplineSurface:
             if a > self.degree_u or b > self.degree_v:
                 return np.zeros((len(uu), len(vv), d))
             points, ku, kv = self._derivative_net(a, b)
-            across = basis_matrix(self.degree_u - a, ku, uu) @ points.reshape(len(points), -1)
-            along = np.ascontiguousarray(across.reshape(len(uu), -1, d).transpose(1, 0, 2))
-            values = basis_matrix(self.degree_v - b, kv, vv) @ along.reshape(len(along), -1)
-            return np.asarray(values.reshape(len(vv), len(uu), d).transpose(1, 0, 2))
+            # v first: what is turned is then small, and the last product already has the order of the result.
+            n_u, n_v = points.shape[:2]
+            along = basis_matrix(self.degree_v - b, kv, vv) @ points.transpose(1, 0, 2).reshape(n_v, n_u * d)
+            turned = along.reshape(len(vv), n_u, d).transpose(1, 0, 2).reshape(n_u, len(vv) * d)
+            return np.asarray((basis_matrix(self.degree_u - a, ku, uu) @ turned).reshape(len(uu), len(vv), d))
 
         return _quotient(net, du, dv) if self.weights is not None else net(du, dv)
+
+    def derivative(self, du: int = 0, dv: int = 0) -> BSplineSurface:
+        """Return a mixed derivative as a surface of lower degree; refused where it jumps, and for rational surfaces."""
+        from solver.derivatives import surface_derivative
+
+        return surface_derivative(self, du, dv)
 
     def _derivative_net(self, a: int, b: int) -> tuple[FloatArray, FloatArray, FloatArray]:
         points = derivative_points(self.degree_u, self.knots_u, self.homogeneous, a)
@@ -216,12 +227,12 @@ class SemiStructuredSurface:
         object.__setattr__(
             self, "knots_u", checked_knots(self.knots_u, self.degree_u, len(self.control_curves), "knots_u")
         )
-        expected = _range(self.control_curves[0].knots)
         for i, curve in enumerate(self.control_curves):
-            if _range(curve.knots) != expected:
-                raise ControlPointError(
-                    f"control_curves[{i}]: v-domain {_range(curve.knots)}, expected that of curve 0, {expected}"
-                )
+            if not isinstance(curve, BSplineCurve):
+                raise ControlPointError(f"control_curves[{i}]: found a {type(curve).__name__}, expected a BSplineCurve")
+            found, expected = _range(curve.knots), _range(self.control_curves[0].knots)
+            if found != expected:
+                raise ControlPointError(f"control_curves[{i}]: v-domain {found}, expected that of curve 0, {expected}")
 
     @property
     def domain(self) -> tuple[tuple[float, float], tuple[float, float]]:
@@ -246,6 +257,7 @@ class SemiStructuredSurface:
 
     def evaluate(self, u: ArrayLike, v: ArrayLike, du: int = 0, dv: int = 0) -> FloatArray:
         """Evaluate the surface or a mixed derivative at the points (u[k], v[k]); returns shape (K, 3)."""
+        check_orders(du=du, dv=dv)
         uu, vv = _point_parameters(self, u, v)
         if du > self.degree_u:
             return np.zeros((len(uu), 3))
@@ -256,12 +268,54 @@ class SemiStructuredSurface:
 
     def evaluate_grid(self, u: ArrayLike, v: ArrayLike, du: int = 0, dv: int = 0) -> FloatArray:
         """Evaluate on the grid u x v; returns shape (len(u), len(v), 3)."""
+        check_orders(du=du, dv=dv)
         uu, vv = _parameters(u, self.knots_u, "u"), _parameters(v, self.control_curves[0].knots, "v")
         if du > self.degree_u:
             return np.zeros((len(uu), len(vv), 3))
         rows = self._rows(vv, dv, du)
         basis = basis_matrix(self.degree_u - du, self.knots_u[du : len(self.knots_u) - du], uu)
         return np.asarray((basis @ rows.reshape(len(rows), -1)).reshape(len(uu), len(vv), 3))
+
+    def derivative(self, du: int = 0, dv: int = 0) -> SemiStructuredSurface:
+        """Return a mixed derivative, exactly, in the form with the fewest knots; refused where it jumps.
+
+        Row i of the result has the knots of the rows i .. i + du of this surface.
+
+        Examples
+        --------
+        >>> low = BSplineCurve(1, [0, 0, 1, 1], [[0, 0, 0], [0, 1, 0]])
+        >>> high = BSplineCurve(1, [0, 0, 0.5, 1, 1], [[1, 0, 0], [1, 0.5, 1], [1, 1, 0]])
+        >>> surface = SemiStructuredSurface(1, [0, 0, 1, 1], (low, high))
+        >>> surface.derivative(du=1).evaluate([0.5], [0.5])
+        array([[1., 0., 1.]])
+        """
+        from solver.derivatives import semistructured_derivative
+
+        return semistructured_derivative(self, du, dv)
+
+    def insert_knot(self, i: int, v: float, times: int = 1) -> SemiStructuredSurface:
+        """Return the same surface with a knot inserted in v-control curve i alone."""
+        from solver.curves import insert_curve_knots
+
+        return self._with_curve(i, lambda curve: insert_curve_knots(curve, [v] * times))
+
+    def set_continuity(self, i: int, v: float, continuity: int, tolerance: float = 1e-12) -> SemiStructuredSurface:
+        """Return the surface with v-control curve i in a form that is C^continuity at v, and no more.
+
+        Less continuity inserts knots, which is exact; more takes knots away, and is refused unless the curve is that
+        smooth already, within `tolerance` of its extent (see `set_curve_continuity`).
+        """
+        from solver.curves import set_curve_continuity
+
+        return self._with_curve(i, lambda curve: set_curve_continuity(curve, v, continuity, tolerance))
+
+    def _with_curve(self, i: int, change: Callable[[BSplineCurve], BSplineCurve]) -> SemiStructuredSurface:
+        n = len(self.control_curves)
+        if not 0 <= i < n:
+            raise InputError(f"i: found {i}, expected the index of a v-control curve, 0 to {n - 1}")
+        curves = list(self.control_curves)
+        curves[i] = change(curves[i])
+        return replace(self, control_curves=tuple(curves))
 
     def to_bspline(self, tolerance: float = MERGE_TOLERANCE) -> BSplineSurface:
         """Return the same surface with one v-knot vector, by exact degree elevation and knot insertion.
@@ -292,20 +346,34 @@ def _check_dimension(points: FloatArray, name: str) -> None:
 
 
 def _parameters(x: ArrayLike, knots: FloatArray, name: str) -> FloatArray:
-    array = np.atleast_1d(np.asarray(x, dtype=np.float64))
+    try:
+        array = np.atleast_1d(np.asarray(x, dtype=np.float64))
+    except (TypeError, ValueError):
+        raise InputError(f"{name}: not an array of real numbers, expected parameters") from None
+    if array.ndim != 1:
+        raise InputError(f"{name}: {array.ndim} dimensions, expected a one-dimensional array of parameters")
     start, end = _range(knots)
     outside = ~((array >= start) & (array <= end))
     if outside.any():
-        raise InputError(f"{name}: found {array[outside][0]}, expected a parameter in [{start}, {end}]")
+        i = int(np.argmax(outside))
+        raise InputError(f"{name}[{i}]: found {array[i]}, expected a parameter in [{start}, {end}]")
     return array
 
 
 def _point_parameters(surface: Surface, u: ArrayLike, v: ArrayLike) -> tuple[FloatArray, FloatArray]:
     knots_v = surface.knots_v if isinstance(surface, BSplineSurface) else surface.control_curves[0].knots
-    uu, vv = np.broadcast_arrays(_parameters(u, surface.knots_u, "u"), _parameters(v, knots_v, "v"))
-    if uu.ndim != 1:
-        raise InputError(f"u, v: {uu.ndim} dimensions, expected one-dimensional arrays of parameters")
+    uu, vv = _parameters(u, surface.knots_u, "u"), _parameters(v, knots_v, "v")
+    if len(uu) != len(vv) and 1 not in (len(uu), len(vv)):
+        raise InputError(f"v: {len(vv)} parameters, expected as many as u has, {len(uu)}, or one")
+    uu, vv = np.broadcast_arrays(uu, vv)
     return uu, vv
+
+
+def check_orders(**orders: int) -> None:
+    """Refuse orders of a derivative that are not whole numbers of at least 0."""
+    for name, order in orders.items():
+        if not isinstance(order, Integral) or order < 0:
+            raise OptionError(f"{name}: found {order!r}, expected an order of at least 0")
 
 
 def _local_basis(degree: int, knots: FloatArray, x: FloatArray) -> tuple[FloatArray, FloatArray]:

@@ -1,0 +1,240 @@
+"""Normals, fundamental forms and curvatures of any surface.
+
+Signs: the normal is P_u x P_v made a unit vector, and a curvature is positive where the surface bends towards its
+normal; a sphere of radius r whose normal points outwards has mean curvature -1/r. Curvatures are in 1/length.
+
+Degenerate points (P_u x P_v vanishes: a pole, a collapsed edge, a cusp) have no normal. There `regular` is False, and
+the normal and every curvature are NaN, without a warning; `first_form` is still given. Nothing is replaced by a
+neighbouring value.
+
+Source: M. do Carmo, Differential Geometry of Curves and Surfaces, ch. 2 and 3.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from solver.arrays import FloatArray
+from solver.errors import InputError
+from solver.operations import bounding_box
+from solver.surfaces import Surface
+
+# A tangent shorter than this fraction of (extent of the surface / length of the parameter range), or an angle between
+# the two tangents below it, counts as zero: some thousand times the rounding of a derivative.
+DEGENERATE = 1e-12
+
+
+@dataclass(frozen=True, eq=False)
+class LocalGeometry:
+    """First and second order geometry at parameter values; leading axes are (K,) or (len(u), len(v)).
+
+    Attributes
+    ----------
+    point, tangent_u, tangent_v : ndarray, shape (..., 3)
+        P, P_u, P_v.
+    normal : ndarray, shape (..., 3)
+        Unit; NaN where not regular.
+    first_form : ndarray, shape (..., 2, 2)
+        [[E, F], [F, G]].
+    second_form : ndarray, shape (..., 2, 2)
+        [[L, M], [M, N]]; NaN where not regular.
+    regular : ndarray of bool, shape (...)
+        Where there is a tangent plane.
+    """
+
+    point: FloatArray
+    tangent_u: FloatArray
+    tangent_v: FloatArray
+    normal: FloatArray
+    first_form: FloatArray
+    second_form: FloatArray
+    regular: NDArray[np.bool_]
+
+    @property
+    def gaussian(self) -> FloatArray:
+        """Gaussian curvature (L N - M^2) / (E G - F^2), shape (...)."""
+        s = self._orthonormal_form
+        return np.asarray(s[..., 0, 0] * s[..., 1, 1] - s[..., 0, 1] ** 2)
+
+    @property
+    def mean(self) -> FloatArray:
+        """Mean curvature, shape (...): half the sum of the principal ones."""
+        s = self._orthonormal_form
+        return np.asarray(0.5 * (s[..., 0, 0] + s[..., 1, 1]))
+
+    @property
+    def principal(self) -> FloatArray:
+        """Principal curvatures, the greater first, shape (..., 2)."""
+        s = self._orthonormal_form
+        middle = 0.5 * (s[..., 0, 0] + s[..., 1, 1])
+        radius = np.hypot(0.5 * (s[..., 0, 0] - s[..., 1, 1]), s[..., 0, 1])
+        return np.stack([middle + radius, middle - radius], axis=-1)
+
+    @property
+    def principal_directions(self) -> FloatArray:
+        """Unit tangent vectors of the principal curvatures, in their order, shape (..., 2, 3).
+
+        At an umbilic point, where every direction is one, the first is that of P_u.
+        """
+        s = self._orthonormal_form
+        angle = 0.5 * np.arctan2(2 * s[..., 0, 1], s[..., 0, 0] - s[..., 1, 1])[..., None]
+        e1, e2 = self._frame
+        return np.stack([np.cos(angle) * e1 + np.sin(angle) * e2, np.cos(angle) * e2 - np.sin(angle) * e1], axis=-2)
+
+    def normal_curvature(self, direction: ArrayLike) -> FloatArray:
+        """Return the normal curvature along a direction, shape (...).
+
+        Parameters
+        ----------
+        direction : array_like, shape (3,) or (..., 3)
+            In space; only its part in the tangent plane counts, and not its length. `a * tangent_u + b * tangent_v` is
+            the direction (a, b) of the parameters.
+
+        Raises
+        ------
+        InputError
+            Another shape, or a direction along the normal at a regular point.
+        """
+        d = np.asarray(direction, dtype=np.float64)
+        if d.ndim == 0 or d.shape[-1] != 3:
+            raise InputError(f"direction: shape {d.shape}, expected (3,) or (..., 3)")
+        e1, e2 = self._frame
+        x, y = (np.asarray(np.einsum("...d,...d->...", d, e)) for e in (e1, e2))
+        length = np.hypot(x, y)
+        if (length <= DEGENERATE * np.linalg.norm(d, axis=-1)).any():
+            raise InputError("direction: has no part in the tangent plane, expected one that is not along the normal")
+        s = self._orthonormal_form
+        form = s[..., 0, 0] * x**2 + 2 * s[..., 0, 1] * x * y + s[..., 1, 1] * y**2
+        return np.asarray(form / length**2)
+
+    @property
+    def _frame(self) -> tuple[FloatArray, FloatArray]:
+        """Orthonormal tangents: e1 along P_u, e2 = n x e1; NaN where not regular."""
+        along = np.where(self.regular[..., None], self.tangent_u, np.nan)
+        e1 = along / np.linalg.norm(along, axis=-1, keepdims=True)
+        return e1, np.cross(self.normal, e1)
+
+    @property
+    def _orthonormal_form(self) -> FloatArray:
+        """The second form in the frame e1, e2: symmetric, shape (..., 2, 2).
+
+        P_u = r11 e1 and P_v = r12 e1 + r22 e2, so no difference E G - F^2 is ever formed.
+        """
+        e1, e2 = self._frame
+        r11 = np.linalg.norm(np.where(self.regular[..., None], self.tangent_u, np.nan), axis=-1)
+        r12 = np.einsum("...d,...d->...", self.tangent_v, e1)
+        r22 = np.einsum("...d,...d->...", self.tangent_v, e2)
+        second = self.second_form
+        s11 = second[..., 0, 0] / r11**2
+        s12 = (second[..., 0, 1] / r11 - s11 * r12) / r22
+        s22 = (second[..., 1, 1] - r12 * (2 * s12 * r22 + s11 * r12)) / r22**2
+        return np.stack([np.stack([s11, s12], axis=-1), np.stack([s12, s22], axis=-1)], axis=-2)
+
+
+def local_geometry(surface: Surface, u: ArrayLike, v: ArrayLike) -> LocalGeometry:
+    """Return the local geometry at the points (u[k], v[k]); arrays lead with (K,).
+
+    Examples
+    --------
+    >>> from solver.surfaces import BSplineSurface
+    >>> saddle = BSplineSurface(1, 1, [0, 0, 1, 1], [0, 0, 1, 1], [[[0, 0, 0], [0, 1, 0]], [[1, 0, 0], [1, 1, 1]]])
+    >>> local_geometry(saddle, [0.0], [0.0]).gaussian
+    array([-1.])
+    """
+    return _geometry(surface, lambda du, dv: surface.evaluate(u, v, du, dv))
+
+
+def local_geometry_grid(surface: Surface, u: ArrayLike, v: ArrayLike) -> LocalGeometry:
+    """Return the local geometry on the grid u x v; arrays lead with (len(u), len(v))."""
+    return _geometry(surface, lambda du, dv: surface.evaluate_grid(u, v, du, dv))
+
+
+def normals(surface: Surface, u: ArrayLike, v: ArrayLike) -> FloatArray:
+    """Return unit normals at the points (u[k], v[k]), shape (K, 3); NaN where the surface is degenerate."""
+    return local_geometry(surface, u, v).normal
+
+
+def mean_curvature(surface: Surface, u: ArrayLike, v: ArrayLike) -> FloatArray:
+    """Return the mean curvature at the points (u[k], v[k]), shape (K,); NaN where the surface is degenerate."""
+    return local_geometry(surface, u, v).mean
+
+
+def gaussian_curvature(surface: Surface, u: ArrayLike, v: ArrayLike) -> FloatArray:
+    """Return the Gaussian curvature at the points (u[k], v[k]), shape (K,); NaN where the surface is degenerate."""
+    return local_geometry(surface, u, v).gaussian
+
+
+def principal_curvatures(surface: Surface, u: ArrayLike, v: ArrayLike) -> FloatArray:
+    """Return both principal curvatures, the greater first, shape (K, 2); NaN where the surface is degenerate."""
+    return local_geometry(surface, u, v).principal
+
+
+def normal_curvature(surface: Surface, u: ArrayLike, v: ArrayLike, direction: ArrayLike) -> FloatArray:
+    """Return the normal curvature along a direction in space, shape (K,); see `LocalGeometry.normal_curvature`."""
+    return local_geometry(surface, u, v).normal_curvature(direction)
+
+
+def isophote_angle(normal: ArrayLike, light: ArrayLike) -> FloatArray:
+    """Return the angle between normals and the direction towards a light, in degrees, shape (...).
+
+    Lines of equal angle are isophotes: they bend where the surface is only G1, and break where it is only G0.
+
+    Examples
+    --------
+    >>> isophote_angle([[0, 0, 1], [0, 1, 0]], [0, 0, 2])
+    array([ 0., 90.])
+    """
+    n, to_light = np.asarray(normal, dtype=np.float64), np.asarray(light, dtype=np.float64)
+    across = np.linalg.norm(np.cross(n, to_light), axis=-1)
+    return np.asarray(np.degrees(np.arctan2(across, n @ to_light)))
+
+
+def zebra(point: ArrayLike, normal: ArrayLike, eye: ArrayLike, stripes: int = 20) -> FloatArray:
+    """Return the zebra pattern that an eye sees mirrored in the surface: 1 on a light stripe, 0 on a dark one.
+
+    The stripes lie on a large cylinder around the z-axis, `stripes` light ones on its circumference.
+
+    Parameters
+    ----------
+    point, normal : array_like, shape (..., 3)
+        As in `LocalGeometry`; NaN where the normal is.
+    eye : array_like, shape (3,)
+        Position of the eye, in model units.
+    """
+    p, n = np.asarray(point, dtype=np.float64), np.asarray(normal, dtype=np.float64)
+    view = p - np.asarray(eye, dtype=np.float64)
+    mirrored = view - 2.0 * _dot(view, n)[..., None] * n
+    turn = np.arctan2(mirrored[..., 1], mirrored[..., 0]) / (2.0 * np.pi)
+    light = (turn * stripes) % 1.0 < 0.5
+    return np.where(np.isnan(turn), np.nan, light.astype(np.float64))
+
+
+def _geometry(surface: Surface, evaluate: Callable[[int, int], FloatArray]) -> LocalGeometry:
+    p, pu, pv = evaluate(0, 0), evaluate(1, 0), evaluate(0, 1)
+    extent = float(np.ptp(bounding_box(surface), axis=0).max())
+    least = [DEGENERATE * extent / (end - start) for start, end in surface.domain]
+    cross = np.cross(pu, pv)
+    area, long_u, long_v = (np.linalg.norm(x, axis=-1) for x in (cross, pu, pv))
+    regular = (long_u > least[0]) & (long_v > least[1]) & (area > DEGENERATE * long_u * long_v)
+    normal = np.where(regular[..., None], cross, np.nan) / np.where(regular, area, 1.0)[..., None]
+    return LocalGeometry(
+        point=p,
+        tangent_u=pu,
+        tangent_v=pv,
+        normal=normal,
+        first_form=_symmetric(_dot(pu, pu), _dot(pu, pv), _dot(pv, pv)),
+        second_form=_symmetric(*(_dot(evaluate(*order), normal) for order in ((2, 0), (1, 1), (0, 2)))),
+        regular=regular,
+    )
+
+
+def _dot(a: FloatArray, b: FloatArray) -> FloatArray:
+    return np.asarray(np.einsum("...d,...d->...", a, b))
+
+
+def _symmetric(a: FloatArray, b: FloatArray, c: FloatArray) -> FloatArray:
+    return np.stack([np.stack([a, b], axis=-1), np.stack([b, c], axis=-1)], axis=-2)

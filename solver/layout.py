@@ -1,0 +1,72 @@
+"""Where the knots of a blend lie: U, and V_i of every v-control curve."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from solver.arrays import FloatArray
+from solver.errors import OptionError
+from solver.gram import Basis
+from solver.knots import breakpoints, clamped, merge_breakpoints, uniform_knots
+
+# Rows that each contact owns: position, first and second derivative.
+ROWS_PER_SIDE = 3
+
+
+def blend_u_basis(degree_u: int, middle_curves: int, order: int = 2) -> Basis:
+    """Return U: clamped on [0, 1], uniform, for 6 + `middle_curves` rows and contact up to `order`.
+
+    Raises
+    ------
+    OptionError
+        A negative number of middle curves, or a degree too low for the contact or too high for the rows.
+
+    Source: section 3 of the paper, with u_i = i / (m - k + 2).
+
+    Examples
+    --------
+    >>> blend_u_basis(3, 0).knots[4:-4]
+    array([0.33333333, 0.66666667])
+    """
+    if not isinstance(middle_curves, int) or middle_curves < 0:
+        raise OptionError(f"middle_curves: found {middle_curves}, expected a whole number, 0 or more")
+    rows = 2 * ROWS_PER_SIDE + middle_curves
+    least = max(order, 1)
+    if not isinstance(degree_u, int) or not least <= degree_u < rows:
+        raise OptionError(
+            f"degree_u: found {degree_u}, expected {least} to {rows - 1} for contact of order {order} "
+            f"with {middle_curves} middle curve(s)"
+        )
+    return Basis(degree_u, uniform_knots(degree_u, rows - degree_u))
+
+
+def middle_basis(a: Basis, b: Basis) -> Basis:
+    """Return degree and knots of a middle curve: neighbouring inner knots of both contacts, averaged in pairs.
+
+    The inner knots of both are merged and made single: v_1 .. v_n. With n even they are averaged in pairs from one
+    end. With n odd the paper leaves the rule open; we pair from both ends, so that the result does not depend on the
+    direction of v: the middle knot stays alone, or with its two neighbours makes one mean of three.
+
+    Source: section 3 of the paper, made total.
+
+    Examples
+    --------
+    >>> a, b = Basis(1, clamped([0.5], 1, 0, 1)), Basis(1, clamped([0.25, 0.75], 1, 0, 1))
+    >>> inner = middle_basis(a, b).knots[2:-2]
+    >>> inner
+    array([0.5])
+    """
+    merged = merge_breakpoints(breakpoints(a.knots), breakpoints(b.knots))
+    degree = max(a.degree, b.degree)
+    return Basis(degree, clamped(_paired_means(merged[1:-1]), degree, merged[0], merged[-1]))
+
+
+def _paired_means(v: FloatArray) -> FloatArray:
+    n = len(v)
+    if n % 2 == 0:
+        return np.asarray(v.reshape(-1, 2).mean(axis=1))
+    # n = 1, 5, 9 ...: the middle one alone; n = 3, 7, 11 ...: the middle three together.
+    in_centre = 1 if n % 4 == 1 else 3
+    left = (n - in_centre) // 2
+    centre = v[left : n - left].mean(keepdims=True)
+    return np.concatenate([v[:left].reshape(-1, 2).mean(axis=1), centre, v[n - left :].reshape(-1, 2).mean(axis=1)])

@@ -1,0 +1,161 @@
+"""The constrained problem in CasADi: all control points, alpha, beta; generated contact rows; exact Hessian."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import casadi as ca
+import numpy as np
+
+from solver.arrays import FloatArray
+from solver.errors import ComputationError
+from solver.generated import contact_casadi
+from solver.problem import BlendProblem
+from solver.sides import Side
+
+# A solution is judged by its residuals, not by the status, which differs between platforms for the same point.
+KKT_LIMIT = 1e-8
+FEASIBILITY_LIMIT = 1e-9
+
+
+@dataclass(frozen=True, eq=False)
+class ConstrainedProblem:
+    """min f(x) subject to g(x) = 0 and bounds, as CasADi expressions.
+
+    Attributes
+    ----------
+    x : MX, shape (3 N + number of shape parameters, 1)
+        x, y and z of all control points, then alpha and beta over their natural sizes where they are free.
+    f : MX, scalar
+        Thin-plate energy over `f_scale`.
+    g : MX
+        Rows of the blend minus rows that the contact prescribes.
+    start, lower, upper : ndarray
+    f_scale : float
+    parameters : tuple of str
+        Which of "alpha", "beta" are unknown.
+    """
+
+    x: Any
+    f: Any
+    g: Any
+    start: FloatArray
+    lower: FloatArray
+    upper: FloatArray
+    f_scale: float
+    parameters: tuple[str, ...]
+
+
+@dataclass(frozen=True)
+class ConstrainedSolution:
+    """What IPOPT found.
+
+    Attributes
+    ----------
+    a, b : float
+        alpha^2 and beta^2, in the parameters of the bases.
+    iterations : int
+    status : str
+    kkt_residual : float
+        Largest entry of the gradient of the Lagrangian, scaled problem.
+    """
+
+    a: float
+    b: float
+    iterations: int
+    status: str
+    kkt_residual: float
+
+
+def constrained_problem(problem: BlendProblem) -> ConstrainedProblem:
+    """State the blend problem with every control point and shape parameter as an unknown."""
+    n = problem.offsets[-1]
+    free = [name for name, side in (("alpha", problem.a), ("beta", problem.b)) if side.has_shape_parameter]
+    x = ca.MX.sym("x", 3 * n + len(free))
+    p = ca.reshape(x[: 3 * n], n, 3)
+    parameter = {name: x[3 * n + k] for k, name in enumerate(free)}
+
+    first = problem.control_points(*problem.start)
+    energy = ca.DM(problem.energy.tocsc())
+    magnitude = float(np.sum(np.abs(first) * (abs(problem.energy) @ np.abs(first))))
+    # Two bases that continue each other have energy 0 at the start: then the scale must stay clear of rounding.
+    f_scale = max(float(np.sum(first * (problem.energy @ first))), 1e-4 * magnitude)
+    f = ca.dot(p, ca.mtimes(energy, p)) / f_scale
+
+    g = []
+    m1 = len(problem.rows)
+    for name, side, spans, natural, rows in (
+        ("alpha", problem.a, problem.spans[0], problem.natural[0], range(m1)),
+        ("beta", problem.b, problem.spans[1], problem.natural[1], range(m1 - 1, -1, -1)),
+    ):
+        a = parameter[name] ** 2 * natural if name in parameter else 1.0
+        for i, prescribed in enumerate(_contact_rows(side, a, problem.u.degree, spans)):
+            row = rows[i]
+            g.append(ca.vec(p[problem.offsets[row] : problem.offsets[row + 1], :] - prescribed))
+
+    # alpha is measured in units of its natural size, so that the solver does not care about parameter speeds.
+    box = [
+        np.sqrt(np.array(bounds) / natural)
+        for side, bounds, natural in zip((problem.a, problem.b), problem.bounds, problem.natural, strict=True)
+        if side.has_shape_parameter
+    ]
+    infinite = np.full(3 * n, np.inf)
+    return ConstrainedProblem(
+        x=x,
+        f=f,
+        g=ca.vertcat(*g),
+        start=np.concatenate([first.T.ravel(), np.ones(len(free))]),
+        lower=np.concatenate([-infinite, *([low] for low, _ in box)]),
+        upper=np.concatenate([infinite, *([high] for _, high in box)]),
+        f_scale=f_scale,
+        parameters=tuple(free),
+    )
+
+
+def _contact_rows(side: Side, a: Any, degree: int, spans: tuple[float, float]) -> list[Any]:
+    """Rows that the contact prescribes, each an (n, 3) expression in a."""
+    q = side.degree
+    if side.order == 0:
+        matrix = ca.DM.ones(1, 1)
+    elif side.order == 1:
+        matrix = contact_casadi.contact_rows_1(a, degree, spans[0], q, side.spans[0])
+    else:
+        matrix = contact_casadi.contact_rows_2(a, degree, *spans, q, *side.spans)
+    rows = [ca.DM(row) for row in side.rows]
+    order = side.order + 1
+    return [sum((matrix[i, j] * rows[j] for j in range(1, order)), matrix[i, 0] * rows[0]) for i in range(order)]
+
+
+def solve_constrained(problem: BlendProblem) -> ConstrainedSolution:
+    """Solve the constrained problem with IPOPT and the exact Hessian of the Lagrangian.
+
+    Raises
+    ------
+    ComputationError
+        IPOPT did not converge; the message names its status and what to try.
+    """
+    nlp = constrained_problem(problem)
+    options: Any = {
+        "print_time": False,
+        "ipopt": {"print_level": 0, "sb": "yes", "tol": 1e-11, "constr_viol_tol": 1e-11, "max_iter": 200},
+    }
+    solver = ca.nlpsol("blend", "ipopt", {"x": nlp.x, "f": nlp.f, "g": nlp.g}, options)
+    result = solver(x0=nlp.start, lbx=nlp.lower, ubx=nlp.upper, lbg=0, ubg=0)
+    stats = solver.stats()
+    multipliers = ca.MX.sym("multipliers", nlp.g.shape[0])
+    gradient = ca.Function("gradient", [nlp.x, multipliers], [ca.gradient(nlp.f + ca.dot(multipliers, nlp.g), nlp.x)])
+    kkt = float(np.abs(np.asarray(gradient(result["x"], result["lam_g"]) + result["lam_x"])).max())
+    infeasible = float(np.abs(np.asarray(result["g"])).max())
+    if not (kkt <= KKT_LIMIT and infeasible <= FEASIBILITY_LIMIT):
+        raise ComputationError(
+            f"IPOPT ended with {stats['return_status']} after {stats['iter_count']} iterations, KKT residual {kkt:.1e}, "
+            f"constraints missed by {infeasible:.1e}; try another number of middle curves, or bases of similar size"
+        )
+    values = np.asarray(result["x"]).ravel()
+    shape = dict(zip(nlp.parameters, values[3 * problem.offsets[-1] :], strict=True))
+    a, b = (
+        float(shape[name] ** 2 * natural) if name in shape else 1.0
+        for name, natural in zip(("alpha", "beta"), problem.natural, strict=True)
+    )
+    return ConstrainedSolution(a, b, int(stats["iter_count"]), str(stats["return_status"]), kkt)

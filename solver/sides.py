@@ -1,0 +1,118 @@
+"""What a blend needs of one base: the contact, seen from the blend, with all orientation already undone."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Literal, TypeAlias, get_args
+
+import numpy as np
+
+from solver.arrays import FloatArray
+from solver.continuity import Base
+from solver.errors import EdgeError, OptionError
+from solver.generated import contact_numpy
+from solver.gram import Basis
+from solver.knots import affine_knots, reversed_knots
+from solver.surfaces import BSplineSurface
+
+Continuity: TypeAlias = Literal["C0", "C1", "C2", "G0", "G1", "G2"]
+
+# Contact up to second order reads three control rows and two knot spans.
+_ROWS = 3
+
+
+@dataclass(frozen=True, eq=False)
+class Side:
+    """The contact of the blend with one base, which the blend leaves backwards.
+
+    Attributes
+    ----------
+    continuity : {"C0", "C1", "C2", "G0", "G1", "G2"}
+    degree : int
+        Degree of the base across the edge.
+    spans : (float, float)
+        Distances w_(degree+1) - w_s and w_(degree+2) - w_s from the edge, in the base's own parameter.
+    along : Basis
+        Degree and knots along the edge, in the parameter v of the blend.
+    rows : ndarray, shape (3, n, 3)
+        Control rows from the edge inwards; a base with fewer rows repeats its last one, which contact does not read.
+    """
+
+    continuity: Continuity
+    degree: int
+    spans: tuple[float, float]
+    along: Basis
+    rows: FloatArray
+
+    @property
+    def order(self) -> int:
+        """Order of contact: how many derivatives agree."""
+        return int(self.continuity[1])
+
+    @property
+    def has_shape_parameter(self) -> bool:
+        """Whether a = alpha^2 is free: geometric contact beyond position."""
+        return self.continuity in ("G1", "G2")
+
+    def contact_rows(self, a: float, blend_degree: int, blend_spans: tuple[float, float]) -> FloatArray:
+        """Return the rows P_0 .. P_order of the blend that the contact prescribes, shape (order + 1, n, 3).
+
+        Source: generated from `derivations.contact`.
+        """
+        p, q = blend_degree, self.degree
+        if self.order == 0:
+            matrix = np.ones((1, 1))
+        elif self.order == 1:
+            matrix = contact_numpy.contact_rows_1(a, p, blend_spans[0], q, self.spans[0])
+        else:
+            matrix = contact_numpy.contact_rows_2(a, p, *blend_spans, q, *self.spans)
+        return np.asarray(np.einsum("ij,jnd->ind", matrix, self.rows[: self.order + 1]))
+
+    def mean_cross_speed(self) -> float:
+        """Return the mean |R_w| along the contact."""
+        speed = np.linalg.norm(self.rows[1] - self.rows[0], axis=1) * self.degree / self.spans[0]
+        return float(speed.mean())
+
+    def moved(self, centre: FloatArray, size: float) -> Side:
+        """Return the same side in coordinates (x - centre) / size."""
+        return replace(self, rows=(self.rows - centre) / size)
+
+
+def make_side(
+    base: Base, continuity: Continuity, v_range: tuple[float, float] | None = None, flipped: bool = False
+) -> Side:
+    """Read the contact of `base`, with the parameter along its edge mapped onto `v_range` and reversed if flipped.
+
+    Raises
+    ------
+    EdgeError
+        The base is rational or semi-structured.
+    OptionError
+        The continuity is not one of the six.
+    """
+    if continuity not in get_args(Continuity):
+        raise OptionError(f"continuity: found {continuity!r}, expected one of {', '.join(get_args(Continuity))}")
+    surface = base.surface
+    if not isinstance(surface, BSplineSurface):
+        raise EdgeError("base: a semi-structured surface, expected a B-spline surface; convert it with to_bspline()")
+    if surface.weights is not None:
+        raise EdgeError(
+            "base: rational, but only polynomial B-spline surfaces are blended; approximate it without weights"
+        )
+    net = surface.control_points
+    across, along = (surface.degree_u, surface.knots_u), (surface.degree_v, surface.knots_v)
+    if base.edge[0] == "v":
+        net, across, along = net.transpose(1, 0, 2), along, across
+    degree, knots = across
+    if base.edge[1] == "1":
+        net, steps = net[::-1], knots[-1] - knots[::-1]
+    else:
+        steps = knots - knots[0]
+    rows = net[[min(i, len(net) - 1) for i in range(_ROWS)]]
+    degree_v, knots_v = along
+    if flipped:
+        rows, knots_v = rows[:, ::-1], reversed_knots(knots_v)
+    if v_range is not None:
+        knots_v = affine_knots(knots_v, *v_range)
+    spans = (float(steps[degree + 1]), float(steps[min(degree + 2, len(steps) - 1)]))
+    return Side(continuity, degree, spans, Basis(degree_v, knots_v), rows)

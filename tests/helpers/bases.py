@@ -1,0 +1,79 @@
+"""Random bases for blends: smooth patches with non-uniform knots, contact on any edge, in any direction."""
+
+import numpy as np
+
+from solver import Base, BSplineSurface
+
+IDENTITY = np.eye(3)
+
+
+def random_knots(rng, degree, n_control, start=0.0, end=1.0):
+    """Clamped, non-uniform, with a double inner knot now and then where the degree allows it."""
+    n_inner = n_control - degree - 1
+    # Gaps between 1 and 4: mismatched, but not so close that conditioning is what is tested.
+    inner = np.cumsum(rng.uniform(1, 4, n_inner + 1))
+    inner = inner[:-1] / inner[-1] if n_inner else inner[:0]
+    if n_inner >= 2 and degree >= 3 and rng.random() < 0.3:
+        inner[1] = inner[0]
+    knots = np.concatenate([np.zeros(degree + 1), inner, np.ones(degree + 1)])
+    return start + knots * (end - start)
+
+
+def patch(rng, *, degrees, counts, height=0.3, ranges=((0, 1), (0, 1)), planar=False):
+    """A patch over the unit square, u away from its edge u0; returned with contact at u0."""
+    (p, q), (n_u, n_v) = degrees, counts
+    knots_u, knots_v = (random_knots(rng, d, n, *r) for d, n, r in zip(degrees, counts, ranges, strict=True))
+
+    def places(knots, degree, n):
+        greville = np.array([knots[i + 1 : i + degree + 1].mean() for i in range(n)])
+        return (greville - knots[0]) / (knots[-1] - knots[0])
+
+    x, y = np.meshgrid(places(knots_u, p, n_u), places(knots_v, q, n_v), indexing="ij")
+    z = np.zeros_like(x) if planar else height * rng.uniform(-1, 1, x.shape)
+    shift = 0.0 if planar else 0.15 / max(n_u, n_v) * rng.uniform(-1, 1, (2, *x.shape))
+    net = np.stack([x, y, z], axis=2)
+    net[..., :2] += np.moveaxis(shift, 0, -1) if not planar else 0.0
+    return BSplineSurface(p, q, knots_u, knots_v, net)
+
+
+def turned(surface, edge, backwards):
+    """The same geometry with what was the edge u0 now at `edge`, run backwards if asked."""
+    net, (p, ku), (q, kv) = (
+        surface.control_points,
+        (surface.degree_u, surface.knots_u),
+        (surface.degree_v, surface.knots_v),
+    )
+    if edge[1] == "1":
+        net, ku = net[::-1], ku[0] + ku[-1] - ku[::-1]
+    if backwards:
+        net, kv = net[:, ::-1], kv[0] + kv[-1] - kv[::-1]
+    if edge[0] == "v":
+        net, (p, ku), (q, kv) = net.transpose(1, 0, 2), (q, kv), (p, ku)
+    return BSplineSurface(p, q, ku, kv, net)
+
+
+def moved(surface, matrix=IDENTITY, offset=(0, 0, 0), scale=1.0):
+    net = scale * (surface.control_points @ np.asarray(matrix).T) + np.asarray(offset)
+    return BSplineSurface(surface.degree_u, surface.degree_v, surface.knots_u, surface.knots_v, net)
+
+
+# Turns a patch so that it looks back at the first one over the gap.
+FACING = np.array([[-1.0, 0, 0], [0, 1, 0], [0, 0, 1]])
+
+
+def facing_pair(rng, *, edges=None, backwards=None, planar=False):
+    """Two random bases that face each other over a gap of about 1, contact on random edges and directions."""
+    edges = edges or tuple(rng.choice(["u0", "u1", "v0", "v1"]) for _ in range(2))
+    backwards = backwards if backwards is not None else tuple(rng.random(2) < 0.5)
+    bases = []
+    q = tuple(int(rng.integers(2, 6)) for _ in range(2))
+    for k in range(2):
+        p = int(rng.integers(2, 6))
+        counts = (int(rng.integers(p + 1, p + 4)), int(rng.integers(q[k] + 1, q[k] + 6)))
+        ranges = [(lo := float(rng.uniform(-2, 2)), lo + float(rng.uniform(0.5, 4))) for _ in range(2)]
+        surface = patch(rng, degrees=(p, q[k]), counts=counts, ranges=ranges, planar=planar)
+        if k == 1:
+            surface = moved(surface, FACING, (-1.0, 0.1, 0.0 if planar else 0.4))
+        bases.append(Base(turned(surface, edges[k], bool(backwards[k])), str(edges[k])))
+    # The first runs towards +x from its edge at x = 0, the second towards -x from x = -1.
+    return bases
