@@ -34,3 +34,8 @@ def finite_array(values: ArrayLike, ndim: int, name: str, error: type[InputError
         raise error(f"{name}[{where}]: found {array[index]}, expected a finite number")
     array.setflags(write=False)
     return array
+
+
+def is_whole(value: object) -> bool:
+    """Tell whether a value is an integer of Python or NumPy; True and False are not."""
+    return isinstance(value, int | np.integer) and not isinstance(value, bool)

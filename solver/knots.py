@@ -5,14 +5,12 @@ A knot vector is full: length n + degree + 1 for n control points, both ends wit
 
 from __future__ import annotations
 
-from numbers import Integral
-
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import ArrayLike
 from scipy.interpolate import BSpline
 
-from solver.arrays import FloatArray, SparseMatrix, finite_array
+from solver.arrays import FloatArray, SparseMatrix, finite_array, is_whole
 from solver.errors import KnotError
 
 # Knots closer than this fraction of the domain count as one wherever knot vectors are merged.
@@ -42,7 +40,7 @@ def checked_knots(knots: ArrayLike, degree: int, n_control: int, name: str = "kn
     >>> checked_knots([0, 0, 1, 2, 2], 1, 3)
     array([0., 0., 1., 2., 2.])
     """
-    if not isinstance(degree, Integral) or degree < 1:
+    if not is_whole(degree) or degree < 1:
         raise KnotError(f"{name}: degree is {degree!r}, expected a whole number of at least 1")
     if n_control < degree + 1:
         raise KnotError(f"{name}: {n_control} control point(s) for degree {degree}, expected at least {degree + 1}")

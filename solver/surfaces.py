@@ -10,13 +10,12 @@ from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from math import comb
-from numbers import Integral
 from typing import TypeAlias, final
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from solver.arrays import FloatArray, finite_array
+from solver.arrays import FloatArray, finite_array, is_whole
 from solver.errors import ControlPointError, InputError, OptionError
 from solver.knots import MERGE_TOLERANCE, basis_matrix, breakpoints, checked_knots, derivative_points, merge_breakpoints
 
@@ -372,7 +371,7 @@ def _point_parameters(surface: Surface, u: ArrayLike, v: ArrayLike) -> tuple[Flo
 def check_orders(**orders: int) -> None:
     """Refuse orders of a derivative that are not whole numbers of at least 0."""
     for name, order in orders.items():
-        if not isinstance(order, Integral) or order < 0:
+        if not is_whole(order) or order < 0:
             raise OptionError(f"{name}: found {order!r}, expected an order of at least 0")
 
 
