@@ -149,8 +149,8 @@ def solve_constrained(problem: BlendProblem) -> ConstrainedSolution:
     infeasible = float(np.abs(np.asarray(result["g"])).max())
     if not (kkt <= KKT_LIMIT and infeasible <= FEASIBILITY_LIMIT):
         raise ComputationError(
-            f"IPOPT ended with {stats['return_status']} after {stats['iter_count']} iterations, KKT residual {kkt:.1e}, "
-            f"constraints missed by {infeasible:.1e}; try another number of middle curves, or bases of similar size"
+            f"IPOPT ended with {stats['return_status']} after {stats['iter_count']} steps, KKT residual {kkt:.1e} and "
+            f"constraints missed by {infeasible:.1e}; try other middle curves, or bases of similar size"
         )
     values = np.asarray(result["x"]).ravel()
     shape = dict(zip(nlp.parameters, values[3 * problem.offsets[-1] :], strict=True))
