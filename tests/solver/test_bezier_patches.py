@@ -175,9 +175,16 @@ def test_a_hole_on_another_domain():
 
 
 def test_a_slanted_square_hole_in_line_with_itself_is_accepted():
-    # Corners at 180 degrees: left and bottom lie on one line, which rounding must not turn into a crossing.
+    # Corners at 180 degrees: left and bottom lie on one line.
     left, bottom = BezierFunction([0.45, 0.15], 0.35, 0.65), BezierFunction([0.35, 0.05], 0.45, 0.75)
     right, top = BezierFunction([0.75, 0.8], 0.05, 0.7), BezierFunction([0.65, 0.7], 0.15, 0.8)
+    assert len(trim_bezier(random_patch(8), left, right, bottom, top)) == 8
+
+
+def test_rounding_does_not_make_a_straight_side_cross_itself():
+    # Found by search: without its tolerance the outline test refuses this quadrilateral.
+    left, right = BezierFunction([0.24, 0.12], 0.12, 0.84), BezierFunction([0.87, 0.84], 0.16, 0.85)
+    bottom, top = BezierFunction([0.12, 0.16], 0.24, 0.87), BezierFunction([0.84, 0.85], 0.12, 0.84)
     assert len(trim_bezier(random_patch(8), left, right, bottom, top)) == 8
 
 
