@@ -1,0 +1,219 @@
+"""What every reader returns: the faces of a file in order, converted when asked."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from solver.arrays import FloatArray
+from solver.errors import FileError, InputError
+from solver.knots import MERGE_TOLERANCE
+from solver.operations import from_homogeneous
+from solver.refinement import clamp_knots
+from solver.surfaces import BSplineSurface, SemiStructuredSurface, Surface
+
+# Weights that agree to this relative tolerance (rounding of a product and a quotient) are one weight.
+_EQUAL_WEIGHTS = 8 * np.finfo(np.float64).eps
+# A surface is closed if its first and last rows agree to this fraction of its size (what CAD systems sew together).
+_CLOSED = 1e-9
+
+# Millimetres in each unit of length that IGES knows; the other formats know these too.
+MILLIMETRES = {
+    "in": 25.4,
+    "mm": 1.0,
+    "ft": 304.8,
+    "mi": 1609344.0,
+    "m": 1000.0,
+    "km": 1e6,
+    "mil": 0.0254,
+    "um": 1e-3,
+    "cm": 10.0,
+    "uin": 2.54e-5,
+}
+
+
+class Face(Protocol):
+    """A surface in a file, not yet read out."""
+
+    @property
+    def kind(self) -> str:
+        """What the file holds: "B-spline", "plane", and so on."""
+
+    def trimmed(self) -> bool | None:
+        """Whether curves cut the face out of its surface; None if the format does not tell."""
+
+    def surface(self) -> Surface:
+        """Return the exact, clamped (rational) B-spline surface, without trimming."""
+
+
+@dataclass(frozen=True)
+class Model:
+    """An opened file.
+
+    Parameters
+    ----------
+    path : str
+    unit : str or None
+        Key of `MILLIMETRES`: the unit of the coordinates; None where the file does not say.
+    faces : sequence of Face
+        In the order of their numbers.
+    """
+
+    path: str
+    unit: str | None
+    faces: Sequence[Face]
+
+
+@dataclass(frozen=True)
+class SurfaceEntry:
+    """One line of `list_surfaces`.
+
+    Parameters
+    ----------
+    number : int
+        N of `PATH#N`.
+    kind : str
+    degree_u, degree_v : int or None
+        None where the face has no exact B-spline form.
+    n_u, n_v : int or None
+        Control points; n_v is None for a semi-structured surface whose curves differ.
+    rational, closed_u, closed_v : bool or None
+    trimmed : bool or None
+        None where the file does not tell.
+    problem : str or None
+        Why the face cannot be read out.
+    """
+
+    number: int
+    kind: str
+    degree_u: int | None = None
+    degree_v: int | None = None
+    n_u: int | None = None
+    n_v: int | None = None
+    rational: bool | None = None
+    trimmed: bool | None = None
+    closed_u: bool | None = None
+    closed_v: bool | None = None
+    problem: str | None = None
+
+
+def describe(number: int, face: Face) -> SurfaceEntry:
+    """Return the entry of a face, read out for the purpose."""
+    try:
+        surface = face.surface()
+    except InputError as error:
+        return SurfaceEntry(number, face.kind, trimmed=face.trimmed(), problem=str(error))
+    if isinstance(surface, SemiStructuredSurface):
+        counts = {len(curve.control_points) for curve in surface.control_curves}
+        first, last = surface.control_curves[0], surface.control_curves[-1]
+        ends = np.stack([curve.control_points[[0, -1]] for curve in surface.control_curves])
+        size = _size(np.concatenate([curve.control_points for curve in surface.control_curves]))
+        same = first.degree == last.degree and np.array_equal(first.knots, last.knots)
+        n_u, n_v = len(surface.control_curves), counts.pop() if len(counts) == 1 else None
+        closed_u = same and _same(first.control_points, last.control_points, size)
+        closed_v = _same(ends[:, 0], ends[:, 1], size)
+    else:
+        net = surface.control_points
+        n_u, n_v = net.shape[:2]
+        closed_u = _same(net[0], net[-1], _size(net))
+        closed_v = _same(net[:, 0], net[:, -1], _size(net))
+    return SurfaceEntry(
+        number=number,
+        kind=face.kind,
+        degree_u=surface.degree_u,
+        degree_v=surface.degree_v,
+        n_u=n_u,
+        n_v=n_v,
+        rational=isinstance(surface, BSplineSurface) and surface.weights is not None,
+        trimmed=face.trimmed(),
+        closed_u=closed_u,
+        closed_v=closed_v,
+    )
+
+
+def picked(model: Model, number: int | None) -> Face:
+    """Return the face of that number; without one, the only face.
+
+    Raises
+    ------
+    FileError
+        No such face, or several and no number.
+    """
+    count = len(model.faces)
+    if count == 0:
+        raise FileError(f"{model.path}: holds no surface; give a file that has one")
+    if number is None:
+        if count > 1:
+            raise FileError(
+                f"{model.path}: holds {count} surfaces; choose one as {model.path}#N, "
+                f"N as `semispline list {model.path}` numbers them"
+            )
+        return model.faces[0]
+    if number >= count:
+        raise FileError(f"{model.path}#{number}: no such surface; the file holds {count}, numbered 0 to {count - 1}")
+    return model.faces[number]
+
+
+def without_equal_weights(weights: FloatArray) -> FloatArray | None:
+    """Return None if all weights are one number up to rounding: such a surface is polynomial."""
+    return None if np.ptp(weights) <= _EQUAL_WEIGHTS * np.abs(weights).max() else weights
+
+
+def surface_from_net(
+    degree_u: int,
+    degree_v: int,
+    knots_u: FloatArray,
+    knots_v: FloatArray,
+    points: FloatArray,
+    weights: FloatArray | None,
+) -> BSplineSurface:
+    """Return the surface, clamped by exact knot insertion where the knots of the file are not.
+
+    Parameters
+    ----------
+    knots_u, knots_v : ndarray, shapes (n_u + degree_u + 1,), (n_v + degree_v + 1,)
+    points : ndarray, shape (n_u, n_v, 3)
+        Euclidean.
+    weights : ndarray, shape (n_u, n_v), or None
+
+    Raises
+    ------
+    KnotError, ControlPointError
+        Values that make no surface.
+    """
+    knots_u, knots_v = _snapped_ends(knots_u, degree_u), _snapped_ends(knots_v, degree_v)
+    clamped_u, clamped_v = _is_clamped(knots_u, degree_u), _is_clamped(knots_v, degree_v)
+    if clamped_u and clamped_v:
+        return BSplineSurface(degree_u, degree_v, knots_u, knots_v, points, weights)
+    net = points if weights is None else np.concatenate([points * weights[..., None], weights[..., None]], axis=2)
+    if not clamped_u:
+        knots_u, net = clamp_knots(degree_u, knots_u, net)
+    if not clamped_v:
+        knots_v, net = clamp_knots(degree_v, knots_v, net.transpose(1, 0, 2))
+        net = net.transpose(1, 0, 2)
+    return from_homogeneous(degree_u, degree_v, knots_u, knots_v, net)
+
+
+def _snapped_ends(knots: FloatArray, degree: int) -> FloatArray:
+    """Give knots within 1e-12 of the domain from one of its ends the value of that end."""
+    if len(knots) < 2 * degree + 2:
+        return knots
+    start, end = knots[degree], knots[-degree - 1]
+    tolerance = MERGE_TOLERANCE * (end - start)
+    near_start, near_end = np.abs(knots - start) <= tolerance, np.abs(knots - end) <= tolerance
+    return np.where(near_start, start, np.where(near_end, end, knots))
+
+
+def _is_clamped(knots: FloatArray, degree: int) -> bool:
+    return bool(knots[0] == knots[degree] and knots[-1] == knots[-degree - 1])
+
+
+def _size(points: FloatArray) -> float:
+    return float(np.ptp(points.reshape(-1, 3), axis=0).max())
+
+
+def _same(a: FloatArray, b: FloatArray, size: float) -> bool:
+    return bool(np.abs(a - b).max() <= _CLOSED * size)

@@ -1,0 +1,316 @@
+"""The `semispline/1` JSON format: surfaces and whole blend problems.
+
+Numbers are written so that they read back as the same float64; files are written whole or not at all. What the
+format adds to the design document: where v-control curves of a semi-structured surface differ in degree, a curve
+states its own `degree_v`; one that does not has that of the surface, which is the highest.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Annotated, Any, Literal, TypeAlias, TypeVar
+
+from pydantic import AllowInfNan, BaseModel, ConfigDict, Field, Strict, ValidationError
+
+from solver.arrays import FloatArray
+from solver.errors import ControlPointError, EdgeError, FileError, InputError
+from solver.io.disk import write_text
+from solver.io.json_text import load_json, short, to_text
+from solver.surfaces import BSplineCurve, BSplineSurface, SemiStructuredSurface, Surface
+
+FORMAT = "semispline/1"
+EDGES = ("u0", "u1", "v0", "v1")
+
+_Number: TypeAlias = Annotated[float, Strict(), AllowInfNan(False)]
+_Degree: TypeAlias = Annotated[int, Strict(), Field(ge=1)]
+_Count: TypeAlias = Annotated[int, Strict()]
+_Text: TypeAlias = Annotated[str, Strict()]
+_Points: TypeAlias = list[list[_Number]]
+
+
+class _Record(BaseModel):
+    model_config = ConfigDict(extra="forbid")
+
+
+class _BSplineRecord(_Record):
+    degree_u: _Degree
+    degree_v: _Degree
+    knots_u: list[_Number]
+    knots_v: list[_Number]
+    control_points: list[_Points]
+    weights: list[list[_Number]] | None = None
+
+
+class _CurveRecord(_Record):
+    degree_v: _Degree | None = None
+    knots_v: list[_Number]
+    control_points: _Points
+
+
+class _SemiStructuredRecord(_Record):
+    degree_u: _Degree
+    degree_v: _Degree
+    knots_u: list[_Number]
+    control_curves: list[_CurveRecord]
+
+
+class _OptionsRecord(_Record):
+    """Keyword arguments of `blend`, which checks their values."""
+
+    continuity: _Text | tuple[_Text, _Text] = "G2"
+    middle_curves: _Count = 1
+    degree_u: _Count = 3
+    method: _Text = ""
+    flip: _Text = "auto"
+
+
+class _ProblemRecord(_Record):
+    a: _Text | dict[str, Any]
+    edge_a: Literal["u0", "u1", "v0", "v1"]
+    b: _Text | dict[str, Any]
+    edge_b: Literal["u0", "u1", "v0", "v1"]
+    options: _OptionsRecord = _OptionsRecord()
+
+
+@dataclass(frozen=True)
+class StoredProblem:
+    """A blend problem as a file holds it.
+
+    Parameters
+    ----------
+    a, b : BSplineSurface, SemiStructuredSurface or str
+        A surface, or "PATH#N" with PATH relative to the folder of the file.
+    edge_a, edge_b : {"u0", "u1", "v0", "v1"}
+    options : mapping
+        Keyword arguments of `blend`: continuity, middle_curves, degree_u, method, flip.
+
+    Raises
+    ------
+    EdgeError
+        An edge that is not one of the four.
+    """
+
+    a: Surface | str
+    edge_a: str
+    b: Surface | str
+    edge_b: str
+    options: Mapping[str, Any] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        for name in ("edge_a", "edge_b"):
+            if getattr(self, name) not in EDGES:
+                raise EdgeError(f"{name}: found {getattr(self, name)!r}, expected one of {', '.join(EDGES)}")
+
+
+def read_json_surface(path: str | Path) -> Surface:
+    """Read a surface of either kind.
+
+    Raises
+    ------
+    FileError
+        Missing, not JSON, of another kind, or with a value of a wrong type.
+    KnotError, ControlPointError
+        Values that make no surface.
+    """
+    return surface_from_record(load_json(path), str(path))
+
+
+def write_json_surface(path: str | Path, surface: Surface) -> None:
+    """Write a surface of either kind.
+
+    Raises
+    ------
+    FileError
+        The file cannot be written.
+    """
+    write_text(path, to_text(surface_record(surface)))
+
+
+def read_problem(path: str | Path) -> StoredProblem:
+    """Read a blend problem; "PATH#N" in it comes back relative to the working folder, not yet opened.
+
+    Raises
+    ------
+    FileError, EdgeError, KnotError, ControlPointError
+        As `read_json_surface`.
+    """
+    where = str(path)
+    record = _validated(_ProblemRecord, _content(load_json(path), ("blend_problem",), where), where)
+    folder = Path(path).parent
+
+    def base(value: str | dict[str, Any], name: str) -> Surface | str:
+        return str(folder / value) if isinstance(value, str) else surface_from_record(value, f"{where}: {name}")
+
+    a, b = base(record.a, "a"), base(record.b, "b")
+    return StoredProblem(a, record.edge_a, b, record.edge_b, record.options.model_dump(exclude_unset=True))
+
+
+def write_problem(path: str | Path, problem: StoredProblem) -> None:
+    """Write a blend problem.
+
+    Raises
+    ------
+    FileError
+        The file cannot be written, or an option that JSON cannot hold.
+    """
+
+    def base(value: Surface | str) -> Any:
+        return value if isinstance(value, str) else surface_record(value)
+
+    options = _validated(_OptionsRecord, dict(problem.options), f"{path}: options")
+    record = {
+        "format": FORMAT,
+        "kind": "blend_problem",
+        "a": base(problem.a),
+        "edge_a": problem.edge_a,
+        "b": base(problem.b),
+        "edge_b": problem.edge_b,
+        "options": options.model_dump(exclude_unset=True),
+    }
+    write_text(path, to_text(record))
+
+
+def surface_record(surface: Surface) -> dict[str, Any]:
+    """Return what the file holds of a surface: plain lists and numbers.
+
+    Examples
+    --------
+    >>> square = BSplineSurface(1, 1, [0, 0, 1, 1], [0, 0, 1, 1], [[[0, 0, 0], [0, 1, 0]], [[1, 0, 0], [1, 1, 0]]])
+    >>> surface_record(square)["knots_u"]
+    [0.0, 0.0, 1.0, 1.0]
+    """
+    if isinstance(surface, SemiStructuredSurface):
+        curves = []
+        for curve in surface.control_curves:
+            own = {} if curve.degree == surface.degree_v else {"degree_v": curve.degree}
+            points = {"knots_v": curve.knots.tolist(), "control_points": curve.control_points.tolist()}
+            curves.append(own | points)
+        return {
+            "format": FORMAT,
+            "kind": "semistructured_surface",
+            "degree_u": surface.degree_u,
+            "degree_v": surface.degree_v,
+            "knots_u": surface.knots_u.tolist(),
+            "control_curves": curves,
+        }
+    record: dict[str, Any] = {
+        "format": FORMAT,
+        "kind": "bspline_surface",
+        "degree_u": surface.degree_u,
+        "degree_v": surface.degree_v,
+        "knots_u": surface.knots_u.tolist(),
+        "knots_v": surface.knots_v.tolist(),
+        "control_points": surface.control_points.tolist(),
+    }
+    if surface.weights is not None:
+        record["weights"] = surface.weights.tolist()
+    return record
+
+
+def surface_from_record(record: Any, where: str = "surface") -> Surface:
+    """Return the surface that a record holds; `where` opens every message.
+
+    Raises
+    ------
+    FileError, KnotError, ControlPointError
+        As `read_json_surface`.
+    """
+    content = _content(record, ("bspline_surface", "semistructured_surface"), where)
+    if record["kind"] == "bspline_surface":
+        plain = _validated(_BSplineRecord, content, where)
+        for i, row in enumerate(plain.control_points):
+            if len(row) != len(plain.control_points[0]):
+                wanted = len(plain.control_points[0])
+                raise ControlPointError(
+                    f"{where}: control_points[{i}]: {len(row)} points, expected {wanted} as in row 0"
+                )
+            _check_points(row, f"{where}: control_points[{i}]")
+        return _made(
+            where,
+            lambda: BSplineSurface(
+                plain.degree_u,
+                plain.degree_v,
+                _list(plain.knots_u),
+                _list(plain.knots_v),
+                _list(plain.control_points),
+                None if plain.weights is None else _list(plain.weights),
+            ),
+        )
+    semi = _validated(_SemiStructuredRecord, content, where)
+    for i, found in enumerate(semi.control_curves):
+        _check_points(found.control_points, f"{where}: control_curves[{i}].control_points")
+
+    def curve(i: int, found: _CurveRecord) -> BSplineCurve:
+        degree = semi.degree_v if found.degree_v is None else found.degree_v
+        if degree > semi.degree_v:
+            raise FileError(
+                f"control_curves[{i}].degree_v: found {degree}, expected at most that of the surface, {semi.degree_v}"
+            )
+        return BSplineCurve(degree, _list(found.knots_v), _list(found.control_points), name=f"control_curves[{i}]")
+
+    return _made(
+        where,
+        lambda: SemiStructuredSurface(
+            semi.degree_u, _list(semi.knots_u), tuple(curve(i, c) for i, c in enumerate(semi.control_curves))
+        ),
+    )
+
+
+def _content(record: Any, kinds: Sequence[str], where: str) -> dict[str, Any]:
+    """Return the record without `format` and `kind`, both checked."""
+    if not isinstance(record, dict):
+        raise FileError(f"{where}: found {short(record)}, expected an object with keys format, kind, ...")
+    if record.get("format") != FORMAT:
+        raise FileError(f"{where}: format is {short(record.get('format'))}, expected {FORMAT!r}")
+    if record.get("kind") not in kinds:
+        expected = " or ".join(map(repr, kinds))
+        raise FileError(f"{where}: kind is {short(record.get('kind'))}, expected {expected}")
+    return {key: value for key, value in record.items() if key not in ("format", "kind")}
+
+
+_R = TypeVar("_R", bound=_Record)
+_T = TypeVar("_T")
+
+
+def _validated(model: type[_R], content: dict[str, Any], where: str) -> _R:
+    try:
+        return model.model_validate(content)
+    except ValidationError as error:
+        raise FileError(f"{where}: {_first_fault(error).lstrip('.')}") from None
+
+
+def _first_fault(error: ValidationError) -> str:
+    fault = error.errors(include_url=False, include_context=False)[0]
+    # Unions put the name of their member into the place; only keys and indices belong there.
+    place = "".join(
+        f"[{part}]" if isinstance(part, int) else f".{part}"
+        for part in fault["loc"]
+        if isinstance(part, int) or (part.isidentifier() and part != "str")
+    )
+    if fault["type"] == "missing":
+        return f"{place}: missing, expected a value"
+    if fault["type"] == "extra_forbidden":
+        return f"{place}: no such key in this kind; leave it out"
+    # pydantic says "Input should be a valid number".
+    expected = fault["msg"].removeprefix("Input should be ")
+    return f"{place}: found {short(fault['input'])}, expected {expected}"
+
+
+def _check_points(points: list[list[float]], where: str) -> None:
+    for j, point in enumerate(points):
+        if len(point) != 3:
+            raise ControlPointError(f"{where}[{j}]: {len(point)} coordinate(s), expected 3")
+
+
+def _made(where: str, make: Callable[[], _T]) -> _T:
+    try:
+        return make()
+    except InputError as error:
+        raise type(error)(f"{where}: {error}") from None
+
+
+def _list(values: list[Any]) -> FloatArray:
+    # The surface classes turn nested lists into arrays, and say which index is at fault.
+    return values  # type: ignore[return-value]

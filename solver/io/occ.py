@@ -1,0 +1,273 @@
+"""STEP, IGES and BREP files read through Open CASCADE (the extra `cad`).
+
+Coordinates stay in the unit of length that the file declares: the readers' conversion to millimetres is turned off by
+telling them that the system's unit is the file's. A file whose unit is none of IGES's ten is converted to
+millimetres by the reader.
+
+Source: ISO 10303-42; IGES 5.3, entity 128; reference documentation of Open CASCADE.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from solver.arrays import FloatArray
+from solver.errors import FileError, SemisplineError
+from solver.io.disk import require_file
+from solver.io.faces import MILLIMETRES, Model, surface_from_net, without_equal_weights
+from solver.io.occ_kernel import require_kernel, silenced, system_unit
+from solver.surfaces import BSplineSurface
+
+_STEP_UNITS = {
+    "millimetre": "mm",
+    "centimetre": "cm",
+    "metre": "m",
+    "kilometre": "km",
+    "micrometre": "um",
+    "inch": "in",
+    "foot": "ft",
+    "mile": "mi",
+    "mil": "mil",
+}
+_KINDS = {
+    "Geom_BSplineSurface": "B-spline",
+    "Geom_BezierSurface": "Bezier",
+    "Geom_Plane": "plane",
+    "Geom_CylindricalSurface": "cylinder",
+    "Geom_ConicalSurface": "cone",
+    "Geom_SphericalSurface": "sphere",
+    "Geom_ToroidalSurface": "torus",
+    "Geom_SurfaceOfRevolution": "revolution",
+    "Geom_SurfaceOfLinearExtrusion": "extrusion",
+    "Geom_OffsetSurface": "offset",
+}
+# A trimming curve follows the edge of its surface if it stays within this fraction of the parameter range.
+_ON_EDGE = 1e-6
+
+
+@dataclass(frozen=True, eq=False)
+class OccFace:
+    """A face of a transferred shape; `trimmed` and `surface` as `Face` says."""
+
+    face: Any
+    where: str
+
+    @property
+    def kind(self) -> str:
+        """What the file holds."""
+        name = type(self._geometry()).__name__
+        return _KINDS.get(name, name.removeprefix("Geom_"))
+
+    def trimmed(self) -> bool:
+        """Whether curves cut the face out of the surface that `surface` returns."""
+        from OCP.BRep import BRep_Tool
+        from OCP.BRepAdaptor import BRepAdaptor_Curve2d
+        from OCP.TopAbs import TopAbs_ShapeEnum
+        from OCP.TopExp import TopExp_Explorer
+        from OCP.TopoDS import TopoDS
+
+        if BRep_Tool.NaturalRestriction_s(self.face):
+            return False
+        low_u, high_u, low_v, high_v = self._range()
+        edges = TopExp_Explorer(self.face, TopAbs_ShapeEnum.TopAbs_EDGE)
+        while edges.More():
+            curve = BRepAdaptor_Curve2d(TopoDS.Edge(edges.Current()), self.face)
+            t = np.linspace(curve.FirstParameter(), curve.LastParameter(), 7)
+            points = [curve.Value(float(x)) for x in t]
+            u, v = np.array([p.X() for p in points]), np.array([p.Y() for p in points])
+            off_u = np.minimum(abs(u - low_u), abs(u - high_u)) / (high_u - low_u)
+            off_v = np.minimum(abs(v - low_v), abs(v - high_v)) / (high_v - low_v)
+            if np.minimum(off_u, off_v).max() > _ON_EDGE:
+                return True
+            edges.Next()
+        return False
+
+    def surface(self) -> BSplineSurface:
+        """Return the exact, clamped (rational) B-spline surface, without trimming.
+
+        Raises
+        ------
+        FileError
+            A kind of surface that has no exact B-spline form.
+        KnotError
+            Knots that the surface class refuses.
+        """
+        geometry = self._geometry()
+        try:
+            if type(geometry).__name__ == "Geom_BSplineSurface":
+                spline = geometry.Copy() if geometry.IsUPeriodic() or geometry.IsVPeriodic() else geometry
+            else:
+                spline = self._converted(geometry)
+            # Exact knot insertion at the seam.
+            if spline.IsUPeriodic():
+                spline.SetUNotPeriodic()
+            if spline.IsVPeriodic():
+                spline.SetVNotPeriodic()
+            return _read_out(spline)
+        except SemisplineError as error:
+            raise type(error)(f"{self.where}: {error}") from None
+
+    def _geometry(self) -> Any:
+        from OCP.BRep import BRep_Tool
+
+        geometry = BRep_Tool.Surface_s(self.face)
+        if geometry is None:
+            raise FileError(f"{self.where}: the face has no surface; choose another")
+        while type(geometry).__name__ == "Geom_RectangularTrimmedSurface":
+            geometry = geometry.BasisSurface()
+        return geometry
+
+    def _range(self) -> tuple[float, float, float, float]:
+        """Range of the parameters that `surface` returns: that of the face where the surface has no end."""
+        from OCP.BRepTools import BRepTools
+
+        geometry = self._geometry()
+        if type(geometry).__name__ in ("Geom_BSplineSurface", "Geom_BezierSurface"):
+            return tuple(geometry.Bounds())
+        return tuple(BRepTools.UVBounds_s(self.face))
+
+    def _converted(self, geometry: Any) -> Any:
+        from OCP.Geom import Geom_RectangularTrimmedSurface
+        from OCP.GeomConvert import GeomConvert
+
+        inexact = _inexact(geometry)
+        if inexact:
+            raise FileError(f"{inexact} has no exact B-spline form; make the face a B-spline where it was drawn")
+        if type(geometry).__name__ != "Geom_BezierSurface":
+            low_u, high_u, low_v, high_v = self._range()
+            first_u, last_u, first_v, last_v = geometry.Bounds()
+            # A full turn is not a trimming: the kernel refuses to cut a period out of itself.
+            cut_u = not (geometry.IsUPeriodic() and high_u - low_u >= (last_u - first_u) * (1 - 1e-12))
+            cut_v = not (geometry.IsVPeriodic() and high_v - low_v >= (last_v - first_v) * (1 - 1e-12))
+            if cut_u and not geometry.IsUPeriodic():
+                low_u, high_u = max(low_u, first_u), min(high_u, last_u)
+            if cut_v and not geometry.IsVPeriodic():
+                low_v, high_v = max(low_v, first_v), min(high_v, last_v)
+            if cut_u and cut_v:
+                geometry = Geom_RectangularTrimmedSurface(geometry, low_u, high_u, low_v, high_v)
+            elif cut_u:
+                geometry = Geom_RectangularTrimmedSurface(geometry, low_u, high_u, True)
+            elif cut_v:
+                geometry = Geom_RectangularTrimmedSurface(geometry, low_v, high_v, False)
+        return GeomConvert.SurfaceToBSplineSurface_s(geometry)
+
+
+def open_occ(path: str | Path) -> Model:
+    """Open a STEP, IGES or BREP file.
+
+    Raises
+    ------
+    FileError
+        Missing, not readable by Open CASCADE, or the extra `cad` is not installed.
+    """
+    require_file(path)
+    require_kernel(path)
+    suffix = Path(path).suffix.lower()
+    read = _read_step if suffix in (".step", ".stp") else _read_iges if suffix in (".iges", ".igs") else _read_brep
+    try:
+        with silenced(1, 2):
+            shape, unit = read(str(path))
+            faces = [] if shape is None or shape.IsNull() else list(_faces(shape))
+    except SemisplineError:
+        raise
+    except Exception as error:
+        # The kernel raises a class of its own for each of its failures.
+        reason = str(error).splitlines()
+        raise FileError(
+            f"{path}: Open CASCADE cannot read it ({reason[0] if reason else type(error).__name__})"
+        ) from None
+    return Model(str(path), unit, [OccFace(face, f"{path}#{number}") for number, face in enumerate(faces)])
+
+
+def _read_step(path: str) -> tuple[Any, str | None]:
+    from OCP.collections import Sequence_TCollection_AsciiString
+    from OCP.IFSelect import IFSelect_ReturnStatus
+    from OCP.STEPControl import STEPControl_Reader
+
+    with system_unit("mm"):
+        reader = STEPControl_Reader()
+        if reader.ReadFile(path) != IFSelect_ReturnStatus.IFSelect_RetDone:
+            raise FileError(f"{path}: not a STEP file that Open CASCADE can read")
+        lengths, angles, solid = (Sequence_TCollection_AsciiString() for _ in range(3))
+        reader.FileUnits(lengths, angles, solid)
+        names = [lengths.Value(i + 1).ToCString().lower() for i in range(lengths.Length())]
+        # Products in different units, or in a unit without a name here, are converted to millimetres.
+        unit = _STEP_UNITS.get(names[0], "mm") if len(set(names)) == 1 else "mm"
+        reader.SetSystemLengthUnit(MILLIMETRES[unit])
+        reader.TransferRoots()
+        return reader.OneShape(), unit
+
+
+def _read_iges(path: str) -> tuple[Any, str | None]:
+    from OCP.IFSelect import IFSelect_ReturnStatus
+    from OCP.IGESControl import IGESControl_Reader
+
+    with system_unit("mm"):
+        reader = IGESControl_Reader()
+        if reader.ReadFile(path) != IFSelect_ReturnStatus.IFSelect_RetDone:
+            raise FileError(f"{path}: not an IGES file that Open CASCADE can read")
+        millimetres = reader.IGESModel().GlobalSection().UnitValue()
+    unit = next((u for u, size in MILLIMETRES.items() if abs(millimetres / size - 1) < 1e-9), "mm")
+    with system_unit(unit):
+        reader.TransferRoots()
+        return reader.OneShape(), unit
+
+
+def _read_brep(path: str) -> tuple[Any, str | None]:
+    from OCP.BRep import BRep_Builder
+    from OCP.BRepTools import BRepTools
+    from OCP.TopoDS import TopoDS_Shape
+
+    shape = TopoDS_Shape()
+    if not BRepTools.Read_s(shape, path, BRep_Builder()) or shape.IsNull():
+        raise FileError(f"{path}: not a BREP file that Open CASCADE can read")
+    return shape, None
+
+
+def _faces(shape: Any) -> Iterator[Any]:
+    from OCP.TopAbs import TopAbs_ShapeEnum
+    from OCP.TopExp import TopExp_Explorer
+    from OCP.TopoDS import TopoDS
+
+    explorer = TopExp_Explorer(shape, TopAbs_ShapeEnum.TopAbs_FACE)
+    while explorer.More():
+        yield TopoDS.Face(explorer.Current())
+        explorer.Next()
+
+
+def _read_out(spline: Any) -> BSplineSurface:
+    n_u, n_v = spline.NbUPoles(), spline.NbVPoles()
+    poles = [spline.Pole(i + 1, j + 1) for i in range(n_u) for j in range(n_v)]
+    points = np.array([(p.X(), p.Y(), p.Z()) for p in poles]).reshape(n_u, n_v, 3)
+    weights: FloatArray | None = None
+    if spline.IsURational() or spline.IsVRational():
+        found = np.array([spline.Weight(i + 1, j + 1) for i in range(n_u) for j in range(n_v)])
+        weights = without_equal_weights(found.reshape(n_u, n_v))
+    knots_u = _repeated(spline.NbUKnots(), spline.UKnot, spline.UMultiplicity)
+    knots_v = _repeated(spline.NbVKnots(), spline.VKnot, spline.VMultiplicity)
+    return surface_from_net(spline.UDegree(), spline.VDegree(), knots_u, knots_v, points, weights)
+
+
+def _repeated(count: int, knot: Any, multiplicity: Any) -> FloatArray:
+    knots = [knot(i + 1) for i in range(count)]
+    return np.repeat(np.array(knots, dtype=np.float64), [multiplicity(i + 1) for i in range(count)])
+
+
+def _inexact(geometry: Any) -> str | None:
+    """Name the part of a surface that the kernel could only approximate."""
+    name = type(geometry).__name__
+    if name not in _KINDS or name == "Geom_OffsetSurface":
+        return f"a surface of kind {_KINDS.get(name, name)}"
+    if name not in ("Geom_SurfaceOfRevolution", "Geom_SurfaceOfLinearExtrusion"):
+        return None
+    curve = geometry.BasisCurve()
+    while type(curve).__name__ == "Geom_TrimmedCurve":
+        curve = curve.BasisCurve()
+    kind = type(curve).__name__.removeprefix("Geom_")
+    exact = ("BSplineCurve", "BezierCurve", "Line", "Circle", "Ellipse", "Parabola", "Hyperbola")
+    return None if kind in exact else f"the {_KINDS[name]} of a curve of kind {kind}"

@@ -1,0 +1,133 @@
+"""STEP, IGES and BREP files written through Open CASCADE (the extra `cad`).
+
+Numbers are written with 17 significant digits, where the kernel's own writers stop at 12 (STEP) and 10 (IGES): a G2
+contact would be lost with the rest.
+"""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from solver.errors import FileError, SemisplineError
+from solver.io.occ_kernel import UNIT_NAMES, first_line, require_kernel, silenced, system_unit
+from solver.surfaces import BSplineSurface
+
+# 17 significant digits; the point that both formats ask for comes with the exponent.
+_REAL = "%.16E"
+
+
+def occ_bytes(surface: BSplineSurface, suffix: str, unit: str) -> bytes:
+    """Return the content of a STEP, IGES or BREP file with one face, untrimmed, in that unit.
+
+    Raises
+    ------
+    FileError
+        Open CASCADE refuses the surface, or the extra `cad` is not installed.
+    """
+    require_kernel(suffix)
+    write = _step_bytes if suffix in (".step", ".stp") else _iges_bytes if suffix in (".iges", ".igs") else _brep_bytes
+    try:
+        with silenced(1, 2):
+            return write(_face(surface), unit)
+    except SemisplineError:
+        raise
+    except Exception as error:
+        raise FileError(
+            f"{suffix}: Open CASCADE cannot write the surface ({first_line(error)}); try .json or .3dm"
+        ) from None
+
+
+def occ_surface(surface: BSplineSurface) -> Any:
+    """Return the `Geom_BSplineSurface` with the same net, knots and weights."""
+    from OCP.collections import Array1_double, Array1_int, Array2_double, Array2_gp_Pnt
+    from OCP.Geom import Geom_BSplineSurface
+    from OCP.gp import gp_Pnt
+
+    n_u, n_v = surface.control_points.shape[:2]
+    poles, weights = Array2_gp_Pnt(1, n_u, 1, n_v), Array2_double(1, n_u, 1, n_v)
+    for i in range(n_u):
+        for j in range(n_v):
+            poles.SetValue(i + 1, j + 1, gp_Pnt(*map(float, surface.control_points[i, j])))
+            weights.SetValue(i + 1, j + 1, 1.0 if surface.weights is None else float(surface.weights[i, j]))
+
+    def filled(array: Any, values: Sequence[Any]) -> Any:
+        for i, value in enumerate(values):
+            array.SetValue(i + 1, value)
+        return array
+
+    arguments = []
+    for knots in (surface.knots_u, surface.knots_v):
+        values, counts = np.unique(knots, return_counts=True)
+        arguments.append(filled(Array1_double(1, len(values)), values.tolist()))
+        arguments.append(filled(Array1_int(1, len(counts)), counts.tolist()))
+    knots_u, counts_u, knots_v, counts_v = arguments
+    degrees = (surface.degree_u, surface.degree_v)
+    if surface.weights is None:
+        return Geom_BSplineSurface(poles, knots_u, knots_v, counts_u, counts_v, *degrees)
+    return Geom_BSplineSurface(poles, weights, knots_u, knots_v, counts_u, counts_v, *degrees)
+
+
+def _face(surface: BSplineSurface) -> Any:
+    from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeFace
+
+    size = float(np.ptp(surface.control_points.reshape(-1, 3), axis=0).max())
+    # An edge shorter than the tolerance counts as a point; the kernel's default suits sizes from 1 on.
+    maker = BRepBuilderAPI_MakeFace(occ_surface(surface), min(1e-7, 1e-7 * size))
+    if not maker.IsDone():
+        raise FileError("Open CASCADE cannot make a face of the surface; try .json or .3dm")
+    return maker.Face()
+
+
+def _step_bytes(face: Any, unit: str) -> bytes:
+    from OCP.STEPControl import STEPControl_StepModelType, STEPControl_Writer
+    from OCP.StepData import StepData_StepWriter
+    from OCP.STEPEdit import STEPEdit
+
+    with system_unit(unit):
+        writer = STEPControl_Writer()
+        writer.Transfer(face, STEPControl_StepModelType.STEPControl_AsIs)
+        text = StepData_StepWriter(writer.Model())
+        text.FloatWriter().SetFormat(_REAL)
+        text.SendModel(STEPEdit.Protocol_s())
+        return _printed(text)
+
+
+def _iges_bytes(face: Any, unit: str) -> bytes:
+    from OCP.IGESControl import IGESControl_Writer
+    from OCP.IGESData import IGESData_IGESWriter
+    from OCP.IGESSelect import IGESSelect_WorkLibrary
+    from OCP.TCollection import TCollection_HAsciiString
+
+    with system_unit(unit):
+        writer = IGESControl_Writer(UNIT_NAMES[unit], 0)
+        if not writer.AddShape(face):
+            raise FileError("Open CASCADE cannot translate the surface to IGES; try .step, .json or .3dm")
+        writer.ComputeModel()
+        model = writer.Model()
+        header = model.GlobalSection()
+        # The kernel would enter the login name of whoever runs this.
+        header.SetAuthorName(TCollection_HAsciiString("semispline"))
+        model.SetGlobalSection(header)
+        text = IGESData_IGESWriter(model)
+        text.FloatWriter().SetFormat(_REAL)
+        text.SendModel(IGESSelect_WorkLibrary.DefineProtocol_s())
+        return _printed(text)
+
+
+def _brep_bytes(face: Any, unit: str) -> bytes:
+    from OCP.BRepTools import BRepTools
+
+    stream = io.BytesIO()
+    BRepTools.Write_s(face, stream)
+    return stream.getvalue()
+
+
+def _printed(text: Any) -> bytes:
+    stream = io.BytesIO()
+    if not text.Print(stream) or not stream.getvalue():
+        raise FileError("Open CASCADE wrote nothing; try .json or .3dm")
+    return stream.getvalue()

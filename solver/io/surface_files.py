@@ -1,0 +1,279 @@
+"""One way in and out for surfaces of every file format."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from solver.arrays import FloatArray
+from solver.errors import FileError
+from solver.io.disk import atomic_path, check_output, require_file
+from solver.io.faces import MILLIMETRES, Model, SurfaceEntry, describe, picked, without_equal_weights
+from solver.surfaces import BSplineSurface, SemiStructuredSurface, Surface
+
+_OCC = (".step", ".stp", ".iges", ".igs", ".brep", ".brp")
+_READABLE = (".json", *_OCC, ".3dm")
+_MESHES = (".obj", ".stl", ".ply", ".gltf", ".glb")
+_WRITABLE = (*_READABLE, *_MESHES)
+# Formats that name a unit get this one for a surface whose own is not known.
+_DEFAULT_UNIT = "mm"
+# What writing and reading back may change: rounding of a few products (weights, units of length).
+_ROUNDING = 16 * float(np.finfo(np.float64).eps)
+
+
+@dataclass(frozen=True, eq=False)
+class LoadedSurface:
+    """A surface and the unit of its coordinates (a key of `MILLIMETRES`; None where the file does not say)."""
+
+    surface: Surface
+    unit: str | None
+
+
+def read_surface(spec: str | Path) -> Surface:
+    """Read a surface from a file.
+
+    Parameters
+    ----------
+    spec : str
+        PATH, or PATH#N where the file holds more than one surface; N as `list_surfaces` numbers them. Formats by
+        suffix: .json, .step, .stp, .iges, .igs, .brep, .brp, .3dm.
+
+    Returns
+    -------
+    BSplineSurface or SemiStructuredSurface
+        The whole surface, without trimming, in the unit of the file. Unclamped and periodic ones are clamped, planes,
+        cylinders and the like converted, all exactly.
+
+    Raises
+    ------
+    FileError
+        Missing, broken, no such number, several surfaces and no number, or no exact B-spline form.
+    KnotError, ControlPointError
+        Values that make no surface.
+    """
+    return read_surfaces([spec])[0].surface
+
+
+def read_surfaces(specs: Sequence[str | Path]) -> list[LoadedSurface]:
+    """Read several surfaces, each file once; all in the unit of the first that names one.
+
+    Raises
+    ------
+    FileError, KnotError, ControlPointError
+        As `read_surface`.
+    """
+    models: dict[str, Model] = {}
+    loaded = []
+    for spec in specs:
+        path, number = split_spec(spec)
+        if path not in models:
+            models[path] = open_model(path)
+        model = models[path]
+        loaded.append(LoadedSurface(picked(model, number).surface(), model.unit))
+    return in_one_unit(loaded)
+
+
+def in_one_unit(loaded: Sequence[LoadedSurface]) -> list[LoadedSurface]:
+    """Return the surfaces in the unit of the first that names one; those that name none are taken as they are.
+
+    Examples
+    --------
+    >>> square = BSplineSurface(1, 1, [0, 0, 1, 1], [0, 0, 1, 1], [[[0, 0, 0], [0, 1, 0]], [[1, 0, 0], [1, 1, 0]]])
+    >>> in_one_unit([LoadedSurface(square, "mm"), LoadedSurface(square, "in")])[1].surface.evaluate([1], [1])
+    array([[25.4, 25.4,  0. ]])
+    """
+    unit = next((item.unit for item in loaded if item.unit), None)
+    if unit is None:
+        return list(loaded)
+    same = []
+    for item in loaded:
+        factor = MILLIMETRES[item.unit or unit] / MILLIMETRES[unit]
+        same.append(LoadedSurface(item.surface if factor == 1 else _scaled(item.surface, factor), unit))
+    return same
+
+
+def list_surfaces(path: str | Path) -> list[SurfaceEntry]:
+    """Return what a file holds: every face, in order, of whatever kind.
+
+    Raises
+    ------
+    FileError
+        Missing, broken, or of an unknown format.
+    """
+    return [describe(number, face) for number, face in enumerate(open_model(path).faces)]
+
+
+def write_surface(path: str | Path, surface: Surface, unit: str | None = None) -> None:
+    """Write a surface, whole or not at all, in the format of the suffix.
+
+    Parameters
+    ----------
+    path : str or Path
+        .json keeps a semi-structured surface as it is; .step, .stp, .iges, .igs, .brep, .brp and .3dm hold its exact
+        B-spline form; .obj, .stl, .ply, .gltf and .glb a mesh of samples.
+    surface : BSplineSurface or SemiStructuredSurface
+    unit : str, optional
+        Unit of the coordinates, a key of `MILLIMETRES`; millimetres where the format names one and this does not.
+
+    Raises
+    ------
+    FileError
+        Unknown suffix, the file cannot be written, the format cannot hold the surface (what was written is read back
+        and compared), or an extra that is not installed.
+    """
+    suffix = check_surface_output(path)
+    if suffix == ".json":
+        from solver.io.json_files import write_json_surface
+
+        write_json_surface(path, surface)
+        return
+    with atomic_path(path) as temporary:
+        if suffix in _MESHES:
+            from solver.io.meshes import write_mesh
+
+            write_mesh(temporary, surface)
+            return
+        spline = surface.to_bspline() if isinstance(surface, SemiStructuredSurface) else surface
+        if suffix == ".3dm":
+            from solver.io.rhino import write_3dm
+
+            write_3dm(temporary, spline, unit or _DEFAULT_UNIT)
+        else:
+            from solver.io.occ_writing import occ_bytes
+
+            temporary.write_bytes(occ_bytes(spline, suffix, unit or _DEFAULT_UNIT))
+        _check_written(temporary, spline, str(path))
+
+
+def check_surface_output(path: str | Path) -> str:
+    """Return the suffix if a surface can be written to `path`; long work calls this first.
+
+    Raises
+    ------
+    FileError
+        Unknown suffix, no such folder, or no right to write.
+    """
+    suffix = Path(path).suffix.lower()
+    if suffix not in _WRITABLE:
+        raise FileError(f"{path}: suffix {suffix!r} cannot be written, expected one of {' '.join(_WRITABLE)}")
+    check_output(path)
+    return suffix
+
+
+def open_model(path: str | Path) -> Model:
+    """Open a file of any readable format.
+
+    Raises
+    ------
+    FileError
+        Missing, broken, or of an unknown format.
+    KnotError, ControlPointError
+        A JSON file whose values make no surface.
+    """
+    require_file(path)
+    suffix = Path(path).suffix.lower()
+    reader = _reader(suffix)
+    if reader is None:
+        raise FileError(f"{path}: suffix {suffix!r} cannot be read, expected one of {' '.join(_READABLE)}")
+    return reader(path)
+
+
+def split_spec(spec: str | Path) -> tuple[str, int | None]:
+    """Split PATH#N; a file whose whole name is `spec` wins.
+
+    Raises
+    ------
+    FileError
+        What follows # is not a number from 0 on.
+
+    Examples
+    --------
+    >>> split_spec("parts.step#12"), split_spec("parts.step")
+    (('parts.step', 12), ('parts.step', None))
+    """
+    text = str(spec)
+    path, separator, number = text.rpartition("#")
+    if not separator or _exists(text):
+        return text, None
+    if not re.fullmatch("[0-9]{1,9}", number):
+        raise FileError(f"{text}: found {number!r} after #, expected the number of a surface, from 0")
+    return path, int(number)
+
+
+@dataclass(frozen=True, eq=False)
+class _JsonFace:
+    content: Surface
+
+    @property
+    def kind(self) -> str:
+        return "B-spline" if isinstance(self.content, BSplineSurface) else "semi-structured"
+
+    def trimmed(self) -> bool:
+        return False
+
+    def surface(self) -> Surface:
+        return self.content
+
+
+def _open_json(path: str | Path) -> Model:
+    from solver.io.json_files import read_json_surface
+
+    return Model(str(path), None, [_JsonFace(read_json_surface(path))])
+
+
+def _reader(suffix: str) -> Callable[[str | Path], Model] | None:
+    if suffix == ".json":
+        return _open_json
+    if suffix == ".3dm":
+        from solver.io.rhino import open_3dm
+
+        return open_3dm
+    if suffix in _OCC:
+        from solver.io.occ import open_occ
+
+        return open_occ
+    return None
+
+
+def _exists(path: str) -> bool:
+    try:
+        return Path(path).exists()
+    except (OSError, ValueError):
+        return False
+
+
+def _scaled(surface: Surface, factor: float) -> Surface:
+    if isinstance(surface, BSplineSurface):
+        return replace(surface, control_points=surface.control_points * factor)
+    curves = (replace(c, control_points=c.control_points * factor) for c in surface.control_curves)
+    return replace(surface, control_curves=tuple(curves))
+
+
+def _check_written(written: Path, surface: BSplineSurface, where: str) -> None:
+    """Read a CAD file back: kernels drop or merge what is small against their tolerances, and do not say so."""
+    try:
+        found = picked(open_model(written), None).surface()
+        same = isinstance(found, BSplineSurface) and _agree(found, surface)
+    except FileError:
+        same = False
+    if not same:
+        raise FileError(
+            f"{where}: {written.suffix[1:]} cannot hold this surface exactly (read back, it differs); "
+            "write .json, or a unit of length in which it is larger"
+        )
+
+
+def _agree(a: BSplineSurface, b: BSplineSurface) -> bool:
+    def weights(surface: BSplineSurface) -> FloatArray:
+        found = None if surface.weights is None else without_equal_weights(surface.weights)
+        return np.ones(surface.control_points.shape[:2]) if found is None else found
+
+    if (a.degree_u, a.degree_v) != (b.degree_u, b.degree_v):
+        return False
+    pairs = [(a.knots_u, b.knots_u), (a.knots_v, b.knots_v), (a.control_points, b.control_points)]
+    pairs.append((weights(a), weights(b)))
+    return all(x.shape == y.shape and np.abs(x - y).max() <= _ROUNDING * np.abs(y).max() for x, y in pairs)
