@@ -124,8 +124,8 @@ def contact_rows(
     --------
     >>> contact_rows(1, 3, span_symbols(1), 3, span_symbols(1, "H"))
     Matrix([
-    [             1,        0],
-    [a*h1/H1 + 1, -a*h1/H1]])
+    [          1,        0],
+    [1 + a*h1/H1, -a*h1/H1]])
     """
     p = sympify(degree)
     if p.is_number and p < order:

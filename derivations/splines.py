@@ -10,10 +10,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from fractions import Fraction
 from itertools import pairwise
 from typing import Any
 
-from sympy import Expr, Float, Matrix, Poly, Symbol, cancel, factor, factorial, sympify
+from sympy import Expr, Float, Matrix, Poly, Rational, Symbol, cancel, diag, factor, factorial, sympify
 from sympy.polys.constructor import construct_domain
 
 X = Symbol("x")
@@ -40,26 +41,43 @@ class Span:
 
 
 def exact_knots(knots: Sequence[Any]) -> tuple[Expr, ...]:
-    """Return knots as exact SymPy expressions: integers, fractions and symbols pass, floats do not.
+    """Return knots as exact SymPy expressions.
+
+    Parameters
+    ----------
+    knots : sequence
+        Integers, fractions, expressions, or strings: "1/3", "0.25" (which is exactly 1/4), the name of a symbol.
 
     Raises
     ------
     ValueError
-        A float (write it as a fraction), or rational knots that decrease.
+        A float (its decimals are not what it holds: write a fraction or a string), or rational knots that decrease.
 
     Examples
     --------
-    >>> exact_knots([0, "1/3", 1])
-    (0, 1/3, 1)
+    >>> exact_knots([0, "1/3", "t", 1])
+    (0, 1/3, t, 1)
     """
-    exact = tuple(sympify(knot, rational=True) if isinstance(knot, str) else sympify(knot) for knot in knots)
-    for index, knot in enumerate(exact):
-        if knot.has(Float):
-            raise ValueError(f"knots[{index}]: found {knot}, expected an integer, a fraction or a symbol")
-    for index, (left, right) in enumerate(pairwise(exact)):
-        if (right - left).is_negative:
-            raise ValueError(f"knots[{index + 1}]: found {right} after {left}, expected a non-decreasing vector")
+    exact = tuple(_exact(knot, index) for index, knot in enumerate(knots))
+    numbers = [(index, knot) for index, knot in enumerate(exact) if knot.is_Rational]
+    for (_, left), (index, right) in pairwise(numbers):
+        if right < left:
+            raise ValueError(f"knots[{index}]: found {right} after {left}, expected a non-decreasing vector")
     return exact
+
+
+def _exact(knot: Any, index: int) -> Expr:
+    if isinstance(knot, str):
+        if knot.isidentifier() and knot != X.name:
+            return Symbol(knot)
+        try:
+            return Rational(Fraction(knot))
+        except (ValueError, ZeroDivisionError):
+            raise ValueError(f"knots[{index}]: found {knot!r}, expected an integer, a fraction or a name") from None
+    value = sympify(knot)
+    if value.has(Float) or X in value.free_symbols or (value.is_number and not value.is_Rational):
+        raise ValueError(f"knots[{index}]: found {knot!r}, expected an integer, a fraction or a symbol other than x")
+    return value
 
 
 def basis_pieces(degree: int, knots: Sequence[Any]) -> tuple[Span, ...]:
@@ -253,18 +271,17 @@ def end_derivatives_from_pieces(order: int, degree: int, end: str = "start") -> 
     [   1,     0],
     [3/h1, -3/h1]])
     """
-    if end not in ("start", "end"):
-        raise ValueError(f"end: found {end!r}, expected 'start' or 'end'")
+    sign = _end_sign(end)
     h = span_symbols(degree)
     clamped = [sympify(0)] * (degree + 1)
     # One span is enough: the one next to the end, whose pieces see h_1..h_p only.
-    if end == "start":
+    if sign > 0:
         knots, span = [*clamped, *h], degree
     else:
         knots, span = [*(-width for width in reversed(h)), *clamped], degree - 1
     domain, elements = construct_domain(knots, field=True)
     pieces = _span_pieces(degree, elements, span, domain)
-    if end == "end":
+    if sign < 0:
         pieces = pieces[::-1]
     matrix = Matrix.zeros(order + 1, order + 1)
     for i, piece in enumerate(pieces[: order + 1]):
@@ -273,8 +290,13 @@ def end_derivatives_from_pieces(order: int, degree: int, end: str = "start") -> 
     return matrix
 
 
-def end_derivative_step(order: int) -> Matrix:
+def end_derivative_step(order: int, end: str = "start") -> Matrix:
     """Return what the closed form lacks to pass from degree p to p + 1 in Cox-de Boor: zero, for a symbol p.
+
+    Parameters
+    ----------
+    order : int
+    end : {"start", "end"}
 
     Returns
     -------
@@ -283,14 +305,16 @@ def end_derivative_step(order: int) -> Matrix:
 
     Notes
     -----
-    Over a vector whose first p + 2 knots lie at the origin, function i of degree p + 1 is, on the first span,
+    Put the clamped start at the origin. Over a vector whose first p + 2 knots lie there, function i of degree p + 1
+    is, on the first span,
 
         f_i <- (x / h_i) f_(i-1) + (1 - x / h_(i+1)) f_i,
 
     where the f on the right have degree p over the same vector without its first knot: same end, same spans h_r.
     (For i = p + 1 and beyond the knots in the second factor are others, but there f_i is zero, as the closed form
     says.) For degree 0, f_0 = 1 and the rest are zero, which is the closed form too. With this matrix zero, the
-    closed form holds for every degree.
+    closed form holds for every degree. At the clamped end the two factors of the recurrence change places and x
+    changes sign.
 
     Examples
     --------
@@ -299,16 +323,23 @@ def end_derivative_step(order: int) -> Matrix:
     """
     p = Symbol("p", positive=True)
     h = span_symbols(order + 1)
-    known = end_derivatives(order, p, h)
-    target = end_derivatives(order, p + 1, h)
+    sign = _end_sign(end)
+    signs = diag(*(sign**d for d in range(order + 1)))
+    known, target = signs * end_derivatives(order, p, h), signs * end_derivatives(order, p + 1, h)
 
-    def derivative_at_end(i: int, d: int) -> Expr:
+    def derivative_at_end(d: int, i: int) -> Expr:
         # Leibniz on the right-hand side at x = 0: only the first derivative of a factor is not zero.
         total = known[d, i]
         if d:
-            total -= d * known[d - 1, i] / h[i]
+            total -= sign * d * known[d - 1, i] / h[i]
             if i:
-                total += d * known[d - 1, i - 1] / h[i - 1]
+                total += sign * d * known[d - 1, i - 1] / h[i - 1]
         return total
 
-    return Matrix(order + 1, order + 1, lambda d, i: cancel(derivative_at_end(i, d) - target[d, i]))
+    return Matrix(order + 1, order + 1, lambda d, i: cancel(derivative_at_end(d, i) - target[d, i]))
+
+
+def _end_sign(end: str) -> int:
+    if end not in ("start", "end"):
+        raise ValueError(f"end: found {end!r}, expected 'start' or 'end'")
+    return 1 if end == "start" else -1
