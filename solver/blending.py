@@ -205,14 +205,14 @@ def _surface(
 ) -> SemiStructuredSurface:
     """Set the prescribed rows anew from alpha and beta, solve for the free ones, and go back to model units."""
     points = problem.control_points(shape.a, shape.b) * size + centre
-    pieces = np.split(points, problem.offsets[1:-1])
+    pieces = np.split(points, problem.form.offsets[1:-1])
     # The contact curves themselves are the bases' own, to the last bit.
     pieces[0], pieces[-1] = a.rows[0], b.rows[0]
     curves = [
         BSplineCurve(row.degree, row.knots, piece, name=f"control_curves[{i}]")
-        for i, (row, piece) in enumerate(zip(problem.rows, pieces, strict=True))
+        for i, (row, piece) in enumerate(zip(problem.form.rows, pieces, strict=True))
     ]
-    return SemiStructuredSurface(problem.u.degree, problem.u.knots, tuple(curves))
+    return SemiStructuredSurface(problem.form.u.degree, problem.form.u.knots, tuple(curves))
 
 
 def _active_bounds(problem: BlendProblem, shape: _Shape) -> tuple[str, ...]:

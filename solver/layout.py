@@ -11,15 +11,17 @@ from solver.knots import breakpoints, clamped, merge_breakpoints, uniform_knots
 
 # Rows that each contact owns: position, first and second derivative.
 ROWS_PER_SIDE = 3
+# Below it second derivatives in u vanish: creases across would cost nothing, and free rows would be undetermined.
+_LEAST_DEGREE = 2
 
 
-def blend_u_basis(degree_u: int, middle_curves: int, order: int = 2) -> Basis:
-    """Return U: clamped on [0, 1], uniform, for 6 + `middle_curves` rows and contact up to `order`.
+def blend_u_basis(degree_u: int, middle_curves: int) -> Basis:
+    """Return U: clamped on [0, 1], uniform, for 6 + `middle_curves` rows.
 
     Raises
     ------
     OptionError
-        A negative number of middle curves, or a degree too low for the contact or too high for the rows.
+        A negative number of middle curves, or a degree below 2 or too high for the number of rows.
 
     Source: section 3 of the paper, with u_i = i / (m - k + 2).
 
@@ -31,11 +33,9 @@ def blend_u_basis(degree_u: int, middle_curves: int, order: int = 2) -> Basis:
     if not isinstance(middle_curves, int) or middle_curves < 0:
         raise OptionError(f"middle_curves: found {middle_curves}, expected a whole number, 0 or more")
     rows = 2 * ROWS_PER_SIDE + middle_curves
-    least = max(order, 1)
-    if not isinstance(degree_u, int) or not least <= degree_u < rows:
+    if not isinstance(degree_u, int) or not _LEAST_DEGREE <= degree_u < rows:
         raise OptionError(
-            f"degree_u: found {degree_u}, expected {least} to {rows - 1} for contact of order {order} "
-            f"with {middle_curves} middle curve(s)"
+            f"degree_u: found {degree_u}, expected {_LEAST_DEGREE} to {rows - 1} with {middle_curves} middle curve(s)"
         )
     return Basis(degree_u, uniform_knots(degree_u, rows - degree_u))
 

@@ -70,29 +70,30 @@ class ConstrainedSolution:
 
 def constrained_problem(problem: BlendProblem) -> ConstrainedProblem:
     """State the blend problem with every control point and shape parameter as an unknown."""
-    n = problem.offsets[-1]
+    n = problem.form.offsets[-1]
     free = [name for name, side in (("alpha", problem.a), ("beta", problem.b)) if side.has_shape_parameter]
     x = ca.MX.sym("x", 3 * n + len(free))
     p = ca.reshape(x[: 3 * n], n, 3)
     parameter = {name: x[3 * n + k] for k, name in enumerate(free)}
 
     first = problem.control_points(*problem.start)
-    energy = ca.DM(problem.energy.tocsc())
-    magnitude = float(np.sum(np.abs(first) * (abs(problem.energy) @ np.abs(first))))
+    matrix = problem.form.matrix(range(len(problem.form.rows)))
+    energy = ca.DM(matrix.tocsc())
+    magnitude = float(np.sum(np.abs(first) * (abs(matrix) @ np.abs(first))))
     # Two bases that continue each other have energy 0 at the start: then the scale must stay clear of rounding.
-    f_scale = max(float(np.sum(first * (problem.energy @ first))), 1e-4 * magnitude)
+    f_scale = max(float(np.sum(first * (matrix @ first))), 1e-4 * magnitude)
     f = ca.dot(p, ca.mtimes(energy, p)) / f_scale
 
     g = []
-    m1 = len(problem.rows)
+    m1 = len(problem.form.rows)
     for name, side, spans, natural, rows in (
         ("alpha", problem.a, problem.spans[0], problem.natural[0], range(m1)),
         ("beta", problem.b, problem.spans[1], problem.natural[1], range(m1 - 1, -1, -1)),
     ):
         a = parameter[name] ** 2 * natural if name in parameter else 1.0
-        for i, prescribed in enumerate(_contact_rows(side, a, problem.u.degree, spans)):
+        for i, prescribed in enumerate(_contact_rows(side, a, problem.form.u.degree, spans)):
             row = rows[i]
-            g.append(ca.vec(p[problem.offsets[row] : problem.offsets[row + 1], :] - prescribed))
+            g.append(ca.vec(p[problem.form.offsets[row] : problem.form.offsets[row + 1], :] - prescribed))
 
     # alpha is measured in units of its natural size, so that the solver does not care about parameter speeds.
     box = [
@@ -153,7 +154,7 @@ def solve_constrained(problem: BlendProblem) -> ConstrainedSolution:
             f"constraints missed by {infeasible:.1e}; try other middle curves, or bases of similar size"
         )
     values = np.asarray(result["x"]).ravel()
-    shape = dict(zip(nlp.parameters, values[3 * problem.offsets[-1] :], strict=True))
+    shape = dict(zip(nlp.parameters, values[3 * problem.form.offsets[-1] :], strict=True))
     a, b = (
         float(shape[name] ** 2 * natural) if name in shape else 1.0
         for name, natural in zip(("alpha", "beta"), problem.natural, strict=True)
