@@ -1,0 +1,174 @@
+"""The constrained problem: its derivatives against SymPy's, a Taylor test, and its solution against a plain search."""
+
+from fractions import Fraction
+
+import casadi as ca
+import numpy as np
+import pytest
+from helpers.bases import facing_pair
+from scipy.optimize import minimize
+
+from derivations.energy import Basis as ExactBasis
+from derivations.energy import ExactSurface
+from derivations.problem import ExactBase, blend_problem, derivatives_at, lagrangian
+from solver import Base, BSplineSurface, blend
+from solver.nlp import constrained_problem, solve_constrained
+from solver.problem import make_problem
+from solver.sides import make_side
+
+K2 = (0, 0, 0, 1, 1, 1)
+K2_INNER = (0, 0, 0, 0.25, 1, 1, 1)
+
+
+def small_pair():
+    """Two biquadratic bases with dyadic coordinates, so that floats hold them exactly."""
+    rng = np.random.default_rng(0)
+
+    def base(knots_u, knots_v, x0, step):
+        n_u, n_v = len(knots_u) - 3, len(knots_v) - 3
+        net = np.array([[[x0 + step * i, j, 0] for j in range(n_v)] for i in range(n_u)], dtype=float)
+        net += rng.integers(-8, 8, net.shape) / 32
+        return BSplineSurface(2, 2, knots_u, knots_v, net)
+
+    return base(K2_INNER, K2, 0, 0.5), base(K2, K2_INNER, -2, -0.5)
+
+
+def exact_basis(basis):
+    # u-knots such as 1/3 are no binary fractions: the exact problem takes the floats that the solver has.
+    return ExactBasis(basis.degree, tuple(map(Fraction, basis.knots)))
+
+
+def both_problems():
+    """The same G2 problem, ours in floats and the derivation's in exact rationals."""
+    a, b = small_pair()
+    sides = make_side(Base(a, "u0"), "G2"), make_side(Base(b, "u0"), "G2")
+    problem = make_problem(*sides, degree_u=3, middle_curves=0)
+    surface = ExactSurface(exact_basis(problem.form.u), tuple(exact_basis(row) for row in problem.form.rows))
+    bases = [
+        ExactBase(
+            ExactBasis(2, tuple(map(Fraction, s.knots_u))),
+            tuple(tuple(map(tuple, row)) for row in s.control_points.tolist()),
+        )
+        for s in (a, b)
+    ]
+    return problem, blend_problem(2, surface, *bases)
+
+
+@pytest.fixture(scope="module")
+def compared():
+    """Value, gradient and Hessian of the Lagrangian from CasADi and from SymPy, at one random point."""
+    problem, exact = both_problems()
+    nlp = constrained_problem(problem)
+    rng = np.random.default_rng(1)
+    n = problem.form.offsets[-1]
+    points = rng.integers(-64, 64, (n, 3)) / 32
+    shape = np.array([1.25, 0.75])
+    multipliers = rng.integers(-64, 64, nlp.g.shape[0]) / 32
+
+    # Ours: x of all points, then y, then z, then alpha and beta in units of their natural size.
+    unit = np.sqrt(problem.natural)
+    x = np.concatenate([points.T.ravel(), shape / unit])
+    symbol = ca.MX.sym("l", len(multipliers))
+    lagrange = nlp.f * nlp.f_scale + ca.dot(symbol, nlp.g)
+    hessian, gradient = ca.hessian(lagrange, nlp.x)
+    function = ca.Function("L", [nlp.x, symbol], [lagrange, gradient, hessian])
+
+    # Theirs: x, y, z of each point in turn; constraints likewise. Rows of ours are blocks of x, y, z.
+    sizes = [problem.form.rows[i].size for i in (0, 1, 2, -1, -2, -3)]
+    ours = np.split(multipliers, np.cumsum([3 * size for size in sizes])[:-1])
+    theirs = np.concatenate([block.reshape(3, -1).T.ravel() for block in ours])
+    value, exact_gradient, exact_hessian = derivatives_at(
+        lagrangian(exact, [float(t) for t in theirs]), [*points.ravel().tolist(), *shape.tolist()]
+    )
+    to_ours = np.concatenate([np.arange(3 * n).reshape(n, 3).T.ravel(), [3 * n, 3 * n + 1]])
+    scale = np.concatenate([np.ones(3 * n), unit])
+    expected_gradient = np.array(exact_gradient, dtype=float)[to_ours] * scale
+    expected_hessian = np.array(exact_hessian, dtype=float)[np.ix_(to_ours, to_ours)] * np.outer(scale, scale)
+    found = [np.asarray(part) for part in function(x, multipliers)]
+    return found, (float(value), expected_gradient, expected_hessian)
+
+
+def test_lagrangian_agrees_with_sympy(compared):
+    found, expected = compared
+    assert float(found[0][0, 0]) == pytest.approx(expected[0], rel=1e-13)
+
+
+def test_gradient_agrees_with_sympy(compared):
+    found, expected = compared
+    np.testing.assert_allclose(found[1].ravel(), expected[1], rtol=0, atol=1e-12 * np.abs(expected[1]).max())
+
+
+def test_hessian_agrees_with_sympy(compared):
+    found, expected = compared
+    np.testing.assert_allclose(found[2], expected[2], rtol=0, atol=1e-12 * np.abs(expected[2]).max())
+    # The curvature in alpha and beta is there, so that this is no test of the quadratic part alone.
+    assert np.abs(expected[2][-2:, -2:]).max() > 1
+
+
+@pytest.mark.parametrize("which", ["f", "g"])
+def test_taylor(which):
+    a, b = small_pair()
+    nlp = constrained_problem(make_problem(make_side(Base(a, "u0"), "G2"), make_side(Base(b, "u0"), "G2"), 3, 1))
+    rng = np.random.default_rng(2)
+    weights = rng.standard_normal(nlp.g.shape[0])
+    scalar = nlp.f if which == "f" else ca.dot(ca.DM(weights), nlp.g)
+    hessian, gradient = ca.hessian(scalar, nlp.x)
+    function = ca.Function("F", [nlp.x], [scalar, gradient, hessian])
+    x = nlp.start + 0.1 * rng.standard_normal(len(nlp.start))
+    d = rng.standard_normal(len(x))
+    f0, g0, h0 = (np.asarray(part) for part in function(x))
+    steps = 0.5 ** np.arange(3, 9)
+    first, second = [], []
+    for h in steps:
+        change = float(function(x + h * d)[0]) - float(f0[0, 0]) - h * float(d @ g0.ravel())
+        first.append(abs(change))
+        second.append(abs(change - h * h / 2 * float(d @ h0 @ d)))
+    # Remainders shrink by 4 and by 8 when the step is halved; f is quadratic, so there the second is rounding.
+    assert np.log2(np.array(first[:-1]) / first[1:]) == pytest.approx(2, abs=0.15)
+    if which == "g":
+        assert np.log2(np.array(second[:-1]) / second[1:]) == pytest.approx(3, abs=0.2)
+    else:
+        assert max(second) < 1e-9 * abs(float(f0[0, 0]))
+
+
+def test_constraints_have_full_rank():
+    a, b = small_pair()
+    nlp = constrained_problem(make_problem(make_side(Base(a, "u0"), "G2"), make_side(Base(b, "u0"), "G2"), 3, 1))
+    jacobian = np.asarray(ca.Function("J", [nlp.x], [ca.jacobian(nlp.g, nlp.x)])(nlp.start))
+    assert np.linalg.matrix_rank(jacobian) == jacobian.shape[0]
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_ipopt_is_not_beaten_near_its_answer(seed):
+    # Nelder-Mead on (a, b) over linear solves knows nothing of CasADi.
+    a, b = facing_pair(np.random.default_rng(seed), edges=("u0", "u0"), backwards=(False, False))
+    sides = make_side(a, "G2"), make_side(b, "G2", a.range_along)
+    problem = make_problem(*sides, degree_u=3, middle_curves=1)
+    found = solve_constrained(problem)
+
+    def energy(z):
+        points = problem.control_points(*np.clip(z, *np.transpose(problem.bounds)))
+        return float(problem.form.products(points[None])[0, 0])
+
+    start = np.array([found.a, found.b])
+    rival = minimize(energy, start * 1.05, method="Nelder-Mead", options={"xatol": 1e-9, "fatol": 1e-12})
+    assert energy(start) <= rival.fun * (1 + 1e-10)
+    assert found.kkt_residual < 1e-8
+
+
+def test_energy_of_the_result_is_that_of_the_exact_problem():
+    from derivations.problem import exact_minimum
+
+    problem, exact = both_problems()
+    points = problem.control_points(1.25, 0.75)
+    energy, control_points = exact_minimum(exact, 1.25, 0.75)
+    np.testing.assert_allclose(points, np.array(control_points, dtype=float), rtol=0, atol=1e-13)
+    assert float(problem.form.products(points[None])[0, 0]) == pytest.approx(float(energy), rel=1e-13)
+
+
+def test_shape_parameters_do_not_depend_on_units():
+    a, b = small_pair()
+    big = [BSplineSurface(s.degree_u, s.degree_v, s.knots_u, s.knots_v, 25.4 * s.control_points + 1e3) for s in (a, b)]
+    plain, scaled = blend(Base(a, "u0"), Base(b, "u0")), blend(Base(big[0], "u0"), Base(big[1], "u0"))
+    assert scaled.alpha2 == pytest.approx(plain.alpha2, rel=1e-6)
+    assert scaled.energy == pytest.approx(plain.energy * 25.4**2, rel=1e-6)
