@@ -125,12 +125,16 @@ class Check:
         What is compared with what.
     proof : bool
         Whether the cases prove the claim, or are exact instances of it.
+    probe : callable, optional
+        Formula -> exact residuals at a few rational instances. Where two formulas differ in it, their residuals
+        differ; the mutation check asks it first, since it is fast.
     """
 
     cases: Callable[[Formula | None], Iterable[Case]]
     strength: Strength
     method: str
     proof: bool = False
+    probe: Callable[[Formula], Any] | None = None
 
 
 @dataclass(frozen=True)
@@ -177,15 +181,19 @@ class Counterexample:
         Names and exact values.
     printed, true : str
         What the claim gives there, and what is true.
+    own : str
+        The smallest instance within the paper's own setting, where that is another one.
     """
 
     values: tuple[tuple[str, str], ...]
     printed: str
     true: str
+    own: str = ""
 
     def __str__(self) -> str:
         where = ", ".join(f"{name} = {value}" for name, value in self.values)
-        return f"{where}: printed {self.printed}, true {self.true}"
+        also = f"; in the paper's own setting {self.own}" if self.own else ""
+        return f"{where}: printed {self.printed}, true {self.true}{also}"
 
 
 @dataclass(frozen=True)

@@ -84,12 +84,18 @@ def try_mutants(part: Part) -> MutationResult:
     formula = part.formula
     if formula is None:
         return MutationResult(0, 0, ())
-    original: list[Case] = list(part.check.cases(formula))
+    check = part.check
+    original: list[Case] | None = None
+    probed = check.probe(formula) if check.probe else None
     tried, explained, survivors = 0, 0, []
     for mutant in mutants(formula):
         tried += 1
         changed = Formula(mutant.relation, formula.variables, formula.assumptions)
-        if _differs(original, part.check.cases(changed)):
+        if check.probe and check.probe(changed) != probed:
+            continue
+        if original is None:
+            original = list(check.cases(formula))
+        if _differs(original, check.cases(changed)):
             continue
         if mutant.text in formula.equivalent:
             explained += 1

@@ -8,15 +8,18 @@ contact at u = 0, h_r = u_r, and for one at u = 1, h_r = 1 - u_(m-k+2-r).
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from functools import cache, partial
+from itertools import pairwise
 from typing import Any, Literal
 
 import sympy as sp
 
 from derivations.contact import A, contact_rows, contact_rows_from_pieces
 from derivations.splines import end_derivatives, end_derivatives_from_pieces, span_symbols
-from papers.ledger import Case, Check, Formula, Strength
+from papers.ledger import Case, Check, Counterexample, Formula, Strength
 from papers.lin2014 import printed as pr
+from papers.search import smallest_assignment
 
 ORDERS = range(2, 9)
 CUBIC = 4
@@ -42,6 +45,7 @@ def row_check(side: Side, row: int) -> Check:
         else "the row from end derivatives and the chain rule for symbolic orders and knots, and from the Cox-de Boor "
         "pieces for each pair of orders from 2 to 8",
         proof=True,
+        probe=partial(_row_probe, side, row),
     )
 
 
@@ -54,6 +58,25 @@ def derivative_check(surface: Literal["P", "R"], order: int) -> Check:
         "for each order from 2 to 8, over symbolic knots",
         proof=True,
     )
+
+
+# Rational values without any relation between them, at which mutants are told apart.
+_PROBE = {
+    **dict(zip(_H, (sp.Rational(2, 17), sp.Rational(5, 19), sp.Rational(11, 23)), strict=True)),
+    **dict(zip(_BASE_H, (sp.Rational(7, 3), sp.Rational(31, 7)), strict=True)),
+    **{pr.alpha: sp.Rational(13, 11), pr.beta: sp.Rational(13, 11)},
+    **dict(zip(_BASE_ROWS["start"] + _BASE_ROWS["end"], (3, 10, 29, 3, 10, 29), strict=True)),
+    **{pr.w_s: sp.Rational(5, 7), pr.t_s: sp.Rational(5, 7)},
+}
+
+
+def _row_probe(side: Side, row: int, formula: Formula) -> tuple[Any, ...]:
+    found = []
+    for k, k_b in ((4, 4), (5, 3), (3, 5)):
+        values = _symbols(side, k, k_b, _rows_from_pieces(row, k - 1, k_b - 1, side))
+        left, right = (x.subs(values, simultaneous=True).subs(_PROBE) for x in formula.relation.args)
+        found.append(left - right)
+    return tuple(found)
 
 
 def _row_cases(side: Side, row: int, formula: Formula | None) -> Iterator[Case]:
@@ -76,7 +99,8 @@ def _row_cases(side: Side, row: int, formula: Formula | None) -> Iterator[Case]:
 def _row_case(
     right: Any, side: Side, row: int, values: dict[Any, Any], label: str, *, own: bool, meets: bool
 ) -> Case:
-    residual = difference_form((right - _ROWS[side][row]).subs(values, simultaneous=True), _BASE_ROWS[side])
+    difference = (right - _ROWS[side][row]).subs(values, simultaneous=True)
+    residual = difference_form(difference, _BASE_ROWS[side], factored=own)
     return Case(label, residual == 0, own, meets, residual)
 
 
@@ -131,17 +155,97 @@ def _derivative_cases(surface: Literal["P", "R"], order: int, formula: Formula |
         yield Case(label, residual == 0, number in (k, CUBIC), residual=residual)
 
 
-def difference_form(expression: Any, rows: tuple[Any, ...]) -> Any:
+def difference_form(expression: Any, rows: tuple[Any, ...], *, factored: bool = True) -> Any:
     """Return an expression, linear in control rows, by differences of neighbouring rows and powers of alpha, beta.
 
-    Each coefficient is factored, so that zero is literally 0, and equal things look the same.
+    With its coefficients factored, equal things look the same. Zero is literally 0 in any case.
     """
     first, second, third = rows
     d1, d2 = sp.Symbol(f"({second}-{first})"), sp.Symbol(f"({third}-{second})")
     moved = expression.subs({second: first + d1, third: first + d1 + d2}, simultaneous=True)
     numerator, denominator = sp.fraction(sp.together(moved))
     generators = (first, d1, d2, pr.alpha, pr.beta)
+    polynomial = sp.Poly(numerator, *generators)
+    if not factored:
+        return polynomial.as_expr()
     return sum(
         (sp.factor(coefficient / denominator) * sp.prod(x**n for x, n in zip(generators, powers, strict=True)))
-        for powers, coefficient in sp.Poly(numerator, *generators).terms()
+        for powers, coefficient in polynomial.terms()
     )
+
+
+def row_counterexample(side: Side, row: int, formula: Formula) -> Counterexample | None:
+    """Search for the smallest instance at which a printed row is not the true one: orders first, then heights.
+
+    The one in the paper's own orders and knots (k = 4, no middle curve, so that u is 1/3, 2/3) is found beside it.
+    """
+    lowest = row + 1
+    for total in range(lowest + 2, 2 * ORDERS[-1] + 1):
+        for k in range(lowest, total - 1):
+            k_b = total - k
+            found = _counterexample_at(side, row, formula, (k, k_b), {})
+            if found is not None:
+                own = _counterexample_at(side, row, formula, (CUBIC, CUBIC), _OWN_KNOTS)
+                return found if own is None else replace(found, own=str(own))
+    return None
+
+
+_OWN_KNOTS = {_H[0]: sp.Rational(1, 3), _H[1]: sp.Rational(2, 3), _H[2]: sp.Integer(1)}
+
+
+def _counterexample_at(
+    side: Side, row: int, formula: Formula, orders: tuple[int, int], fixed: dict[Any, Any]
+) -> Counterexample | None:
+    values = _symbols(side, *orders, _rows_from_pieces(row, orders[0] - 1, orders[1] - 1, side))
+    wrong = _relation(formula).rhs.subs(values, simultaneous=True).subs(fixed)
+    true = values[_ROWS[side][row]].subs(fixed)
+    found = _smallest_difference(wrong, true)
+    if found is None:
+        return None
+    names = zip(("k", str(_base_order(side))), map(str, orders), strict=True)
+    at = _named(side, {h: x for h, x in fixed.items() if h != _H[2]} | found)
+    return Counterexample((*names, *at), str(wrong.subs(found)), str(true.subs(found)))
+
+
+def _smallest_difference(wrong: Any, true: Any) -> dict[Any, Any] | None:
+    residual = sp.numer(sp.together(wrong - true))
+    if sp.expand(residual) == 0:
+        return None
+    h = [x for x in _H if wrong.has(x) or true.has(x)]
+    b = [x for x in _BASE_H if wrong.has(x) or true.has(x)]
+    others = sorted((wrong - true).free_symbols - set(h) - set(b), key=str)
+    symbols = [*h, *b, *others]
+    evaluate = sp.lambdify(symbols, residual, "math")
+
+    def counts(at: dict[Any, Any]) -> bool:
+        # Inner knots of U lie strictly inside [0, 1] and increase; so do those of the base.
+        inside = all(at[x] < 1 for x in h)
+        increase = all(at[x] < at[y] for chain in (h, b) for x, y in pairwise(chain))
+        return inside and increase and evaluate(*(at[s] for s in symbols)) != 0
+
+    return smallest_assignment(symbols, counts)
+
+
+def _named(side: Side, at: dict[Any, Any]) -> tuple[tuple[str, str], ...]:
+    """Return an instance in the paper's letters."""
+    if side == "start":
+        names = {_H[0]: "u_1", _H[1]: "u_2", _BASE_H[0]: "w_{k_r} - w_s", _BASE_H[1]: "w_{k_r+1} - w_s"}
+    else:
+        names = dict(zip(_H, ("1 - u_{m-k+1}", "1 - u_{m-k}", "1 - u_{m-k-1}"), strict=True))
+        names |= {_BASE_H[0]: "t_{k_s} - t_s", _BASE_H[1]: "t_{k_s+1} - t_s"}
+    return tuple((names.get(symbol, str(symbol)), str(value)) for symbol, value in at.items())
+
+
+def derivative_counterexample(surface: Literal["P", "R"], order: int, formula: Formula) -> Counterexample | None:
+    """Search for the smallest instance at which a printed end derivative is not the true one: orders first."""
+    is_blend = surface == "P"
+    rows = (pr.P_0, pr.P_1, pr.P_2) if is_blend else (pr.R_0, pr.R_1, pr.R_2)
+    for k in range(2, ORDERS[-1] + 1):
+        true = (end_derivatives_from_pieces(2, k - 1)[order, :] * sp.Matrix(rows))[0]
+        knots = {pr.u_1: _H[0], pr.u_2: _H[1], pr.w_kr: pr.w_s + _H[0], w_kr1: pr.w_s + _H[1], pr.k: k, pr.k_r: k}
+        wrong = formula.relation.rhs.subs(knots, simultaneous=True)
+        found = _smallest_difference(wrong, true)
+        if found is not None:
+            values = (("k" if is_blend else "k_r", str(k)), *_named("start", found))
+            return Counterexample(values, str(wrong.subs(found)), str(true.subs(found)))
+    return None

@@ -1,0 +1,145 @@
+"""Deciding (15) to (18): against the chain rule, and by a judge that knows no parametrisation.
+
+The judge holds an implicit equation F = 0 of the base. A surface P touches the base along u = 0 to order n if F(P(u, v))
+has no power of u up to n, and if P is regular there: a surface without a tangent plane has no contact to speak of.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import partial
+from typing import Any
+
+import sympy as sp
+
+from derivations.contact import A, contact_conditions, special_conditions
+from papers.ledger import Case, Check, Counterexample, Formula, Strength
+from papers.lin2014 import printed as pr
+from papers.search import smallest_assignment
+
+_U, _V, _W = sp.symbols("u v w")
+_DERIVATIVES = {pr.R_w: (1, 0), pr.R_v: (0, 1), pr.R_ww: (2, 0), pr.R_wv: (1, 1), pr.R_vv: (0, 2)}
+_FUNCTIONS = (pr.p_1, pr.q_1, pr.p_2, pr.q_2)
+
+
+def general_check(order: int) -> Check:
+    """Return the check of (15) for order 1, of (16) for order 2: the conditions with general functions of v."""
+    return Check(
+        partial(_general_cases, order),
+        Strength.SYMBOLIC_ORDER,
+        f"the chain rule of order {order} for P(u, v) = R(w(u, v), v~(u, v)); instances judged by the implicit equation "
+        "of the base and by the regularity of P",
+        proof=True,
+    )
+
+
+def special_check(order: int) -> Check:
+    """Return the check of (17) for order 1, of (18) for order 2: a blend that leaves the base backwards."""
+    return Check(
+        partial(_special_cases, order),
+        Strength.SYMBOLIC_ORDER,
+        "the chain rule with p_1 = -alpha^2, since w falls where u grows",
+        proof=True,
+    )
+
+
+def special_counterexample(order: int, formula: Formula) -> Counterexample | None:
+    """Search for the smallest alpha and base derivative at which (17) or (18) is not the condition of the join."""
+    base = pr.R_w if order == 1 else pr.R_ww
+    true = special_conditions(order)[order].subs({A: pr.alpha**2, sp.Symbol(base.name): base})
+    right = formula.relation.rhs
+    found = smallest_assignment([pr.alpha, base], lambda at: (right - true).subs(at) != 0)
+    if found is None:
+        return None
+    values = tuple((str(s), str(x)) for s, x in found.items())
+    return Counterexample(values, str(right.subs(found)), str(true.subs(found)))
+
+
+def _special_cases(order: int, formula: Formula | None) -> Iterator[Case]:
+    base = pr.R_w if order == 1 else pr.R_ww
+    true = special_conditions(order)[order].subs({A: pr.alpha**2, sp.Symbol(base.name): base})
+    left, right = _sides(formula, pr.P_u if order == 1 else pr.P_uu)
+    residual = sp.factor(right - left - true)
+    yield Case(f"every alpha and R_{'w' * order}", residual == 0, residual=residual)
+
+
+def _sides(formula: Formula | None, subject: Any) -> tuple[Any, Any]:
+    """Return what the left side has besides the subject, and the right side."""
+    if formula is None:
+        raise ValueError("formula: found None, expected a relation")
+    return formula.relation.lhs - subject, formula.relation.rhs
+
+
+def _general_cases(order: int, formula: Formula | None) -> Iterator[Case]:
+    subject = pr.P_u if order == 1 else pr.P_uu
+    left, right = _sides(formula, subject)
+    names = {sp.Symbol(str(s)): s for s in _DERIVATIVES}
+    names |= {sp.Symbol(str(s).replace("_", "")): s for s in _FUNCTIONS}
+    residual = sp.expand(right - left - contact_conditions(order)[order].subs(names))
+    yield Case("chain rule, all p_i, q_i", residual == 0, residual=residual)
+    for label, base, implicit, functions, meets in _instances():
+        patch = _patch(order, base, functions, right)
+        touches = _touches(patch, implicit, order)
+        regular = _regular(patch)
+        yield Case(label, touches and regular, own=meets, meets=meets)
+    yield from _necessity()
+
+
+def _necessity() -> Iterator[Case]:
+    """Yield plane joins whose P_u must be p_1 R_w + q_1 R_v: the plane continued by (-u, v, 0), with two bases."""
+    leaving = sp.Matrix([-1, 0, 0])
+    for label, base, regular in (
+        ("necessity, a plane with R_w = (1, 0, 0)", sp.Matrix([_W, _V, 0]), True),
+        ("necessity, the same plane as (w^2, v, 0)", sp.Matrix([_W**2, _V, 0]), False),
+    ):
+        span = base.jacobian([_W, _V]).subs(_W, 0)
+        exists = span.rank() == span.row_join(leaving).rank()
+        yield Case(label, exists, own=regular, meets=regular)
+
+
+def _instances() -> Iterator[tuple[str, sp.Matrix, Any, dict[Any, Any], bool]]:
+    """Yield label, base, its implicit equation, functions of v, and whether p_1 has no zero and R is regular."""
+    third, half = sp.Rational(1, 3), sp.Rational(1, 2)
+    x, y, z = sp.symbols("x y z")
+    height = x**2 - x * y / 2 + y**3 / 3 + y / 7
+    across, along = _W + third * _W**2 + half * _W * _V, _V + _W**2 / 5 + third * _V**2
+    base = sp.Matrix([across, along, height.subs({x: across, y: along})])
+    implicit = z - height
+    choices = [
+        ("p_1 = -1", (-1, 0, 0, 0), True),
+        ("p_1 = -2/3, q_1 = 1/2, p_2 = 1, q_2 = -1/3", (-2 * third, half, 1, -third), True),
+        ("p_1 = 1: a fold, but of one tangent plane", (1, 0, 0, 0), True),
+        ("p_1 = -1-v, q_1 = v, p_2 = v^2, q_2 = 1-v", (-1 - _V, _V, _V**2, 1 - _V), True),
+        ("p_1 = 0, the rest zero", (0, 0, 0, 0), False),
+        ("p_1 = 0, q_1 = 1", (0, 1, 0, 0), False),
+        ("p_1 = v - 1/2, zero at one point", (_V - half, 0, 0, 0), False),
+    ]
+    for label, values, meets in choices:
+        yield label, base, implicit, dict(zip(_FUNCTIONS, values, strict=True)), meets
+    flat = sp.Matrix([_W**2, _V, 0])
+    yield "R_w = 0 on the contact", flat, z, dict(zip(_FUNCTIONS, (-1, 0, 0, 0), strict=True)), False
+
+
+def _patch(order: int, base: sp.Matrix, functions: dict[Any, Any], condition: Any) -> sp.Matrix:
+    """Return C(v) + u P_u + u^2/2 P_uu with the last derivative by the condition, those below by the chain rule."""
+    derivatives = {s: sp.diff(base, _W, i, _V, j).subs(_W, 0) for s, (i, j) in _DERIVATIVES.items()}
+    patch = base.subs(_W, 0)
+    if order == 2:
+        first = functions[pr.p_1] * derivatives[pr.R_w] + functions[pr.q_1] * derivatives[pr.R_v]
+        patch = patch + _U * first
+    last = sp.zeros(3, 1)
+    for s, vector in derivatives.items():
+        last += sp.sympify(condition).coeff(s).subs(functions) * vector
+    return patch + _U**order / sp.factorial(order) * last
+
+
+def _touches(patch: sp.Matrix, implicit: Any, order: int) -> bool:
+    x, y, z = sp.symbols("x y z")
+    along = sp.Poly(implicit.subs(dict(zip((x, y, z), patch, strict=True)), simultaneous=True), _U, _V)
+    return all(powers[0] > order for powers, _ in along.terms() if along != 0)
+
+
+def _regular(patch: sp.Matrix) -> bool:
+    """Whether P_u and P_v are independent at u = 0 for eleven rational v over [0, 1], 1/2 among them."""
+    normal = patch.diff(_U).subs(_U, 0).cross(patch.diff(_V).subs(_U, 0))
+    return all(any(normal.subs(_V, sp.Rational(i, 10))) for i in range(11))
