@@ -23,7 +23,7 @@ from functools import cached_property
 from itertools import pairwise
 from typing import Any
 
-from sympy import Expr, Function, Matrix, Poly, Symbol, factor, sympify
+from sympy import Expr, Function, IndexedBase, Matrix, Poly, Sum, Symbol, factor, sympify
 from sympy.polys.constructor import construct_domain
 
 from derivations.splines import Span, X, basis_pieces, exact_knots
@@ -275,6 +275,43 @@ def energy_matrix(surface: ExactSurface) -> Matrix:
             row.append(total)
         rows.append(Matrix.hstack(*row))
     return Matrix.vstack(*rows)
+
+
+def quadratic_form() -> Expr:
+    """Return the energy of one coordinate over all control points, numbered by s and t through the pairs (i, j).
+
+    Examples
+    --------
+    >>> quadratic_form()
+    Sum(K[s, t]*P[s]*P[t], (s, 0, N), (t, 0, N))
+    """
+    s, t, last = (Symbol(name, integer=True) for name in ("s", "t", "N"))
+    matrix, points = IndexedBase("K"), IndexedBase("P")
+    return Sum(matrix[s, t] * points[s] * points[t], (s, 0, last), (t, 0, last))
+
+
+def stationarity_condition() -> Expr:
+    """Return what vanishes for each free control point r: half the derivative of `quadratic_form` by P_r.
+
+    Notes
+    -----
+    K is symmetric: exchanging (i, j) and (i', j') transposes each integral.
+
+    Examples
+    --------
+    >>> stationarity_condition()
+    Sum(K[r, t]*P[t], (t, 0, N))
+    """
+    r, s, t, last = (Symbol(name, integer=True) for name in ("r", "s", "t", "N"))
+    matrix, points = IndexedBase("K"), IndexedBase("P")
+    gradient = quadratic_form().diff(points[r]).doit()
+    # The derivative is a Piecewise whose first case is 0 <= r <= N.
+    inside = gradient.args[0][0] / 2
+    symmetric = inside.replace(
+        lambda e: e == Sum(matrix[s, r] * points[s], (s, 0, last)),
+        lambda e: Sum(matrix[r, t] * points[t], (t, 0, last)),
+    )
+    return symmetric.expand()
 
 
 def stationarity_system(energy: Expr, free: Sequence[Symbol], fixed: Sequence[Symbol]) -> tuple[Matrix, Matrix]:

@@ -12,6 +12,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import pairwise
+from keyword import iskeyword
 from typing import Any
 
 from sympy import Expr, Float, Matrix, Poly, Rational, Symbol, cancel, diag, factor, factorial, sympify
@@ -68,7 +69,7 @@ def exact_knots(knots: Sequence[Any]) -> tuple[Expr, ...]:
 
 def _exact(knot: Any, index: int) -> Expr:
     if isinstance(knot, str):
-        if knot.isidentifier() and knot != X.name:
+        if knot.isidentifier() and knot != X.name and not iskeyword(knot):
             return Symbol(knot)
         try:
             return Rational(Fraction(knot))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from sympy import Expr, Matrix, Symbol
+from sympy import Expr, Matrix, Symbol, diag
 
 from derivations.codegen.python_backends import CASADI, NUMPY, python_module
 from derivations.codegen.routines import Argument, Routine, plain_symbols
@@ -25,51 +25,67 @@ def _rows(matrix: Matrix) -> tuple[tuple[Expr, ...], ...]:
     return tuple(plain_symbols(list(matrix.row(i))) for i in range(matrix.rows))
 
 
-def end_derivative_routine(order: int) -> Routine:
-    """Return `end_derivatives_n(p, h1, .., hn)`."""
+def _degree(name: str, value: int | None, meaning: str, least: int = 1) -> tuple[int | Symbol, list[Argument]]:
+    """Return a degree and the arguments it needs: none where it is a number."""
+    if value is not None:
+        return value, []
+    return Symbol(name), [Argument(name, "degree", meaning, least)]
+
+
+def end_derivative_routine(order: int, degree: int | None = None, end: str = "start") -> Routine:
+    """Return `end_derivatives_n(p, h1, .., hn)`, without p where the degree is given."""
+    p, arguments = _degree("p", degree, "Degree.")
+    matrix = end_derivatives(order, p, span_symbols(order))
+    if end == "end":
+        matrix = diag(*((-1) ** d for d in range(order + 1))) * matrix
+    counted = ", rows and spans counted from there" if end == "end" else ""
     return Routine(
         name=f"end_derivatives_{order}",
-        summary=f"Derivatives of order 0..{order} at the clamped start; [d, i] multiplies row i in the d-th.",
+        summary=f"Derivatives of order 0..{order} at the clamped {end}{counted}; [d, i] multiplies row i in the d-th.",
         source="Cox-de Boor, derivations/splines.py",
-        arguments=(Argument("p", "degree", "Degree."), *_spans("h", order, "the knots", "p")),
+        arguments=(*arguments, *_spans("h", order, "the knots", str(p))),
         form="matrix",
-        values=_rows(end_derivatives(order, Symbol("p"), span_symbols(order))),
+        values=_rows(matrix),
         names=("D",),
     )
 
 
-def contact_routine(order: int) -> Routine:
-    """Return `contact_rows_n(a, p, h1, .., hn, q, H1, .., Hn)`, without arguments for order 0."""
+def contact_routine(order: int, degree: int | None = None, base_degree: int | None = None) -> Routine:
+    """Return `contact_rows_n(a, p, h1, .., hn, q, H1, .., Hn)`, without p or q where given, bare for order 0."""
+    p, blend = _degree("p", degree, "Degree of the blend in u.", order)
+    q, base = _degree("q", base_degree, "Degree of the base across the contact.")
     arguments: tuple[Argument, ...] = ()
     if order:
         arguments = (
             Argument("a", "number", "alpha^2: the blend leaves the base backwards, P_u = -a R_w."),
-            Argument("p", "degree", "Degree of the blend in u.", order),
-            *_spans("h", order, "the blend, counted from the contact", "p"),
-            Argument("q", "degree", "Degree of the base across the contact."),
-            *_spans("H", order, "the base; any positive number where there is no such knot", "q"),
+            *blend,
+            *_spans("h", order, "the blend, counted from the contact", str(p)),
+            *base,
+            *_spans("H", order, "the base; any positive number where there is no such knot", str(q)),
         )
-    rows = contact_rows(order, Symbol("p"), span_symbols(order), Symbol("q"), span_symbols(order, "H"))
     return Routine(
         name=f"contact_rows_{order}",
         summary=f"Rows of a blend in G{order} contact: P_i = sum_j C[i, j] R_j, counted from the contact.",
         source=f"chain rule of order {order} with p1 = -a, the rest zero; derivations/contact.py",
         arguments=arguments,
         form="matrix",
-        values=_rows(rows),
+        values=_rows(contact_rows(order, p, span_symbols(order), q, span_symbols(order, "H"))),
         names=("C",),
     )
 
 
-def conditions_routine() -> Routine:
-    """Return `contact_derivatives_2`: the general conditions of order 1 and 2."""
-    _, first, second = contact_conditions(2)
-    vectors = ("w", "v", "ww", "wv", "vv")
-    values = plain_symbols((first, second), {f"R_{name}": f"r_{name}" for name in vectors})
-    functions = (("p1", "w_u"), ("q1", "v~_u"), ("p2", "w_uu"), ("q2", "v~_uu"))
+def conditions_routine(order: int = 2) -> Routine:
+    """Return `contact_derivatives_n`: the general conditions of order 1..n."""
+    conditions = contact_conditions(order)[1:]
+    vectors = ["w" * i + "v" * (d - i) for d in range(1, order + 1) for i in range(d, -1, -1)]
+    values = plain_symbols(conditions, {f"R_{name}": f"r_{name}" for name in vectors})
+    functions = [
+        (f"{name}{d}", f"{of}_{'u' * d}") for d in range(1, order + 1) for name, of in (("p", "w"), ("q", "v~"))
+    ]
+    names = [f"p_{'u' * d}" for d in range(1, order + 1)]
     return Routine(
-        name="contact_derivatives_2",
-        summary="P_u and P_uu along the contact for general p_i, q_i, where P(u, v) = R(w(u, v), v~(u, v)).",
+        name=f"contact_derivatives_{order}",
+        summary=f"{', '.join(names)} along the contact for general p_i, q_i, where P(u, v) = R(w(u, v), v~(u, v)).",
         source="chain rule, derivations/contact.py; equations (15) and (16)",
         arguments=(
             *(Argument(f"r_{name}", "vector", f"R_{name} along the contact.") for name in vectors),
@@ -77,7 +93,7 @@ def conditions_routine() -> Routine:
         ),
         form="vectors",
         values=tuple((value,) for value in values),
-        names=("p_u", "p_uu"),
+        names=tuple(names),
     )
 
 

@@ -154,7 +154,7 @@ NUMPY = Backend(
         "result": "FloatArray",
     },
     checks=_NUMPY_CHECKS,
-    shapes=_SHAPES | {"vector": "shape (..., 3)", "function": "a number, or shape (...)"},
+    shapes=_SHAPES | {"vector": "shape (..., 3), the same for all", "function": "a number, or shape (...)"},
     matrix=lambda rows: (
         "np.array",
         ["[" + ", ".join(f"[{', '.join(row)}]" for row in rows) + "]", "dtype=np.float64"],
@@ -192,6 +192,23 @@ def python_function(routine: Routine, backend: Backend) -> str:
     return "\n".join(lines) + "\n"
 
 
+def python_text(routines: Sequence[Routine], backend: Backend) -> str:
+    """Return imports, the helpers that check arguments, and the functions: runnable as it stands.
+
+    Parameters
+    ----------
+    routines : sequence of Routine
+    backend : Backend
+        `NUMPY` or `CASADI`.
+    """
+    functions = [python_function(routine, backend) for routine in routines]
+    helpers = [text for text in backend.checks.values() if _called(text, functions)]
+    # A helper may call another.
+    helpers = [text for text in backend.checks.values() if _called(text, [*functions, *helpers])]
+    body = "\n\n".join([*helpers, *functions])
+    return f"{_needed_imports(backend, body)}\n\n\n{body}"
+
+
 def python_module(title: str, sources: Sequence[str], routines: Sequence[Routine], backend: Backend) -> str:
     """Return the text of one generated file.
 
@@ -205,19 +222,13 @@ def python_module(title: str, sources: Sequence[str], routines: Sequence[Routine
     backend : Backend
     """
     operations = sum(routine_steps(routine).operations for routine in routines)
-    header = (
+    return (
         f'"""{title} ({backend.title}).\n\n'
         f"Written by `semispline generate` from {' and '.join(sources)}.\n"
         "Do not edit: change the derivation and generate again.\n"
         f'Operations: {operations} in {len(routines)} functions.\n"""\n\n'
-        "from __future__ import annotations\n\n"
+        f"from __future__ import annotations\n\n{python_text(routines, backend)}"
     )
-    functions = [python_function(routine, backend) for routine in routines]
-    helpers = [text for text in backend.checks.values() if _called(text, functions)]
-    helpers = [text for text in backend.checks.values() if _called(text, [*functions, *helpers])]
-    body = "\n\n".join([*helpers, *functions])
-    imports = _needed_imports(backend, body)
-    return f"{header}{imports}\n\n\n{body}"
 
 
 def _called(helper: str, texts: Sequence[str]) -> bool:
@@ -284,7 +295,7 @@ def _check_lines(arguments: Sequence[Argument], backend: Backend) -> list[str]:
     blocks = [argument.name for argument in arguments if argument.kind == "block"]
     for argument in arguments:
         extra = {"degree": f", {argument.least}"}.get(argument.kind, "")
-        if argument.kind == "function" and backend is NUMPY:
+        if backend is NUMPY and argument.kind in ("vector", "function") and argument.name != vectors[0]:
             extra = f", {vectors[0]}"
         if argument.kind != "block":
             helper = f"_{argument.kind}"
@@ -299,9 +310,7 @@ def _assignment(name: str, value: Expr) -> list[str]:
     if len(line) <= LINE_LENGTH:
         return [line]
     broken = [f"        {term}" for term in summands(value)]
-    if len(broken) == 1 or max(map(len, broken)) > LINE_LENGTH:
-        raise ValueError(f"{name}: no way to break {value} into lines of {LINE_LENGTH}")
-    return [f"    {name} = (", *broken, "    )"]
+    return [f"    {name} = (", *broken, "    )"] if len(broken) > 1 else [line]
 
 
 def _result(routine: Routine, backend: Backend, entries: Sequence[Sequence[Expr]]) -> list[str]:
@@ -321,8 +330,8 @@ def _result(routine: Routine, backend: Backend, entries: Sequence[Sequence[Expr]
             if value.is_Atom:
                 names.append(f"{value}.0" if value.is_Integer else expression_text(value))
             else:
-                names.append(f"c{i}{j}")
-                lines += _assignment(f"c{i}{j}", value)
+                names.append(f"c{i}_{j}")
+                lines += _assignment(f"c{i}_{j}", value)
         rows.append(names)
     name, arguments = backend.matrix(rows)
     return [*lines, _call(f"    return {name}", arguments, "")]

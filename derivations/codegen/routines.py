@@ -83,8 +83,9 @@ class Steps:
 def routine_steps(routine: Routine) -> Steps:
     """Return the body with common subexpressions computed once; the same at every run."""
     flat = [value for row in routine.values for value in row]
+    taken = {Symbol(argument.name) for argument in routine.arguments}
     # `order="canonical"` sorts arguments before looking for what they share.
-    shared, reduced = cse(flat, symbols=numbered_symbols("x"), order="canonical")
+    shared, reduced = cse(flat, symbols=numbered_symbols("x", exclude=taken), order="canonical")
     entries, rest = [], list(reduced)
     for row in routine.values:
         entries.append(tuple(rest[: len(row)]))

@@ -71,8 +71,8 @@ def end_derivatives_1(p: Any, h1: Any) -> Any:
     p = _degree("p", p, 1)
     h1 = _span("h1", h1)
     x0 = p / h1
-    c10 = -x0
-    return casadi.vertcat(casadi.horzcat(1.0, 0.0), casadi.horzcat(c10, x0))
+    c1_0 = -x0
+    return casadi.vertcat(casadi.horzcat(1.0, 0.0), casadi.horzcat(c1_0, x0))
 
 
 def end_derivatives_2(p: Any, h1: Any, h2: Any) -> Any:
@@ -105,10 +105,10 @@ def end_derivatives_2(p: Any, h1: Any, h2: Any) -> Any:
     x1 = p - 1
     x2 = p * x1 / h1**2
     x3 = 1 / h2
-    c10 = -x0
-    c21 = -x2 * x3 * (h1 + h2)
-    c22 = x0 * x1 * x3
-    return casadi.vertcat(casadi.horzcat(1.0, 0.0, 0.0), casadi.horzcat(c10, x0, 0.0), casadi.horzcat(x2, c21, c22))
+    c1_0 = -x0
+    c2_1 = -x2 * x3 * (h1 + h2)
+    c2_2 = x0 * x1 * x3
+    return casadi.vertcat(casadi.horzcat(1.0, 0.0, 0.0), casadi.horzcat(c1_0, x0, 0.0), casadi.horzcat(x2, c2_1, c2_2))
 
 
 def end_derivatives_3(p: Any, h1: Any, h2: Any, h3: Any) -> Any:
@@ -153,17 +153,17 @@ def end_derivatives_3(p: Any, h1: Any, h2: Any, h3: Any) -> Any:
     x10 = 1 / x9
     x11 = h1 * h2
     x12 = x7 / h3
-    c10 = -x0
-    c21 = -x4 * x5 * (h1 + h2)
-    c30 = -x8
-    c31 = x10 * x8 * (x1 + x11 + x9)
-    c32 = -x10 * x12 * x4 * (h1 * h3 + h2 * h3 + x11)
-    c33 = x12 * x6
+    c1_0 = -x0
+    c2_1 = -x4 * x5 * (h1 + h2)
+    c3_0 = -x8
+    c3_1 = x10 * x8 * (x1 + x11 + x9)
+    c3_2 = -x10 * x12 * x4 * (h1 * h3 + h2 * h3 + x11)
+    c3_3 = x12 * x6
     return casadi.vertcat(
         casadi.horzcat(1.0, 0.0, 0.0, 0.0),
-        casadi.horzcat(c10, x0, 0.0, 0.0),
-        casadi.horzcat(x4, c21, x6, 0.0),
-        casadi.horzcat(c30, c31, c32, c33),
+        casadi.horzcat(c1_0, x0, 0.0, 0.0),
+        casadi.horzcat(x4, c2_1, x6, 0.0),
+        casadi.horzcat(c3_0, c3_1, c3_2, c3_3),
     )
 
 
@@ -212,9 +212,9 @@ def contact_rows_1(a: Any, p: Any, h1: Any, q: Any, H1: Any) -> Any:
     q = _degree("q", q, 1)
     H1 = _span("H1", H1)
     x0 = a * h1 * q / (H1 * p)
-    c10 = x0 + 1
-    c11 = -x0
-    return casadi.vertcat(casadi.horzcat(1.0, 0.0), casadi.horzcat(c10, c11))
+    c1_0 = x0 + 1
+    c1_1 = -x0
+    return casadi.vertcat(casadi.horzcat(1.0, 0.0), casadi.horzcat(c1_0, c1_1))
 
 
 def contact_rows_2(a: Any, p: Any, h1: Any, h2: Any, q: Any, H1: Any, H2: Any) -> Any:
@@ -264,12 +264,14 @@ def contact_rows_2(a: Any, p: Any, h1: Any, h2: Any, q: Any, H1: Any, H2: Any) -
     x6 = a**2 * h2 * x1 * (q - 1) / (p - 1)
     x7 = x6 / H1**2
     x8 = 1 / H2
-    c10 = x4 + 1
-    c11 = -x4
-    c20 = x5 + x7 + 1
-    c21 = -x5 - x7 * x8 * (H1 + H2)
-    c22 = x2 * x6 * x8
-    return casadi.vertcat(casadi.horzcat(1.0, 0.0, 0.0), casadi.horzcat(c10, c11, 0.0), casadi.horzcat(c20, c21, c22))
+    c1_0 = x4 + 1
+    c1_1 = -x4
+    c2_0 = x5 + x7 + 1
+    c2_1 = -x5 - x7 * x8 * (H1 + H2)
+    c2_2 = x2 * x6 * x8
+    return casadi.vertcat(
+        casadi.horzcat(1.0, 0.0, 0.0), casadi.horzcat(c1_0, c1_1, 0.0), casadi.horzcat(c2_0, c2_1, c2_2)
+    )
 
 
 def contact_rows_3(a: Any, p: Any, h1: Any, h2: Any, h3: Any, q: Any, H1: Any, H2: Any, H3: Any) -> Any:
@@ -341,27 +343,27 @@ def contact_rows_3(a: Any, p: Any, h1: Any, h2: Any, h3: Any, q: Any, H1: Any, H
     x22 = 1 / x21
     x23 = H1 * H2
     x24 = x19 / H3
-    c10 = x3 + 1
-    c11 = -x3
-    c20 = x12 + x5 + 1
-    c21 = -x12 * x14 - x5
-    c22 = x11 * x15
-    c30 = x16 + x18 + x20 + 1
-    c31 = -x14 * x18 - x16 - x20 * x22 * (x21 + x23 + x6)
-    c32 = x15 * x17 + x22 * x24 * x7 * (H1 * H3 + H2 * H3 + x23)
-    c33 = -x15 * x24
+    c1_0 = x3 + 1
+    c1_1 = -x3
+    c2_0 = x12 + x5 + 1
+    c2_1 = -x12 * x14 - x5
+    c2_2 = x11 * x15
+    c3_0 = x16 + x18 + x20 + 1
+    c3_1 = -x14 * x18 - x16 - x20 * x22 * (x21 + x23 + x6)
+    c3_2 = x15 * x17 + x22 * x24 * x7 * (H1 * H3 + H2 * H3 + x23)
+    c3_3 = -x15 * x24
     return casadi.vertcat(
         casadi.horzcat(1.0, 0.0, 0.0, 0.0),
-        casadi.horzcat(c10, c11, 0.0, 0.0),
-        casadi.horzcat(c20, c21, c22, 0.0),
-        casadi.horzcat(c30, c31, c32, c33),
+        casadi.horzcat(c1_0, c1_1, 0.0, 0.0),
+        casadi.horzcat(c2_0, c2_1, c2_2, 0.0),
+        casadi.horzcat(c3_0, c3_1, c3_2, c3_3),
     )
 
 
 def contact_derivatives_2(
     r_w: Any, r_v: Any, r_ww: Any, r_wv: Any, r_vv: Any, p1: Any, q1: Any, p2: Any, q2: Any
 ) -> tuple[Any, Any]:
-    """P_u and P_uu along the contact for general p_i, q_i, where P(u, v) = R(w(u, v), v~(u, v)).
+    """p_u, p_uu along the contact for general p_i, q_i, where P(u, v) = R(w(u, v), v~(u, v)).
 
     Parameters
     ----------

@@ -71,8 +71,8 @@ def end_derivatives_1(p: float, h1: float) -> FloatArray:
     p = _degree("p", p, 1)
     h1 = _span("h1", h1)
     x0 = p / h1
-    c10 = -x0
-    return np.array([[1.0, 0.0], [c10, x0]], dtype=np.float64)
+    c1_0 = -x0
+    return np.array([[1.0, 0.0], [c1_0, x0]], dtype=np.float64)
 
 
 def end_derivatives_2(p: float, h1: float, h2: float) -> FloatArray:
@@ -105,10 +105,10 @@ def end_derivatives_2(p: float, h1: float, h2: float) -> FloatArray:
     x1 = p - 1
     x2 = p * x1 / h1**2
     x3 = 1 / h2
-    c10 = -x0
-    c21 = -x2 * x3 * (h1 + h2)
-    c22 = x0 * x1 * x3
-    return np.array([[1.0, 0.0, 0.0], [c10, x0, 0.0], [x2, c21, c22]], dtype=np.float64)
+    c1_0 = -x0
+    c2_1 = -x2 * x3 * (h1 + h2)
+    c2_2 = x0 * x1 * x3
+    return np.array([[1.0, 0.0, 0.0], [c1_0, x0, 0.0], [x2, c2_1, c2_2]], dtype=np.float64)
 
 
 def end_derivatives_3(p: float, h1: float, h2: float, h3: float) -> FloatArray:
@@ -153,14 +153,14 @@ def end_derivatives_3(p: float, h1: float, h2: float, h3: float) -> FloatArray:
     x10 = 1 / x9
     x11 = h1 * h2
     x12 = x7 / h3
-    c10 = -x0
-    c21 = -x4 * x5 * (h1 + h2)
-    c30 = -x8
-    c31 = x10 * x8 * (x1 + x11 + x9)
-    c32 = -x10 * x12 * x4 * (h1 * h3 + h2 * h3 + x11)
-    c33 = x12 * x6
+    c1_0 = -x0
+    c2_1 = -x4 * x5 * (h1 + h2)
+    c3_0 = -x8
+    c3_1 = x10 * x8 * (x1 + x11 + x9)
+    c3_2 = -x10 * x12 * x4 * (h1 * h3 + h2 * h3 + x11)
+    c3_3 = x12 * x6
     return np.array(
-        [[1.0, 0.0, 0.0, 0.0], [c10, x0, 0.0, 0.0], [x4, c21, x6, 0.0], [c30, c31, c32, c33]], dtype=np.float64
+        [[1.0, 0.0, 0.0, 0.0], [c1_0, x0, 0.0, 0.0], [x4, c2_1, x6, 0.0], [c3_0, c3_1, c3_2, c3_3]], dtype=np.float64
     )
 
 
@@ -209,9 +209,9 @@ def contact_rows_1(a: float, p: float, h1: float, q: float, H1: float) -> FloatA
     q = _degree("q", q, 1)
     H1 = _span("H1", H1)
     x0 = a * h1 * q / (H1 * p)
-    c10 = x0 + 1
-    c11 = -x0
-    return np.array([[1.0, 0.0], [c10, c11]], dtype=np.float64)
+    c1_0 = x0 + 1
+    c1_1 = -x0
+    return np.array([[1.0, 0.0], [c1_0, c1_1]], dtype=np.float64)
 
 
 def contact_rows_2(a: float, p: float, h1: float, h2: float, q: float, H1: float, H2: float) -> FloatArray:
@@ -261,12 +261,12 @@ def contact_rows_2(a: float, p: float, h1: float, h2: float, q: float, H1: float
     x6 = a**2 * h2 * x1 * (q - 1) / (p - 1)
     x7 = x6 / H1**2
     x8 = 1 / H2
-    c10 = x4 + 1
-    c11 = -x4
-    c20 = x5 + x7 + 1
-    c21 = -x5 - x7 * x8 * (H1 + H2)
-    c22 = x2 * x6 * x8
-    return np.array([[1.0, 0.0, 0.0], [c10, c11, 0.0], [c20, c21, c22]], dtype=np.float64)
+    c1_0 = x4 + 1
+    c1_1 = -x4
+    c2_0 = x5 + x7 + 1
+    c2_1 = -x5 - x7 * x8 * (H1 + H2)
+    c2_2 = x2 * x6 * x8
+    return np.array([[1.0, 0.0, 0.0], [c1_0, c1_1, 0.0], [c2_0, c2_1, c2_2]], dtype=np.float64)
 
 
 def contact_rows_3(
@@ -340,17 +340,18 @@ def contact_rows_3(
     x22 = 1 / x21
     x23 = H1 * H2
     x24 = x19 / H3
-    c10 = x3 + 1
-    c11 = -x3
-    c20 = x12 + x5 + 1
-    c21 = -x12 * x14 - x5
-    c22 = x11 * x15
-    c30 = x16 + x18 + x20 + 1
-    c31 = -x14 * x18 - x16 - x20 * x22 * (x21 + x23 + x6)
-    c32 = x15 * x17 + x22 * x24 * x7 * (H1 * H3 + H2 * H3 + x23)
-    c33 = -x15 * x24
+    c1_0 = x3 + 1
+    c1_1 = -x3
+    c2_0 = x12 + x5 + 1
+    c2_1 = -x12 * x14 - x5
+    c2_2 = x11 * x15
+    c3_0 = x16 + x18 + x20 + 1
+    c3_1 = -x14 * x18 - x16 - x20 * x22 * (x21 + x23 + x6)
+    c3_2 = x15 * x17 + x22 * x24 * x7 * (H1 * H3 + H2 * H3 + x23)
+    c3_3 = -x15 * x24
     return np.array(
-        [[1.0, 0.0, 0.0, 0.0], [c10, c11, 0.0, 0.0], [c20, c21, c22, 0.0], [c30, c31, c32, c33]], dtype=np.float64
+        [[1.0, 0.0, 0.0, 0.0], [c1_0, c1_1, 0.0, 0.0], [c2_0, c2_1, c2_2, 0.0], [c3_0, c3_1, c3_2, c3_3]],
+        dtype=np.float64,
     )
 
 
@@ -365,19 +366,19 @@ def contact_derivatives_2(
     p2: ArrayLike,
     q2: ArrayLike,
 ) -> tuple[FloatArray, FloatArray]:
-    """P_u and P_uu along the contact for general p_i, q_i, where P(u, v) = R(w(u, v), v~(u, v)).
+    """p_u, p_uu along the contact for general p_i, q_i, where P(u, v) = R(w(u, v), v~(u, v)).
 
     Parameters
     ----------
-    r_w : shape (..., 3)
+    r_w : shape (..., 3), the same for all
         R_w along the contact.
-    r_v : shape (..., 3)
+    r_v : shape (..., 3), the same for all
         R_v along the contact.
-    r_ww : shape (..., 3)
+    r_ww : shape (..., 3), the same for all
         R_ww along the contact.
-    r_wv : shape (..., 3)
+    r_wv : shape (..., 3), the same for all
         R_wv along the contact.
-    r_vv : shape (..., 3)
+    r_vv : shape (..., 3), the same for all
         R_vv along the contact.
     p1 : a number, or shape (...)
         w_u along the contact.
@@ -390,8 +391,8 @@ def contact_derivatives_2(
 
     Returns
     -------
-    p_u : shape (..., 3)
-    p_uu : shape (..., 3)
+    p_u : shape (..., 3), the same for all
+    p_uu : shape (..., 3), the same for all
 
     Raises
     ------
@@ -401,10 +402,10 @@ def contact_derivatives_2(
     Source: chain rule, derivations/contact.py; equations (15) and (16). Operations: 16.
     """
     r_w = _vector("r_w", r_w)
-    r_v = _vector("r_v", r_v)
-    r_ww = _vector("r_ww", r_ww)
-    r_wv = _vector("r_wv", r_wv)
-    r_vv = _vector("r_vv", r_vv)
+    r_v = _vector("r_v", r_v, r_w)
+    r_ww = _vector("r_ww", r_ww, r_w)
+    r_wv = _vector("r_wv", r_wv, r_w)
+    r_vv = _vector("r_vv", r_vv, r_w)
     p1 = _function("p1", p1, r_w)
     q1 = _function("q1", q1, r_w)
     p2 = _function("p2", p2, r_w)

@@ -41,11 +41,11 @@ def thin_plate_density(p_uu: ArrayLike, p_uv: ArrayLike, p_vv: ArrayLike) -> Flo
 
     Parameters
     ----------
-    p_uu : shape (..., 3)
+    p_uu : shape (..., 3), the same for all
         P_uu.
-    p_uv : shape (..., 3)
+    p_uv : shape (..., 3), the same for all
         P_uv.
-    p_vv : shape (..., 3)
+    p_vv : shape (..., 3), the same for all
         P_vv.
 
     Returns
@@ -60,8 +60,8 @@ def thin_plate_density(p_uu: ArrayLike, p_uv: ArrayLike, p_vv: ArrayLike) -> Flo
     Source: equation (11), derivations/energy.py. Operations: 6.
     """
     p_uu = _vector("p_uu", p_uu)
-    p_uv = _vector("p_uv", p_uv)
-    p_vv = _vector("p_vv", p_vv)
+    p_uv = _vector("p_uv", p_uv, p_uu)
+    p_vv = _vector("p_vv", p_vv, p_uu)
     density = p_uu**2 + 2 * p_uv**2 + p_vv**2
     return np.asarray(np.sum(density, axis=-1))
 

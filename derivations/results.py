@@ -1,0 +1,238 @@
+"""Derived results by name, for whoever wants to quote one: as equations, and as code where they are code."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, Literal
+
+from sympy import Eq, Expr, Poly, Symbol, factor, latex, sstr, sympify
+
+from derivations import contact, energy, splines
+from derivations.codegen import catalogue
+from derivations.codegen.c_backend import c_function
+from derivations.codegen.expressions import expression_text
+from derivations.codegen.python_backends import CASADI, NUMPY, python_text
+from derivations.codegen.routines import Argument, Routine, plain_symbols
+
+Form = Literal["text", "latex", "numpy", "casadi", "c"]
+FORMS: tuple[Form, ...] = ("text", "latex", "numpy", "casadi", "c")
+
+
+@dataclass(frozen=True)
+class Request:
+    """What is asked of a result; each result uses what concerns it.
+
+    Parameters
+    ----------
+    order : int
+        Order of contact, or highest derivative, 0..3.
+    degree, base_degree : int or None
+        p and q; symbols where None (3 where a number is needed).
+    knots, other_knots : tuple of str or None
+        Knot vectors: numbers, fractions, names.
+    other_degree : int or None
+        Degree over `other_knots`.
+    breakpoints : tuple of str or None
+        Ascending order of all knots, where both vectors hold names.
+    derivative : int
+        Of the basis functions in Gram entries.
+    end : {"start", "end"}
+        Where derivatives are taken.
+    """
+
+    order: int = 2
+    degree: int | None = None
+    base_degree: int | None = None
+    knots: tuple[str, ...] | None = None
+    other_knots: tuple[str, ...] | None = None
+    other_degree: int | None = None
+    breakpoints: tuple[str, ...] | None = None
+    derivative: int = 0
+    end: str = "start"
+
+    def __post_init__(self) -> None:
+        if not 0 <= self.order <= catalogue.MAX_ORDER:
+            raise ValueError(f"order: found {self.order}, expected 0..{catalogue.MAX_ORDER}")
+        for name in ("degree", "base_degree", "other_degree"):
+            value = getattr(self, name)
+            if value is not None and value < 1:
+                raise ValueError(f"{name}: found {value}, expected at least 1")
+        if self.derivative < 0:
+            raise ValueError(f"derivative: found {self.derivative}, expected at least 0")
+
+
+@dataclass(frozen=True)
+class Result:
+    """Equations, and the routine that computes them where there is one."""
+
+    equations: tuple[tuple[Expr, Expr], ...]
+    routine: Routine | None = None
+
+
+def show(name: str, request: Request, form: Form = "text") -> str:
+    """Return a derived result as text that ends with a newline.
+
+    Parameters
+    ----------
+    name : str
+        One of `RESULTS`.
+    request : Request
+    form : str
+        One of `FORMS`.
+
+    Raises
+    ------
+    ValueError
+        A name, form or request that cannot be met, saying what could be.
+
+    Examples
+    --------
+    >>> print(show("special-conditions", Request(order=1)), end="")
+    P = R
+    P_u = -R_w * a
+    """
+    if name not in RESULTS:
+        raise ValueError(f"{name}: no such result; there are {', '.join(RESULTS)}")
+    if form not in FORMS:
+        raise ValueError(f"form: found {form}, expected one of {', '.join(FORMS)}")
+    result = RESULTS[name].build(request)
+    if form == "text":
+        return "".join(f"{_plain(left)} = {_plain(right)}\n" for left, right in result.equations)
+    if form == "latex":
+        return _latex(result.equations)
+    if result.routine is None:
+        raise ValueError(f"{name}: is a formula, not a function; expected form text or latex, found {form}")
+    if form == "c":
+        return c_function(result.routine)
+    return python_text([result.routine], NUMPY if form == "numpy" else CASADI)
+
+
+def _plain(expression: Expr) -> str:
+    try:
+        return expression_text(expression)
+    except ValueError:
+        return str(sstr(expression))
+
+
+def _latex(equations: tuple[tuple[Expr, Expr], ...]) -> str:
+    if len(equations) == 1:
+        return f"{latex(Eq(*equations[0], evaluate=False))}\n"
+    lines = [f"{latex(left)} &= {latex(right)}" for left, right in equations]
+    return "\\begin{aligned}\n" + " \\\\\n".join(lines) + "\n\\end{aligned}\n"
+
+
+def _derivative_name(letter: str, by: str, order: int) -> Symbol:
+    return Symbol(f"{letter}_{by * order}" if order else letter)
+
+
+def _end_derivatives(request: Request) -> Result:
+    routine = catalogue.end_derivative_routine(request.order, request.degree, request.end)
+    equations = []
+    for d, row in enumerate(routine.values):
+        rows = [Symbol(f"P_{i}" if request.end == "start" else f"P_{{m-{i}}}" if i else "P_m") for i in range(len(row))]
+        value = sum((entry * point for entry, point in zip(row, rows, strict=True)), sympify(0))
+        equations.append((_derivative_name("P", "u", d), value))
+    return Result(tuple(equations), routine)
+
+
+def _contact_conditions(request: Request) -> Result:
+    conditions = contact.contact_conditions(request.order)
+    equations = tuple((_derivative_name("P", "u", d), value) for d, value in enumerate(conditions))
+    return Result(equations, catalogue.conditions_routine(request.order) if request.order else None)
+
+
+def _special_conditions(request: Request) -> Result:
+    conditions = plain_symbols(contact.special_conditions(request.order))
+    return Result(tuple((_derivative_name("P", "u", d), value) for d, value in enumerate(conditions)))
+
+
+def _contact_rows(request: Request) -> Result:
+    routine = catalogue.contact_routine(request.order, request.degree, request.base_degree)
+    equations = []
+    for i, row in enumerate(routine.values):
+        points = [Symbol(f"R_{j}") for j in range(len(row))]
+        value = sum((entry * point for entry, point in zip(row, points, strict=True)), sympify(0))
+        a = Symbol("a")
+        # One summand for each power of a: a combination of differences of rows.
+        terms = Poly(value, a, domain="EX").terms()
+        total = sum((a**power * factor(coefficient) for (power,), coefficient in terms), sympify(0))
+        equations.append((Symbol(f"P_{i}"), total))
+    return Result(tuple(equations), routine)
+
+
+def _basis(request: Request) -> energy.Basis:
+    return _as_basis(request.degree or 3, request.knots, "h")
+
+
+def _as_basis(degree: int, knots: tuple[str, ...] | None, length: str) -> energy.Basis:
+    return energy.Basis(degree, knots or ("0",) * (degree + 1) + (length,) * (degree + 1))
+
+
+def _basis_pieces(request: Request) -> Result:
+    basis = _basis(request)
+    equations, rows = [], []
+    for number, span in enumerate(basis.spans):
+        values = [piece.as_expr() for piece in span.pieces]
+        values = [factor(value) for value in values]
+        rows.append(tuple(values))
+        equations += [(Symbol(f"N_{span.first + r}^{number}"), value) for r, value in enumerate(values)]
+    title = f"Pieces of the basis of degree {basis.degree}: entry [s, r] is function s' + r on span s, s' its first."
+    return Result(tuple(equations), _knot_routine("basis_pieces", title, rows, first=splines.X))
+
+
+def _gram(request: Request) -> Result:
+    first = _basis(request)
+    second = first
+    if request.other_knots or request.other_degree:
+        second = _as_basis(request.other_degree or first.degree, request.other_knots or request.knots, "h")
+    matrix = energy.gram_matrix(request.derivative, first, second, request.breakpoints)
+    equations = tuple((Symbol(f"G_{i},{j}"), matrix[i, j]) for i in range(matrix.rows) for j in range(matrix.cols))
+    rows = [tuple(matrix.row(i)) for i in range(matrix.rows)]
+    title = f"Integrals of products of derivatives of order {request.derivative} of two bases."
+    return Result(equations, _knot_routine("gram_entries", title, rows))
+
+
+def _knot_routine(name: str, title: str, rows: list[Any], first: Symbol | None = None) -> Routine:
+    symbols = sorted({s.name for row in rows for value in row for s in value.free_symbols} - {str(first)})
+    arguments = [Argument(symbol, "number", "Knot.") for symbol in symbols]
+    if first is not None:
+        arguments.insert(0, Argument(first.name, "number", "Parameter."))
+    source = "Cox-de Boor, derivations/splines.py" if first is not None else "derivations/energy.py"
+    return Routine(name, title, source, tuple(arguments), "matrix", tuple(rows), ("N" if first is not None else "G",))
+
+
+def _energy_density(_: Request) -> Result:
+    return Result(((Symbol("e"), energy.thin_plate_density()),), catalogue.density_routine())
+
+
+def _gram_block(_: Request) -> Result:
+    return Result(((Symbol("K"), energy.gram_block()),), catalogue.gram_routine())
+
+
+def _energy(_: Request) -> Result:
+    return Result(((Symbol("E"), energy.quadratic_form()),))
+
+
+def _stationarity(_: Request) -> Result:
+    return Result(((energy.stationarity_condition(), sympify(0)),))
+
+
+@dataclass(frozen=True)
+class _Entry:
+    summary: str
+    build: Callable[[Request], Result]
+
+
+RESULTS: dict[str, _Entry] = {
+    "basis-pieces": _Entry("B-spline basis over given knots, span by span", _basis_pieces),
+    "contact-conditions": _Entry("G^n contact for general functions p_i, q_i", _contact_conditions),
+    "contact-rows": _Entry("rows P_0..P_n of a blend in G^n contact with a base", _contact_rows),
+    "end-derivatives": _Entry("derivatives at a clamped end in the first rows", _end_derivatives),
+    "energy": _Entry("thin-plate energy as a quadratic form", _energy),
+    "energy-density": _Entry("integrand of the thin-plate energy", _energy_density),
+    "gram-block": _Entry("block of the quadratic form in one-dimensional integrals", _gram_block),
+    "gram-entries": _Entry("integrals of products of basis derivatives, of two bases", _gram),
+    "special-conditions": _Entry("G^n contact for p1 = -a, the rest zero", _special_conditions),
+    "stationarity": _Entry("what vanishes for each free control point at the least energy", _stationarity),
+}
