@@ -33,10 +33,10 @@ def _span(name: str, value: float) -> float:
     return span
 
 
-def _vector(name: str, value: ArrayLike) -> FloatArray:
+def _vector(name: str, value: ArrayLike, like: FloatArray | None = None) -> FloatArray:
     vector = np.asarray(value, dtype=np.float64)
-    if vector.shape[-1:] != (3,):
-        raise ValueError(f"{name}: shape {vector.shape}, expected (..., 3)")
+    if vector.shape[-1:] != (3,) or (like is not None and vector.shape != like.shape):
+        raise ValueError(f"{name}: shape {vector.shape}, expected {'(..., 3)' if like is None else like.shape}")
     return vector
 
 
