@@ -1,0 +1,107 @@
+"""Triangle meshes of surfaces through pyvista (the extra `view`): samples on a grid with exact normals."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from solver.arrays import FloatArray
+from solver.curvature import LocalGeometry, local_geometry_grid
+from solver.errors import FileError
+from solver.io.silence import silenced
+from solver.surfaces import Surface
+
+# Samples along each parameter of an exported mesh: a quarter circle is met to 1e-5 of its radius.
+_SAMPLES = 160
+
+
+def write_mesh(path: Path, surface: Surface) -> None:
+    """Write a triangle mesh; the suffix is .obj, .stl, .ply, .gltf or .glb.
+
+    Raises
+    ------
+    FileError
+        pyvista is not installed, or VTK could not write the file.
+    """
+    pyvista = pyvista_module(path.suffix)
+    mesh = triangle_mesh(*sampled(surface, _SAMPLES))
+    with silenced(1, 2):
+        if path.suffix.lower() in (".gltf", ".glb"):
+            _write_gltf(path, pyvista.MultiBlock([pyvista.MultiBlock([mesh])]))
+        else:
+            mesh.save(str(path))
+
+
+def pyvista_module(what: str | Path) -> Any:
+    """Return pyvista.
+
+    Raises
+    ------
+    FileError
+        Not installed; the message says how to install it and opens with `what` needs it.
+    """
+    try:
+        import pyvista
+    except ImportError:
+        raise FileError(
+            f"{what}: pictures and meshes need pyvista; install it with: pip install 'semispline[view]'"
+        ) from None
+    return pyvista
+
+
+def sampled(surface: Surface, count: int) -> tuple[LocalGeometry, FloatArray]:
+    """Return the local geometry on a grid that holds every breakpoint and about `count` samples each way, and normals.
+
+    Returns
+    -------
+    LocalGeometry
+        Arrays lead with (len(u), len(v)).
+    ndarray, shape (len(u), len(v), 3)
+        Unit normals; where the surface is degenerate, those a little towards the middle of the domain.
+    """
+    u, v = (_samples(breaks, count) for breaks in surface.breakpoints)
+    geometry = local_geometry_grid(surface, u, v)
+    normal = geometry.normal.copy()
+    missing = ~geometry.regular
+    if missing.any():
+        inside = [x + 1e-3 * ((x[0] + x[-1]) / 2 - x) for x in (u, v)]
+        nearby = local_geometry_grid(surface, *inside).normal
+        normal[missing] = np.where(np.isfinite(nearby[missing]), nearby[missing], (0.0, 0.0, 1.0))
+    return geometry, normal
+
+
+def triangle_mesh(geometry: LocalGeometry, normal: FloatArray) -> Any:
+    """Return the `pyvista.PolyData` of a sampled surface, without triangles of no area."""
+    pyvista = pyvista_module("mesh")
+    n_u, n_v = geometry.point.shape[:2]
+    points = geometry.point.reshape(-1, 3)
+    corner = np.arange(n_u * n_v).reshape(n_u, n_v)
+    a, b, c, d = (x.ravel() for x in (corner[:-1, :-1], corner[1:, :-1], corner[1:, 1:], corner[:-1, 1:]))
+    triangles = np.concatenate([np.stack([a, b, c], axis=1), np.stack([a, c, d], axis=1)])
+    sides = points[triangles[:, 1:]] - points[triangles[:, :1]]
+    triangles = triangles[np.any(np.cross(sides[:, 0], sides[:, 1]) != 0, axis=1)]
+    faces = np.hstack([np.full((len(triangles), 1), 3), triangles])
+    mesh = pyvista.PolyData(points, faces.ravel())
+    mesh.point_data["Normals"] = normal.reshape(-1, 3)
+    mesh.point_data.active_normals_name = "Normals"
+    return mesh
+
+
+def _samples(breaks: FloatArray, count: int) -> FloatArray:
+    each = max(2, -(-count // (len(breaks) - 1)))
+    inner = np.linspace(0, 1, each, endpoint=False)
+    return np.append((breaks[:-1, None] + np.diff(breaks)[:, None] * inner).ravel(), breaks[-1])
+
+
+def _write_gltf(path: Path, blocks: Any) -> None:
+    from vtkmodules.vtkIOGeometry import vtkGLTFWriter
+
+    writer = vtkGLTFWriter()
+    writer.SetFileName(str(path))
+    writer.SetInputDataObject(blocks)
+    # One file: a .gltf would otherwise leave its numbers in another one beside it.
+    writer.InlineDataOn()
+    writer.SaveNormalOn()
+    writer.Write()
