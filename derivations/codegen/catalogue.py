@@ -10,6 +10,7 @@ from derivations.codegen.python_backends import CASADI, NUMPY, python_module
 from derivations.codegen.routines import Argument, Routine, plain_symbols
 from derivations.contact import contact_conditions, contact_rows
 from derivations.energy import SECOND_DERIVATIVES, gram_block, thin_plate_density
+from derivations.shape import MAX_POWER, contact_row_powers, energy_polynomial, product_symbol
 from derivations.splines import end_derivatives, span_symbols
 
 MAX_ORDER = 3
@@ -71,6 +72,47 @@ def contact_routine(order: int, degree: int | None = None, base_degree: int | No
         form="matrix",
         values=_rows(contact_rows(order, p, span_symbols(order), q, span_symbols(order, "H"))),
         names=("C",),
+    )
+
+
+def row_powers_routine(order: int) -> Routine:
+    """Return `contact_row_powers_n(a0, p, h1, .., q, H1, ..)`: the contact rows as a polynomial in a - a0."""
+    p, blend = _degree("p", None, "Degree of the blend in u.", order)
+    q, base = _degree("q", None, "Degree of the base across the contact.")
+    a0 = Symbol("a0")
+    powers = contact_row_powers(order, p, span_symbols(order), q, span_symbols(order, "H"), a0)
+    return Routine(
+        name=f"contact_row_powers_{order}",
+        summary=f"Rows of a blend in G{order} contact, C_0 + x C_1 + .. + x^{order} C_{order}, C_k below each other.",
+        source="derivations/shape.py, x = a - a0",
+        arguments=(
+            Argument("a0", "number", "The value of a = alpha^2 about which the rows are expanded."),
+            *blend,
+            *_spans("h", order, "the blend, counted from the contact", "p"),
+            *base,
+            *_spans("H", order, "the base; any positive number where there is no such knot", "q"),
+        ),
+        form="matrix",
+        values=tuple(row for power in powers for row in _rows(power)),
+        names=("C",),
+    )
+
+
+def shape_routine(power_a: int, power_b: int) -> Routine:
+    """Return `shape_polynomial_ab(S00, S01, ..)`: the energy as a polynomial in both shape parameters."""
+    size = power_a + power_b + 1
+    return Routine(
+        name=f"shape_polynomial_{power_a}{power_b}",
+        summary="Coefficients of the least energy: [i, j] multiplies (a - a0)^i (b - b0)^j.",
+        source="derivations/shape.py",
+        arguments=tuple(
+            Argument(product_symbol(k, n).name, "number", f"Energy product of Z_{k} and Z_{n}.")
+            for k in range(size)
+            for n in range(k, size)
+        ),
+        form="matrix",
+        values=_rows(energy_polynomial(power_a, power_b)),
+        names=("E",),
     )
 
 
@@ -143,4 +185,10 @@ def generated_files() -> dict[str, str]:
         files[f"contact_{suffix}.py"] = python_module(title, contact_sources, contact, backend)
         title = "Thin-plate energy: integrand and blocks of its quadratic form"
         files[f"energy_{suffix}.py"] = python_module(title, ("derivations/energy.py",), energy, backend)
+    shape = (
+        *(row_powers_routine(order) for order in range(1, MAX_POWER + 1)),
+        *(shape_routine(a, b) for a in range(MAX_POWER + 1) for b in range(MAX_POWER + 1) if a + b),
+    )
+    title = "The least energy as a polynomial in the shape parameters"
+    files["shape_numpy.py"] = python_module(title, ("derivations/shape.py",), shape, NUMPY)
     return dict(sorted(files.items()))

@@ -345,5 +345,13 @@ def _call(head: str, arguments: Sequence[str], tail: str) -> str:
     margin = " " * (len(head) - len(head.lstrip()))
     packed = f"{margin}    {', '.join(arguments)}"
     if len(packed) > LINE_LENGTH:
-        packed = "\n".join(f"{margin}    {argument}," for argument in arguments)
+        packed = "\n".join(f"{_item(argument, margin + '    ')}," for argument in arguments)
     return f"{head}(\n{packed}\n{margin}){tail}"
+
+
+def _item(text: str, margin: str) -> str:
+    """Return one item of a broken call; a list of lists that does not fit on its line goes row by row."""
+    if len(margin) + len(text) + 1 <= LINE_LENGTH or not text.startswith("[["):
+        return margin + text
+    rows = text[2:-2].split("], [")
+    return "\n".join([f"{margin}[", *(f"{margin}    [{row}]," for row in rows), f"{margin}]"])
