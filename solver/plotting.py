@@ -97,7 +97,12 @@ def render(
     FileError
         pyvista is not installed, or the file cannot be written.
     """
-    _check(surfaces, colors, control_points, field, path)
+    check_picture(path, field)
+    if not surfaces:
+        raise OptionError("surfaces: found none, expected at least one")
+    for name, given in (("colors", colors), ("control_points", control_points)):
+        if given is not None and len(given) != len(surfaces):
+            raise OptionError(f"{name}: found {len(given)}, expected {len(surfaces)}, one for each surface")
     pyvista = pyvista_module(path)
     count = int(np.clip(np.sqrt(_TOTAL / len(surfaces)), _COARSEST, _FINEST))
     samples = [_Sampled(*sampled(surface, count)) for surface in surfaces]
@@ -114,6 +119,7 @@ def render(
                     _add_shaded(plotter, item, color)
             else:
                 _add_field(plotter, samples, field, view)
+            _add_outlines(plotter, pyvista, samples)
             points = _all_points(samples)
             # In parallel projection a shift towards the eye changes nothing but what hides what: no control point is
             # hidden by a surface.
@@ -128,22 +134,21 @@ def render(
             plotter.close()
 
 
-def _check(
-    surfaces: Sequence[Surface],
-    colors: Sequence[str] | None,
-    control_points: Sequence[bool] | None,
-    field: str | None,
-    path: str | Path,
-) -> None:
-    if not surfaces:
-        raise OptionError("surfaces: found none, expected at least one")
+def check_picture(path: str | Path, field: str | None) -> None:
+    """Refuse what `render` cannot draw; long work calls this first.
+
+    Raises
+    ------
+    OptionError
+        A suffix other than .png, or an unknown field.
+    FileError
+        pyvista is not installed.
+    """
     if field is not None and field not in get_args(Field):
         raise OptionError(f"color: found {field!r}, expected one of {', '.join(get_args(Field))}")
-    for name, given in (("colors", colors), ("control_points", control_points)):
-        if given is not None and len(given) != len(surfaces):
-            raise OptionError(f"{name}: found {len(given)}, expected {len(surfaces)}, one for each surface")
     if Path(path).suffix.lower() != ".png":
         raise OptionError(f"{path}: suffix {Path(path).suffix!r} cannot be drawn, expected .png")
+    pyvista_module(path)
 
 
 @contextmanager
@@ -220,15 +225,15 @@ def _add_shaded(plotter: Any, item: _Sampled, color: str) -> None:
     mesh = triangle_mesh(item.geometry, item.normal)
     actor = plotter.add_mesh(mesh, color=color, ambient=0.25, diffuse=0.75, specular=0.25, specular_power=20)
     actor.prop.interpolation = "Phong"
-    _add_outline(plotter, item)
 
 
-def _add_outline(plotter: Any, item: _Sampled) -> None:
-    """Draw the four edges of a surface."""
-    pyvista = pyvista_module("picture")
-    p = item.geometry.point
-    for edge in (p[0], p[-1], p[:, 0], p[:, -1]):
-        plotter.add_mesh(pyvista.lines_from_points(edge), color="#202020", line_width=2, lighting=False)
+def _add_outlines(plotter: Any, pyvista: Any, samples: Sequence[_Sampled]) -> None:
+    """Draw the four edges of every surface."""
+    edges = [edge for p in (item.geometry.point for item in samples) for edge in (p[0], p[-1], p[:, 0], p[:, -1])]
+    starts = np.cumsum([0, *(len(edge) for edge in edges)])
+    lines = [[len(edge), *range(start, start + len(edge))] for start, edge in zip(starts, edges, strict=False)]
+    outline = pyvista.PolyData(np.concatenate(edges), lines=np.concatenate(lines))
+    plotter.add_mesh(outline, color="#202020", line_width=2, lighting=False)
 
 
 def _add_field(plotter: Any, samples: Sequence[_Sampled], field: Field, view: _View) -> None:
@@ -249,7 +254,6 @@ def _add_field(plotter: Any, samples: Sequence[_Sampled], field: Field, view: _V
         mesh.point_data["field"] = np.nan_to_num(value).ravel()
         actor = plotter.add_mesh(mesh, scalars="field", **options)
         actor.prop.interpolation = "Phong"
-        _add_outline(plotter, item)
 
 
 def _field_values(item: _Sampled, field: Field, view: _View) -> FloatArray:

@@ -61,7 +61,6 @@ class _OptionsRecord(_Record):
 
     continuity: _Text | tuple[_Text, _Text] = "G2"
     middle_curves: _Count = 1
-    degree_u: _Count = 3
     method: _Text = ""
     flip: _Text = "auto"
 
@@ -84,7 +83,7 @@ class StoredProblem:
         A surface, or "PATH#N" with PATH relative to the folder of the file.
     edge_a, edge_b : {"u0", "u1", "v0", "v1"}
     options : mapping
-        Keyword arguments of `blend`: continuity, middle_curves, degree_u, method, flip.
+        Keyword arguments of `blend`: continuity, middle_curves, method, flip.
 
     Raises
     ------

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from solver.arrays import FloatArray
-from solver.errors import FileError
+from solver.errors import FileError, InputError
 from solver.io.disk import atomic_path, check_output, require_file
 from solver.io.faces import MILLIMETRES, Model, SurfaceEntry, describe, picked, without_equal_weights
 from solver.surfaces import BSplineSurface, SemiStructuredSurface, Surface
@@ -75,6 +75,39 @@ def read_surfaces(specs: Sequence[str | Path]) -> list[LoadedSurface]:
         model = models[path]
         loaded.append(LoadedSurface(picked(model, number).surface(), model.unit))
     return in_one_unit(loaded)
+
+
+def read_all(specs: Sequence[str | Path]) -> tuple[list[LoadedSurface], list[str]]:
+    """Read, of each file, the surface PATH#N or, without a number, all surfaces; in the units of the files.
+
+    Returns
+    -------
+    list of LoadedSurface
+    list of str
+        Why faces of a file without a number were left out.
+
+    Raises
+    ------
+    FileError, KnotError, ControlPointError
+        As `read_surface`; also where no face of a file can be read out.
+    """
+    loaded: list[LoadedSurface] = []
+    problems: list[str] = []
+    for spec in specs:
+        path, number = split_spec(spec)
+        model = open_model(path)
+        if number is not None or len(model.faces) < 2:
+            loaded.append(LoadedSurface(picked(model, number).surface(), model.unit))
+            continue
+        before = len(loaded)
+        for face in model.faces:
+            try:
+                loaded.append(LoadedSurface(face.surface(), model.unit))
+            except InputError as error:
+                problems.append(str(error))
+        if len(loaded) == before:
+            raise FileError(f"{path}: none of its {len(model.faces)} surfaces can be used; the first: {problems[-1]}")
+    return loaded, problems
 
 
 def in_one_unit(loaded: Sequence[LoadedSurface]) -> list[LoadedSurface]:

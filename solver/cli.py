@@ -1,0 +1,343 @@
+"""The commands blend, check, list, show and convert; `papers.cli` mounts them beside its own.
+
+Heavy imports wait inside the functions, so that `--help` answers fast.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from contextlib import ExitStack, contextmanager
+from dataclasses import asdict
+from typing import TYPE_CHECKING, Annotated, Any, cast, get_args
+
+import typer
+
+from solver.errors import EdgeError, OptionError
+from solver.exit_status import ANSWER_IS_NO, reports_errors
+
+if TYPE_CHECKING:
+    from solver.blending import BlendResult
+    from solver.continuity import Contact
+    from solver.io.faces import SurfaceEntry
+
+app = typer.Typer(no_args_is_help=True, add_completion=False, pretty_exceptions_enable=False)
+
+_EDGES = ("u0", "u1", "v0", "v1")
+_SURFACE_HELP = "PATH, or PATH#N as `semispline list PATH` numbers it (JSON, STEP, IGES, BREP, 3dm)."
+_EDGE_HELP = "Edge of {}: u0, u1, v0 or v1, the parameter that is constant along it and at which end."
+_CONTINUITY_HELP = "C0, C1, C2, G0, G1 or G2."
+
+SurfaceA = Annotated[str, typer.Argument(metavar="A", help=_SURFACE_HELP)]
+SurfaceB = Annotated[str, typer.Argument(metavar="B", help="The same for the other surface.")]
+EdgeA = Annotated[str, typer.Option("--edge-a", metavar="EDGE", help=_EDGE_HELP.format("A"))]
+EdgeB = Annotated[str, typer.Option("--edge-b", metavar="EDGE", help=_EDGE_HELP.format("B"))]
+
+
+@app.command("blend")
+@reports_errors
+def blend_command(
+    a: SurfaceA,
+    b: SurfaceB,
+    edge_a: EdgeA,
+    edge_b: EdgeB,
+    out: Annotated[str, typer.Option("-o", "--out", metavar="OUT", help="File to write; the suffix says the format.")],
+    continuity: Annotated[str, typer.Option(metavar="C", help=f"At both edges: {_CONTINUITY_HELP}")] = "G2",
+    continuity_b: Annotated[str | None, typer.Option(metavar="C", help="At B, where it differs.")] = None,
+    flip: Annotated[
+        str, typer.Option(metavar="FLIP", help="Whether edge B runs against edge A: auto, yes or no.")
+    ] = "auto",
+    middle_curves: Annotated[int, typer.Option(metavar="N", help="v-control curves between the contacts.")] = 1,
+    method: Annotated[str, typer.Option(metavar="METHOD", help="How alpha and beta are found: casadi.")] = "casadi",
+    report: Annotated[str | None, typer.Option(metavar="FILE", help="JSON with energy, alpha, beta, contact.")] = None,
+) -> None:
+    """Join an edge of A and an edge of B by a semi-structured surface of least energy."""
+    from solver.io.disk import atomic_path, check_output
+    from solver.io.json_text import to_text
+    from solver.io.surface_files import check_surface_output, read_surfaces, write_surface
+
+    _check_edges(edge_a, edge_b)
+    check_surface_output(out)
+    if report is not None and check_output(report) == check_output(out):
+        raise OptionError(f"--report: found {report!r}, the file of the surface; give another name")
+    with _progress("reading"):
+        first, second = read_surfaces([a, b])
+    with _progress("blending"):
+        from solver import Base, blend
+
+        result = blend(
+            Base(first.surface, cast(Any, edge_a)),
+            Base(second.surface, cast(Any, edge_b)),
+            continuity=cast(Any, (continuity, continuity_b or continuity)),
+            middle_curves=middle_curves,
+            method=cast(Any, method),
+            flip=cast(Any, flip),
+        )
+    with ExitStack() as stack:
+        # The report first, into its temporary file: neither file is touched unless both can be written.
+        if report is not None:
+            temporary = stack.enter_context(atomic_path(report))
+            temporary.write_text(to_text(report_record(result)))
+        write_surface(out, result.surface, first.unit)
+    _print_result(result)
+
+
+@app.command("check")
+@reports_errors
+def check_command(
+    a: SurfaceA,
+    b: SurfaceB,
+    edge_a: EdgeA,
+    edge_b: EdgeB,
+    require: Annotated[
+        str | None, typer.Option(metavar="C", help=f"Exit status 1 if they do not meet with {_CONTINUITY_HELP}")
+    ] = None,
+    json_file: Annotated[
+        str | None, typer.Option("--json", metavar="FILE", help="Write the figures; - is standard output.")
+    ] = None,
+) -> None:
+    """Measure how an edge of A and an edge of B meet: gap, angle, curvature jump, and where they are worst."""
+    from solver import Base, measure_contact
+    from solver.io.surface_files import read_surfaces
+
+    _check_edges(edge_a, edge_b)
+    _check_required(require)
+    _check_json_output(json_file)
+    with _progress("reading"):
+        first, second = read_surfaces([a, b])
+    with _progress("measuring"):
+        contact = measure_contact(Base(first.surface, cast(Any, edge_a)), Base(second.surface, cast(Any, edge_b)))
+    misses = _misses(contact, require)
+    if json_file is not None:
+        record = {"a": a, "edge_a": edge_a, "b": b, "edge_b": edge_b, "unit": first.unit, **contact_record(contact)}
+        if require is not None:
+            record |= {"require": require, "meets": not misses, "misses": misses}
+        _write_json(json_file, {"format": "semispline/1", "kind": "contact", **record})
+    if json_file != "-":
+        _print_contact(contact, first.unit)
+        if require is not None:
+            typer.echo(f"{require}: " + ("no: " + "; ".join(misses) if misses else "yes"))
+    if misses:
+        raise typer.Exit(ANSWER_IS_NO)
+
+
+@app.command("list")
+@reports_errors
+def list_command(
+    file: Annotated[str, typer.Argument(metavar="FILE", help="A CAD file: STEP, IGES, BREP or 3dm.")],
+    json_file: Annotated[
+        str | None, typer.Option("--json", metavar="FILE", help="Write the list; - is standard output.")
+    ] = None,
+) -> None:
+    """List the surfaces of a file: number, kind, degrees, control points, rational, trimmed, closed."""
+    from solver.io.surface_files import list_surfaces
+
+    _check_json_output(json_file)
+    with _progress("reading"):
+        entries = list_surfaces(file)
+    if json_file is not None:
+        record = {"path": file, "surfaces": [asdict(entry) for entry in entries]}
+        _write_json(json_file, {"format": "semispline/1", "kind": "surface_list", **record})
+    if json_file != "-":
+        _print_entries(entries)
+
+
+@app.command("show")
+@reports_errors
+def show_command(
+    files: Annotated[list[str], typer.Argument(metavar="FILE...", help=f"{_SURFACE_HELP} Without #N all surfaces.")],
+    out: Annotated[str, typer.Option("-o", "--out", metavar="PNG", help="Picture to write.")],
+    color: Annotated[
+        str | None, typer.Option(metavar="COLOR", help="curvature, gaussian, zebra or isophotes; without, shaded.")
+    ] = None,
+    control_points: Annotated[
+        bool,
+        typer.Option("--control-points", help="Those of semi-structured surfaces too; of all where there is none."),
+    ] = False,
+) -> None:
+    """Draw surfaces into a PNG file; needs no display."""
+    from solver.io.disk import check_output
+    from solver.io.surface_files import in_one_unit, read_all
+    from solver.plotting import check_picture, render
+    from solver.surfaces import SemiStructuredSurface
+
+    check_picture(out, color)
+    check_output(out)
+    with _progress("reading"):
+        loaded, problems = read_all(files)
+    for problem in problems:
+        typer.echo(f"left out: {problem}", err=True)
+    with _progress("drawing"):
+        surfaces = [item.surface for item in in_one_unit(loaded)]
+        blends = [isinstance(surface, SemiStructuredSurface) for surface in surfaces]
+        shown = [control_points and (is_blend or not any(blends)) for is_blend in blends]
+        render(surfaces, out, control_points=shown, field=cast(Any, color))
+
+
+@app.command("convert")
+@reports_errors
+def convert_command(
+    source: Annotated[str, typer.Argument(metavar="IN", help=_SURFACE_HELP)],
+    target: Annotated[
+        str, typer.Argument(metavar="OUT", help="File to write: .json .step .iges .brep .3dm .obj .stl .ply .gltf .glb")
+    ],
+) -> None:
+    """Write a surface in another format: exactly, or as a mesh."""
+    from solver.io.surface_files import check_surface_output, read_surfaces, write_surface
+
+    check_surface_output(target)
+    with _progress("converting"):
+        (loaded,) = read_surfaces([source])
+        write_surface(target, loaded.surface, loaded.unit)
+
+
+def contact_record(contact: Contact) -> dict[str, Any]:
+    """Return what a JSON file holds of a measured contact."""
+    record = asdict(contact)
+    del record["rounding"]
+    return record
+
+
+def report_record(result: BlendResult) -> dict[str, Any]:
+    """Return what `blend --report` writes."""
+    record: dict[str, Any] = {
+        "format": "semispline/1",
+        "kind": "blend_report",
+        "continuity": list(result.continuity),
+        "method": result.method,
+        "energy": result.energy,
+        "alpha2": result.alpha2,
+        "beta2": result.beta2,
+    }
+    for name in ("alpha2_bounds", "beta2_bounds"):
+        bounds = getattr(result, name)
+        if bounds is not None:
+            record[name] = list(bounds)
+    return record | {
+        "active_bounds": list(result.active_bounds),
+        "flipped": result.flipped,
+        "control_points": result.surface.n_control_points,
+        "iterations": result.iterations,
+        "kkt_residual": result.kkt_residual,
+        "seconds": result.seconds,
+        "contact_a": contact_record(result.contact_a),
+        "contact_b": contact_record(result.contact_b),
+    }
+
+
+def _check_edges(edge_a: str, edge_b: str) -> None:
+    for name, edge in (("--edge-a", edge_a), ("--edge-b", edge_b)):
+        if edge not in _EDGES:
+            raise EdgeError(f"{name}: found {edge!r}, expected one of {', '.join(_EDGES)}")
+
+
+def _check_required(require: str | None) -> None:
+    from solver.sides import Continuity
+
+    if require is not None and require not in get_args(Continuity):
+        raise OptionError(f"--require: found {require!r}, expected one of {', '.join(get_args(Continuity))}")
+
+
+def _check_json_output(path: str | None) -> None:
+    from solver.io.disk import check_output
+
+    if path is not None and path != "-":
+        check_output(path)
+
+
+def _write_json(path: str, record: dict[str, Any]) -> None:
+    from solver.io.disk import write_text
+    from solver.io.json_text import to_text
+
+    if path == "-":
+        typer.echo(to_text(record), nl=False)
+    else:
+        write_text(path, to_text(record))
+
+
+def _misses(contact: Contact, require: str | None) -> list[str]:
+    """Return, of each measure that falls short, its name, value and limit."""
+    if require is None:
+        return []
+    from solver.blending import required_limits
+
+    return [
+        f"{name.replace('_', ' ')} is {value:.3g}, at most {limit:.3g} allowed"
+        for name, value, limit in required_limits(contact, cast(Any, require))
+        if not value <= limit
+    ]
+
+
+def _print_contact(contact: Contact, unit: str | None) -> None:
+    length = unit or "model units"
+    bend = f"1/{unit}" if unit else "1/(model units)"
+    rows = [("measure", "worst", "unit", "at parameter", "at point")]
+    for name, value, in_unit, place in (
+        ("gap", contact.gap, length, contact.gap_at),
+        ("angle", contact.angle_degrees, "degrees", contact.angle_at),
+        ("curvature jump", contact.curvature_jump, bend, contact.curvature_at),
+        ("curvature jump, relative", contact.curvature_jump_relative, "1", contact.curvature_at),
+    ):
+        point = ", ".join(f"{x:.5g}" for x in place.point)
+        rows.append((name, f"{value:.3g}", in_unit, f"{place.parameter:.5g}", f"({point})"))
+    _print_table(rows)
+
+
+def _print_result(result: BlendResult) -> None:
+    def shape(value: float | None, bounds: tuple[float, float] | None) -> str:
+        if value is None:
+            return "none"
+        return f"{value:.6g}" if bounds is None else f"{value:.6g} (between {bounds[0]:.4g} and {bounds[1]:.4g})"
+
+    rows = [
+        ("continuity", " and ".join(result.continuity)),
+        ("method", result.method),
+        ("energy", f"{result.energy:.6g}"),
+        ("alpha\u00b2", shape(result.alpha2, result.alpha2_bounds)),
+        ("beta\u00b2", shape(result.beta2, result.beta2_bounds)),
+        ("active bounds", ", ".join(result.active_bounds) or "none"),
+        ("edge B runs against A", "yes" if result.flipped else "no"),
+        ("control points", str(result.surface.n_control_points)),
+        ("seconds", f"{result.seconds:.3f}"),
+    ]
+    for name, contact in (("A", result.contact_a), ("B", result.contact_b)):
+        figures = f"gap {contact.gap:.2g}, angle {contact.angle_degrees:.2g} degrees, "
+        rows.append((f"contact {name}", figures + f"relative curvature jump {contact.curvature_jump_relative:.2g}"))
+    _print_table(rows)
+
+
+def _print_entries(entries: Sequence[SurfaceEntry]) -> None:
+    def word(value: bool | None, yes: str) -> str:
+        return "?" if value is None else yes if value else "-"
+
+    rows = [("#", "kind", "degrees", "control points", "rational", "trimmed", "closed")]
+    notes = []
+    for entry in entries:
+        closed = "".join(name for name, is_closed in (("u", entry.closed_u), ("v", entry.closed_v)) if is_closed)
+        degrees = "?" if entry.degree_u is None else f"{entry.degree_u}, {entry.degree_v}"
+        count = "?" if entry.n_u is None else f"{entry.n_u} x {'various' if entry.n_v is None else entry.n_v}"
+        flags = (word(entry.rational, "rational"), word(entry.trimmed, "trimmed"), closed or "-")
+        rows.append((str(entry.number), entry.kind, degrees, count, *flags))
+        if entry.problem:
+            notes.append(entry.problem)
+    _print_table(rows)
+    for note in notes:
+        typer.echo(f"cannot be used: {note}")
+
+
+def _print_table(rows: Sequence[Sequence[str]]) -> None:
+    widths = [max(len(row[k]) for row in rows) for k in range(len(rows[0]))]
+    for row in rows:
+        typer.echo("  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip())
+
+
+@contextmanager
+def _progress(what: str) -> Iterator[None]:
+    """Show on a terminal that something is going on; on standard error, so that output stays clean."""
+    from rich.console import Console
+
+    console = Console(stderr=True)
+    if not console.is_terminal:
+        yield
+        return
+    with console.status(what):
+        yield
