@@ -33,11 +33,11 @@ SIDES = ("left", "right", "bottom", "top")
 
 @dataclass(frozen=True)
 class Side:
-    """One side of the hole: a Bezier function over [start, end], all numbers rational.
+    """One side of the hole: a Bezier function over [start, end].
 
     Examples
     --------
-    >>> Side("0.2", "0.5", ("0.8", "0.75")).value(Fraction(7, 20))
+    >>> Side.decimal("0.2", "0.5", "0.8", "0.75").value(Fraction(7, 20))
     Fraction(31, 40)
     """
 
@@ -46,11 +46,13 @@ class Side:
     coefficients: tuple[Fraction, ...]
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "start", Fraction(self.start))
-        object.__setattr__(self, "end", Fraction(self.end))
-        object.__setattr__(self, "coefficients", tuple(Fraction(c) for c in self.coefficients))
         if not self.start < self.end:
             raise ValueError(f"side: found the interval [{self.start}, {self.end}], expected start < end")
+
+    @classmethod
+    def decimal(cls, start: str, end: str, *coefficients: str) -> Side:
+        """Return the side whose numbers are these decimals, exactly."""
+        return cls(Fraction(start), Fraction(end), tuple(map(Fraction, coefficients)))
 
     def value(self, t: Any) -> Any:
         """Return the value at t, a `Fraction` or a SymPy expression."""

@@ -27,10 +27,10 @@ from derivations.trimming import (
 
 # The curves c1 to c4 below Fig. 3 of the paper, typed from its text: left, right, bottom, top.
 PRINTED = Hole(
-    Side("0.4", "0.6", ("0.3", "0.1", "0.25")),
-    Side("0.2", "0.5", ("0.8", "0.75")),
-    Side("0.3", "0.8", ("0.4", "0.7", "0.1", "0.2")),
-    Side("0.25", "0.75", ("0.6", "0.8", "0.3", "0.5")),
+    Side.decimal("0.4", "0.6", "0.3", "0.1", "0.25"),
+    Side.decimal("0.2", "0.5", "0.8", "0.75"),
+    Side.decimal("0.3", "0.8", "0.4", "0.7", "0.1", "0.2"),
+    Side.decimal("0.25", "0.75", "0.6", "0.8", "0.3", "0.5"),
 )
 
 
@@ -155,7 +155,7 @@ def test_a_side_that_leaves_the_square_is_seen():
 
 def test_an_empty_interval_is_refused():
     with pytest.raises(ValueError, match="start < end"):
-        Side("0.5", "0.5", ("0",))
+        Side.decimal("0.5", "0.5", "0")
 
 
 def test_seams_are_one_curve_for_every_bicubic_patch():

@@ -123,10 +123,10 @@ def test_the_eight_pieces_are_the_exact_ones():
     net = np.random.default_rng(4).integers(-9, 9, (4, 4, 3))
     pieces = trim_bezier(bezier_patch(net), **SIDES)
     exact_sides = {
-        "left": Side("0.4", "0.6", ("0.3", "0.1", "0.25")),
-        "right": Side("0.2", "0.5", ("0.8", "0.75")),
-        "bottom": Side("0.3", "0.8", ("0.4", "0.7", "0.1", "0.2")),
-        "top": Side("0.25", "0.75", ("0.6", "0.8", "0.3", "0.5")),
+        "left": Side.decimal("0.4", "0.6", "0.3", "0.1", "0.25"),
+        "right": Side.decimal("0.2", "0.5", "0.8", "0.75"),
+        "bottom": Side.decimal("0.3", "0.8", "0.4", "0.7", "0.1", "0.2"),
+        "top": Side.decimal("0.25", "0.75", "0.6", "0.8", "0.3", "0.5"),
     }
     for d in range(3):
         rows = trimmed_rows([[Fraction(int(x)) for x in row] for row in net[..., d]], Hole(**exact_sides))
