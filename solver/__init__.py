@@ -9,6 +9,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from solver.bezier import BezierFunction, bezier_patch, divide_bezier, trim_bezier
     from solver.blending import BlendResult, blend
     from solver.continuity import Base, Contact, measure_contact
     from solver.errors import (
@@ -30,6 +31,7 @@ _EXPORTS = {
     "BSplineCurve": "solver.surfaces",
     "BSplineSurface": "solver.surfaces",
     "Base": "solver.continuity",
+    "BezierFunction": "solver.bezier",
     "BlendResult": "solver.blending",
     "ComputationError": "solver.errors",
     "Contact": "solver.continuity",
@@ -43,16 +45,20 @@ _EXPORTS = {
     "Regularity": "solver.regularity",
     "SemiStructuredSurface": "solver.surfaces",
     "SemisplineError": "solver.errors",
+    "bezier_patch": "solver.bezier",
     "blend": "solver.blending",
+    "divide_bezier": "solver.bezier",
     "measure_contact": "solver.continuity",
     "measure_regularity": "solver.regularity",
     "thin_plate_energy": "solver.gram",
+    "trim_bezier": "solver.bezier",
 }
 
 __all__ = [
     "BSplineCurve",
     "BSplineSurface",
     "Base",
+    "BezierFunction",
     "BlendResult",
     "ComputationError",
     "Contact",
@@ -66,10 +72,13 @@ __all__ = [
     "Regularity",
     "SemiStructuredSurface",
     "SemisplineError",
+    "bezier_patch",
     "blend",
+    "divide_bezier",
     "measure_contact",
     "measure_regularity",
     "thin_plate_energy",
+    "trim_bezier",
 ]
 
 
