@@ -151,7 +151,7 @@ def show_command(
     ] = None,
     control_points: Annotated[
         bool,
-        typer.Option("--control-points", help="Those of semi-structured surfaces too; of all where there is none."),
+        typer.Option("--control-points", help="Of semi-structured surfaces; of all where there is none."),
     ] = False,
 ) -> None:
     """Draw surfaces into a PNG file; needs no display."""

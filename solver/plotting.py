@@ -124,8 +124,9 @@ def render(
             # In parallel projection a shift towards the eye changes nothing but what hides what: no control point is
             # hidden by a surface.
             lift = 2 * float(np.ptp(points @ view.towards_eye)) * view.towards_eye
+            extent = _extent(samples)
             for rows in polygons:
-                _add_polygons(plotter, pyvista, [row + lift for row in rows], _extent(samples))
+                _add_polygons(plotter, pyvista, [row + lift for row in rows], extent)
             corners = np.concatenate([points, *(row for rows in polygons for row in rows)])
             _aim(plotter, corners, view, size, 0.84 if field in ("curvature", "gaussian") else 1.0)
             plotter.enable_anti_aliasing("ssaa")
