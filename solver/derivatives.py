@@ -1,12 +1,17 @@
-"""Derivatives of surfaces as surfaces: exact, over the fewest knots, refused where they are not continuous.
+"""Derivatives of surfaces as surfaces: exact, over the fewest knots, refused where they do not exist.
 
 A u-derivative of a semi-structured surface takes differences of neighbouring rows, so it is semi-structured again:
 row i of the du-th derivative combines the rows i .. i + du and needs the union of their knots, no others.
+
+Orders are taken one by one, and each must be continuous: where the first derivative jumps there is no second one, even
+if its two sides agree. A mixed derivative may be taken v first or u first; it is refused if neither way exists.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
+from functools import partial
 from typing import TypeVar
 
 import numpy as np
@@ -15,6 +20,7 @@ from solver.arrays import FloatArray
 from solver.compatible import combined_curves, compatible_curves
 from solver.errors import InputError
 from solver.knots import derivative_matrix, derivative_points
+from solver.operations import swap_directions
 from solver.surfaces import BSplineCurve, BSplineSurface, SemiStructuredSurface, check_orders
 
 # One-sided derivatives closer than this fraction of the largest control point of the derivative are one: what is left
@@ -24,6 +30,9 @@ JUMP_TOLERANCE = 1e-10
 ROUNDING = 8 * float(np.finfo(float).eps)
 
 Row = TypeVar("Row")
+Spline = TypeVar("Spline")
+# One order of differentiation: the spline and the rounding that its control points carry, before and after.
+Step = Callable[[Spline, float], tuple[Spline, float]]
 
 
 def derivative_curve(curve: BSplineCurve, order: int = 1) -> BSplineCurve:
@@ -32,7 +41,7 @@ def derivative_curve(curve: BSplineCurve, order: int = 1) -> BSplineCurve:
     Raises
     ------
     InputError
-        The derivative jumps at a knot.
+        The derivative, or one of lower order, jumps at a knot.
 
     Examples
     --------
@@ -42,8 +51,8 @@ def derivative_curve(curve: BSplineCurve, order: int = 1) -> BSplineCurve:
            [1., 2., 0.]])
     """
     check_orders(order=order)
-    slack = ROUNDING * float(np.abs(curve.control_points).max())
-    return _derivative_curve(curve, order, slack, f"derivative of order {order}")
+    step = partial(_curve_step, name=f"derivative of order {order}")
+    return _repeated(curve, ROUNDING * _largest(curve.control_points), [step] * order)
 
 
 def surface_derivative(surface: BSplineSurface, du: int, dv: int) -> BSplineSurface:
@@ -61,15 +70,8 @@ def surface_derivative(surface: BSplineSurface, du: int, dv: int) -> BSplineSurf
             "surface: rational; its derivative is not a spline of lower degree, use evaluate(u, v, du, dv)"
         )
     name = f"derivative ({du}, {dv})"
-    slack = ROUNDING * float(np.abs(surface.control_points).max())
-    slack *= _gain(surface.degree_u, surface.knots_u, du) * _gain(surface.degree_v, surface.knots_v, dv)
-    p, q, ku, kv, net = surface.degree_u, surface.degree_v, surface.knots_u, surface.knots_v, surface.control_points
-    p, ku, net = _derivative_rows(p, ku, net, du)
-    q, kv, turned = _derivative_rows(q, kv, net.transpose(1, 0, 2), dv)
-    limit = JUMP_TOLERANCE * _largest(turned) + slack
-    q, kv, columns = _continuous(q, kv, list(turned), _distance, limit=limit, name=name, letter="v")
-    p, ku, rows = _continuous(p, ku, list(np.stack(columns, axis=1)), _distance, limit=limit, name=name, letter="u")
-    return BSplineSurface(p, q, ku, kv, np.stack(rows))
+    slack = ROUNDING * _largest(surface.control_points)
+    return _mixed(surface, slack, [partial(_net_step_u, name=name)] * du, [partial(_net_step_v, name=name)] * dv)
 
 
 def semistructured_derivative(surface: SemiStructuredSurface, du: int, dv: int) -> SemiStructuredSurface:
@@ -85,38 +87,62 @@ def semistructured_derivative(surface: SemiStructuredSurface, du: int, dv: int) 
     """
     check_orders(du=du, dv=dv)
     name = f"derivative ({du}, {dv})"
+    slack = ROUNDING * max(_largest(c.control_points) for c in surface.control_curves)
+    return _mixed(surface, slack, [partial(_rows_step_u, name=name)] * du, [partial(_rows_step_v, name=name)] * dv)
+
+
+def _mixed(surface: Spline, slack: float, steps_u: list[Step[Spline]], steps_v: list[Step[Spline]]) -> Spline:
+    try:
+        return _repeated(surface, slack, steps_v + steps_u)
+    except InputError:
+        if not (steps_u and steps_v):
+            raise
+        return _repeated(surface, slack, steps_u + steps_v)
+
+
+def _repeated(spline: Spline, slack: float, steps: list[Step[Spline]]) -> Spline:
+    for step in steps:
+        spline, slack = step(spline, slack)
+    return spline
+
+
+def _curve_step(curve: BSplineCurve, slack: float, name: str) -> tuple[BSplineCurve, float]:
+    points = derivative_points(curve.degree, curve.knots, curve.control_points)
+    slack *= _gain(curve.degree, curve.knots)
+    limit = JUMP_TOLERANCE * _largest(points) + slack
+    degree, knots, rows = _continuous(
+        curve.degree - 1, curve.knots[1:-1], list(points), _distance, limit=limit, name=name, letter="v"
+    )
+    return BSplineCurve(degree, knots, np.stack(rows)), slack
+
+
+def _net_step_u(surface: BSplineSurface, slack: float, name: str, letter: str = "u") -> tuple[BSplineSurface, float]:
+    points = derivative_points(surface.degree_u, surface.knots_u, surface.control_points)
+    slack *= _gain(surface.degree_u, surface.knots_u)
+    limit = JUMP_TOLERANCE * _largest(points) + slack
+    degree, knots, rows = _continuous(
+        surface.degree_u - 1, surface.knots_u[1:-1], list(points), _distance, limit=limit, name=name, letter=letter
+    )
+    return replace(surface, degree_u=degree, knots_u=knots, control_points=np.stack(rows)), slack
+
+
+def _net_step_v(surface: BSplineSurface, slack: float, name: str) -> tuple[BSplineSurface, float]:
+    derivative, slack = _net_step_u(swap_directions(surface), slack, name, "v")
+    return swap_directions(derivative), slack
+
+
+def _rows_step_u(surface: SemiStructuredSurface, slack: float, name: str) -> tuple[SemiStructuredSurface, float]:
     p, knots = surface.degree_u, surface.knots_u
-    largest = max(float(np.abs(c.control_points).max()) for c in surface.control_curves)
-    slack = ROUNDING * largest * _gain(p, knots, du)
-    curves = surface.control_curves
-    if du > p:
-        p, knots, curves = 1, np.repeat(knots[[0, -1]], 2), (_zero(curves[0]), _zero(curves[0]))
-    elif du:
-        curves = combined_curves(curves, derivative_matrix(p, knots, du))
-        p, knots = p - du, knots[du : len(knots) - du]
-    rows = [_derivative_curve(c, dv, slack, f"{name}, row {i}") for i, c in enumerate(curves)]
-    factor = max(_gain(c.degree, c.knots, dv) for c in curves)
-    limit = JUMP_TOLERANCE * max(_largest(c.control_points) for c in rows) + slack * factor
-    p, knots, rows = _continuous(p, knots, rows, _curve_distance, limit=limit, name=name, letter="u")
-    return SemiStructuredSurface(p, knots, tuple(rows))
+    curves = list(combined_curves(surface.control_curves, derivative_matrix(p, knots, 1)))
+    slack *= _gain(p, knots)
+    limit = JUMP_TOLERANCE * max(_largest(c.control_points) for c in curves) + slack
+    p, knots, curves = _continuous(p - 1, knots[1:-1], curves, _curve_distance, limit=limit, name=name, letter="u")
+    return SemiStructuredSurface(p, knots, tuple(curves)), slack
 
 
-def _derivative_curve(curve: BSplineCurve, order: int, slack: float, name: str) -> BSplineCurve:
-    if order == 0:
-        return curve
-    q, knots, points = _derivative_rows(curve.degree, curve.knots, curve.control_points, order)
-    limit = JUMP_TOLERANCE * _largest(points) + slack * _gain(curve.degree, curve.knots, order)
-    q, knots, rows = _continuous(q, knots, list(points), _distance, limit=limit, name=name, letter="v")
-    return BSplineCurve(q, knots, np.stack(rows))
-
-
-def _derivative_rows(
-    degree: int, knots: FloatArray, rows: FloatArray, order: int
-) -> tuple[int, FloatArray, FloatArray]:
-    """Return degree, knots and rows of the derivative along axis 0, the degree possibly 0."""
-    if order > degree:
-        return 0, knots[[0, -1]], np.zeros((1, *rows.shape[1:]))
-    return degree - order, knots[order : len(knots) - order], derivative_points(degree, knots, rows, order)
+def _rows_step_v(surface: SemiStructuredSurface, slack: float, name: str) -> tuple[SemiStructuredSurface, float]:
+    rows = [_curve_step(c, slack, f"{name}, row {i}") for i, c in enumerate(surface.control_curves)]
+    return replace(surface, control_curves=tuple(curve for curve, _ in rows)), max(slack for _, slack in rows)
 
 
 def _continuous(
@@ -148,7 +174,7 @@ def _continuous(
         jump = distance(rows[left], rows[right])
         if jump > limit:
             raise InputError(
-                f"{name}: jumps by {jump:.3g} at {letter} = {value}, expected a continuous derivative; "
+                f"{name}: it, or one of lower order, jumps by {jump:.3g} at {letter} = {value}; "
                 f"split_{letter} the surface there and differentiate the pieces"
             )
         keep_rows[left + 1 : right + 1] = False
@@ -160,11 +186,9 @@ def _continuous(
     return degree, knots, rows
 
 
-def _gain(degree: int, knots: FloatArray, order: int) -> float:
-    """Return the most by which the derivative's control points exceed those of the spline (infinity norm)."""
-    if order == 0 or order > degree:
-        return 1.0
-    return float(np.abs(derivative_matrix(degree, knots, order)).sum(axis=1).max())
+def _gain(degree: int, knots: FloatArray) -> float:
+    """Return the most by which control points of the derivative can exceed those of the spline."""
+    return float(np.abs(derivative_matrix(degree, knots, 1)).sum(axis=1).max())
 
 
 def _largest(points: FloatArray) -> float:
@@ -178,7 +202,3 @@ def _distance(a: FloatArray, b: FloatArray) -> float:
 def _curve_distance(a: BSplineCurve, b: BSplineCurve) -> float:
     """Bound the distance between two curves by that of their control points over common knots."""
     return 0.0 if a is b else _distance(*compatible_curves([a, b]).control_points)
-
-
-def _zero(curve: BSplineCurve) -> BSplineCurve:
-    return BSplineCurve(1, np.repeat(curve.knots[[0, -1]], 2), np.zeros((2, 3)))

@@ -183,6 +183,13 @@ class BSplineSurface:
 
         return surface_derivative(self, du, dv)
 
+    def to_semistructured(self) -> SemiStructuredSurface:
+        """Return the same surface with its rows as v-control curves; refused for rational surfaces."""
+        if self.weights is not None:
+            raise InputError("surface: rational, expected one without weights: v-control curves have none")
+        curves = tuple(BSplineCurve(self.degree_v, self.knots_v, row) for row in self.control_points)
+        return SemiStructuredSurface(self.degree_u, self.knots_u, curves)
+
     def _derivative_net(self, a: int, b: int) -> tuple[FloatArray, FloatArray, FloatArray]:
         points = derivative_points(self.degree_u, self.knots_u, self.homogeneous, a)
         points = derivative_points(self.degree_v, self.knots_v, points.transpose(1, 0, 2), b).transpose(1, 0, 2)
