@@ -5,11 +5,12 @@
 each over its own interval, meet in four corners. Left of `left`, right of `right`, below `bottom` and above `top` lies
 one piece each, a Bezier patch divided by a Bezier function; four rectangles fill the corners of the square.
 
-Why this is a tiling: no side touches the edge of the square (`inside_square`), so the boundary of each piece is a simple
-closed curve, and the piece is where its winding number is 1. `boundary_residual` adds the eight boundaries; where the sum is the boundary of the square minus that
-of the hole, the pieces cover every point as often as (1 - winding number of the hole's boundary), almost everywhere.
-`crossings` finds every common point of two sides of the hole; where these are the four corners alone, the boundary of
-the hole is simple and that number is 1 outside the hole and 0 inside. All of it is exact.
+Why this is a tiling: no side touches the edge of the square (`inside_square`), so the boundary of each piece is a
+simple closed curve, and the piece is where its winding number is 1. `boundary_residual` adds the eight boundaries;
+where the sum is the boundary of the square minus that of the hole, the pieces cover every point as often as (1 -
+winding number of the hole's boundary), almost everywhere. `crossings` finds every common point of two sides of the
+hole; where these are the four corners alone, the boundary of the hole is simple and that number is 1 outside the hole
+and 0 inside. All of it is exact.
 """
 
 from __future__ import annotations
