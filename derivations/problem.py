@@ -200,6 +200,29 @@ def lagrangian(problem: BlendProblem, multipliers: Sequence[Any]) -> PolyElement
     return sum((constraint * _rational(value) for value, constraint in pairs), problem.energy)
 
 
+def value_at(polynomial: PolyElement, point: Sequence[Any]) -> Fraction:
+    """Return the value of a polynomial at a point, exactly.
+
+    Raises
+    ------
+    ValueError
+        Another number of values than unknowns.
+
+    Examples
+    --------
+    >>> x, y = PolyRing("x, y", QQ).gens
+    >>> value_at(x**2 * y, [3, 0.5])
+    Fraction(9, 2)
+    """
+    return _evaluate(polynomial, _point(polynomial, point))
+
+
+def _point(polynomial: PolyElement, point: Sequence[Any]) -> list[Any]:
+    if len(point) != polynomial.ring.ngens:
+        raise ValueError(f"point: found {len(point)} values, expected {polynomial.ring.ngens}")
+    return [_rational(value) for value in point]
+
+
 def derivatives_at(
     polynomial: PolyElement, point: Sequence[Any]
 ) -> tuple[Fraction, list[Fraction], list[list[Fraction]]]:
@@ -228,12 +251,10 @@ def derivatives_at(
     >>> derivatives_at(x**2 * y, [3, 0.5])[1]
     [Fraction(3, 1), Fraction(9, 1)]
     """
-    ring = polynomial.ring
-    if len(point) != ring.ngens:
-        raise ValueError(f"point: found {len(point)} values, expected {ring.ngens}")
-    values = [_rational(value) for value in point]
-    gradient = [polynomial.diff(generator) for generator in ring.gens]
-    hessian = [[entry.diff(generator) for generator in ring.gens] for entry in gradient]
+    values = _point(polynomial, point)
+    generators = polynomial.ring.gens
+    gradient = [polynomial.diff(generator) for generator in generators]
+    hessian = [[entry.diff(generator) for generator in generators] for entry in gradient]
     return (
         _evaluate(polynomial, values),
         [_evaluate(entry, values) for entry in gradient],
