@@ -378,7 +378,9 @@ def _formula_problems(formula: Formula) -> Iterator[str]:
 def assumption_instance(formula: Formula) -> dict[sp.Symbol, sp.Rational] | None:
     """Return the smallest rational instance of the assumptions, or None where a bounded search finds none."""
     symbols = sorted({s for a in formula.assumptions for s in a.free_symbols}, key=str)
-    return smallest_assignment(symbols, lambda at: all(a.subs(at) == True for a in formula.assumptions))  # noqa: E712
+    tests = [(sorted(a.free_symbols, key=str), a) for a in formula.assumptions]
+    compiled = [(used, sp.lambdify(used, a, "math")) for used, a in tests]
+    return smallest_assignment(symbols, lambda at: all(test(*(at[s] for s in used)) for used, test in compiled))
 
 
 def _missing_evidence(claim: Claim) -> Iterator[str]:

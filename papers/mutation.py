@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from itertools import zip_longest
+from itertools import pairwise, zip_longest
 from typing import Any
 
 import sympy as sp
@@ -113,7 +113,7 @@ def _differs(original: list[Case], other: Any) -> bool:
 def _neighbour_map(chains: tuple[tuple[Any, ...], ...]) -> dict[Any, list[Any]]:
     near: dict[Any, list[Any]] = {}
     for chain in chains:
-        for left, right in zip(chain, chain[1:], strict=False):
+        for left, right in pairwise(chain):
             near.setdefault(left, []).append(right)
             near.setdefault(right, []).append(left)
     return near

@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import dataclass
 from multiprocessing import get_context
+from typing import Any
 
 from papers.ledger import (
     Case,
@@ -38,8 +39,8 @@ class ReadingDecision:
         Every part is proved, not only checked on instances.
     method : str
     cases : int
-    residual : str
-        What the first false case leaves; empty where nothing is left.
+    residual : sympy.Expr or None
+        What the first false case leaves.
     false_case, true_case : str
         One instance on each side; empty where there is none.
     """
@@ -51,9 +52,14 @@ class ReadingDecision:
     proof: bool
     method: str
     cases: int
-    residual: str
+    residual: Any
     false_case: str
     true_case: str
+
+    @property
+    def proved(self) -> bool:
+        """Whether the verdict is proved: a single exact instance disproves."""
+        return self.proof or (self.verdict is Verdict.FAILS and self.strength <= Strength.RATIONAL)
 
 
 @dataclass(frozen=True)
@@ -96,6 +102,16 @@ class Decision:
     def ok(self) -> bool:
         """The verdict is the recorded one and nothing is missing."""
         return self.verdict is self.recorded and not self.problem and not self.vacuous and not self.mutation.survivors
+
+    @property
+    def proved(self) -> bool:
+        """Proved, or disproved by an exact instance: nothing rests on floating point or on a sample."""
+        return bool(self.readings) and self.verdict is not None and all(reading.proved for reading in self.readings)
+
+    @property
+    def false_case(self) -> str:
+        """The first instance of a failing reading."""
+        return next((r.false_case for r in self.readings if r.verdict is Verdict.FAILS), "")
 
 
 class VacuousError(CheckFailedError):
@@ -168,7 +184,7 @@ def _decide_reading(reading: Reading) -> ReadingDecision:
         all(part.check.proof for part in reading.parts),
         "; ".join(dict.fromkeys(part.check.method for part in reading.parts)),
         len(cases),
-        "" if shown is None or shown.residual is None else str(shown.residual),
+        shown.residual if shown else None,
         shown.label if shown else "",
         next((c.label for c in right if c.own), right[0].label if right else ""),
     )
@@ -224,7 +240,7 @@ class Ledger:
         return {
             "printed": len(self.decisions),
             "decided": len(decided),
-            "proved": sum(all(r.proof for r in d.readings) for d in decided),
+            "proved": sum(d.proved for d in decided),
             **{str(v): sum(d.verdict is v for d in self.decisions) for v in Verdict},
             "vacuous": sum(d.vacuous for d in self.decisions),
             "changed": sum(d.verdict is not d.recorded for d in self.decisions),

@@ -15,7 +15,10 @@ _START_CHAINS = (*pr.COND_3_1.neighbours, (pr.w_kr, w_kr1))
 _END_CHAINS = (*pr.COND_3_2.neighbours, (pr.t_ks, t_ks1), (u_last, u_before))
 
 TRUE_2_2 = Formula(
-    Eq(pr.P_m1, pr.beta**2 * (1 - u_last) * (pr.k_s - 1) / ((pr.t_ks - pr.t_s) * (pr.k - 1)) * (pr.S_0 - pr.S_1) + pr.P_m),
+    Eq(
+        pr.P_m1,
+        pr.beta**2 * (1 - u_last) * (pr.k_s - 1) / ((pr.t_ks - pr.t_s) * (pr.k - 1)) * (pr.S_0 - pr.S_1) + pr.P_m,
+    ),
     (pr.P_m, pr.P_m1, pr.S_0, pr.S_1, pr.beta, u_last, pr.t_ks, pr.t_s, pr.k, pr.k_s),
     (u_last > 0, u_last < 1, pr.t_ks > pr.t_s, pr.k >= 2, pr.k_s >= 2),
     _END_CHAINS,
@@ -90,8 +93,8 @@ CLAIMS = (
         (Reading((Part(row_check("end", 1), pr.COND_2_2),), condition="k = 4 (the last inner knot is u_{m-k+1})"),),
         Correction("The last inner knot of U has the index m-k+1.", (Part(row_check("end", 1), TRUE_2_2),)),
         partial(row_counterexample, "end", 1, pr.COND_2_2),
-        remark="For k < 4 the printed u_{m-3} is an earlier inner knot, for k > 4 it is past the inner knots, where U is "
-        "1 and row m-1 would fall on row m.",
+        remark="For k < 4 the printed u_{m-3} is an earlier inner knot; for k > 4 it is past the inner knots, where U "
+        "is 1 and row m-1 would fall on row m.",
     ),
     Claim(
         "cond-3.1",

@@ -66,7 +66,8 @@ CLAIMS = (
         "q_1^2 R_vv for some functions p_2, q_2 of v.",
         Verdict.HOLDS_IF,
         (Reading((Part(general_check(2), pr.EQ_16),), condition=_REGULAR),),
-        remark="No term is missing: mixed derivatives of P need no condition, they follow by differentiating (15) along v.",
+        remark="No term is missing: mixed derivatives of P need no condition, they follow from (15), differentiated "
+        "along v.",
     ),
     Claim(
         "eq-17",
@@ -96,8 +97,8 @@ CLAIMS = (
     Claim(
         "app-d1",
         _WHERE,
-        "First derivatives at the clamped end: (k-1)/u_1 times the first difference of rows of P, (k_r-1)/(w_{k_r}-w_s) "
-        "times that of R.",
+        "First derivatives at the clamped end: (k-1)/u_1 times the first difference of rows of P, "
+        "(k_r-1)/(w_{k_r}-w_s) times that of R.",
         Verdict.HOLDS,
         (Reading((Part(derivative_check("P", 1), pr.APP_D1_P), Part(derivative_check("R", 1), pr.APP_D1_R))),),
     ),
@@ -120,7 +121,7 @@ CLAIMS = (
             {2: pr.COND_3_1},
             "The made pair with row 2 by (3.1), which is (18) with these derivatives",
         ),
-        remark="Right for order 2, where both sides vanish, and where the first two spans have length 1. Reading u_1 as "
-        "a misread u_1^2 would not help unless u_1 = u_2; see app-d2.squares.",
+        remark="Right for order 2, where both sides vanish, and where the first two spans have length 1. Reading u_1 "
+        "as a misread u_1^2 would not help unless u_1 = u_2; see app.squares.",
     ),
 )

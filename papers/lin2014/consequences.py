@@ -67,9 +67,7 @@ def with_printed_rows(result: BlendResult, side: Side, formulas: Mapping[int, Fo
         used = sorted(right.free_symbols, key=str)
         evaluate = sp.lambdify(used, right, "numpy")
         rows[place(row)] = evaluate(*(points[s] if s in points else values[s] for s in used))
-    curves = [
-        BSplineCurve(c.degree, c.knots, points) for c, points in zip(surface.control_curves, rows, strict=True)
-    ]
+    curves = [BSplineCurve(c.degree, c.knots, points) for c, points in zip(surface.control_curves, rows, strict=True)]
     return replace(surface, control_curves=tuple(curves))
 
 

@@ -65,18 +65,20 @@ _PROBE = {
     **dict(zip(_H, (sp.Rational(2, 17), sp.Rational(5, 19), sp.Rational(11, 23)), strict=True)),
     **dict(zip(_BASE_H, (sp.Rational(7, 3), sp.Rational(31, 7)), strict=True)),
     **{pr.alpha: sp.Rational(13, 11), pr.beta: sp.Rational(13, 11)},
-    **dict(zip(_BASE_ROWS["start"] + _BASE_ROWS["end"], (3, 10, 29, 3, 10, 29), strict=True)),
+    **dict(zip(_BASE_ROWS["start"] + _BASE_ROWS["end"], map(sp.Integer, (3, 10, 29, 3, 10, 29)), strict=True)),
     **{pr.w_s: sp.Rational(5, 7), pr.t_s: sp.Rational(5, 7)},
 }
 
 
 def _row_probe(side: Side, row: int, formula: Formula) -> tuple[Any, ...]:
-    found = []
-    for k, k_b in ((4, 4), (5, 3), (3, 5)):
-        values = _symbols(side, k, k_b, _rows_from_pieces(row, k - 1, k_b - 1, side))
-        left, right = (x.subs(values, simultaneous=True).subs(_PROBE) for x in formula.relation.args)
-        found.append(left - right)
-    return tuple(found)
+    left, right = formula.relation.args
+    return tuple((left - right).xreplace(_probe_values(side, row, *orders)) for orders in ((4, 4), (5, 3), (3, 5)))
+
+
+@cache
+def _probe_values(side: Side, row: int, k: int, k_b: int) -> dict[Any, Any]:
+    values = _symbols(side, k, k_b, _rows_from_pieces(row, k - 1, k_b - 1, side))
+    return _PROBE | {symbol: sp.sympify(value).subs(_PROBE) for symbol, value in values.items()}
 
 
 def _row_cases(side: Side, row: int, formula: Formula | None) -> Iterator[Case]:
@@ -96,10 +98,8 @@ def _row_cases(side: Side, row: int, formula: Formula | None) -> Iterator[Case]:
             yield _row_case(right, side, row, values, f"orders {k}, {k_b}", own=own, meets=k == CUBIC)
 
 
-def _row_case(
-    right: Any, side: Side, row: int, values: dict[Any, Any], label: str, *, own: bool, meets: bool
-) -> Case:
-    difference = (right - _ROWS[side][row]).subs(values, simultaneous=True)
+def _row_case(right: Any, side: Side, row: int, values: dict[Any, Any], label: str, *, own: bool, meets: bool) -> Case:
+    difference = (right - _ROWS[side][row]).xreplace(values)
     residual = difference_form(difference, _BASE_ROWS[side], factored=own)
     return Case(label, residual == 0, own, meets, residual)
 
@@ -124,7 +124,7 @@ def _symbols(side: Side, k: Any, k_b: Any, matrix: sp.Matrix) -> dict[Any, Any]:
     shape = pr.alpha if side == "start" else pr.beta
     base = _BASE_ROWS[side]
     rows = matrix.subs(A, shape**2) * sp.Matrix(base[: matrix.cols])
-    values = dict(zip(_ROWS[side], rows, strict=False)) | {_base_order(side): k_b, pr.k: k}
+    values = dict(zip(_ROWS[side], rows, strict=False)) | {_base_order(side): sp.sympify(k_b), pr.k: sp.sympify(k)}
     h, b = _H, _BASE_H
     if side == "start":
         return values | {pr.u_1: h[0], pr.u_2: h[1], pr.w_kr: pr.w_s + b[0], w_kr1: pr.w_s + b[1]}
@@ -149,7 +149,7 @@ def _derivative_cases(surface: Literal["P", "R"], order: int, formula: Formula |
         else:
             pieces = end_derivatives_from_pieces(2, number - 1)[order, :]
             true = pieces.subs(dict(zip(span_symbols(2), h, strict=True)), simultaneous=True)
-        right = relation.rhs.subs({k: number, **knots}, simultaneous=True)
+        right = relation.rhs.xreplace({k: sp.sympify(number), **knots})
         residual = difference_form(right - (true * sp.Matrix(rows))[0], rows)
         label = f"every order {k}" if number is k else f"order {number}"
         yield Case(label, residual == 0, number in (k, CUBIC), residual=residual)

@@ -1,7 +1,8 @@
 """Deciding (15) to (18): against the chain rule, and by a judge that knows no parametrisation.
 
-The judge holds an implicit equation F = 0 of the base. A surface P touches the base along u = 0 to order n if F(P(u, v))
-has no power of u up to n, and if P is regular there: a surface without a tangent plane has no contact to speak of.
+The judge holds an implicit equation F = 0 of the base. A surface P touches the base along u = 0 to order n if
+F(P(u, v)) has no power of u up to n, and if P is regular there: a surface without a tangent plane has no contact to
+speak of.
 """
 
 from __future__ import annotations
@@ -27,8 +28,8 @@ def general_check(order: int) -> Check:
     return Check(
         partial(_general_cases, order),
         Strength.SYMBOLIC_ORDER,
-        f"the chain rule of order {order} for P(u, v) = R(w(u, v), v~(u, v)); instances judged by the implicit equation "
-        "of the base and by the regularity of P",
+        f"the chain rule of order {order} for P(u, v) = R(w(u, v), v~(u, v)); instances judged by the implicit "
+        "equation of the base and by the regularity of P",
         proof=True,
     )
 

@@ -20,7 +20,7 @@ w_kr, w_s = symbols("w_{k_r} w_s", real=True)
 t_ks, t_s = symbols("t_{k_s} t_s", real=True)
 
 P_0, P_1, P_2 = (Symbol(f"P_{{{i}j}}", real=True) for i in range(3))
-P_m, P_m1, P_m2 = (Symbol(f"P_{{{i}j}}", real=True) for i in ("m", "m-1", "m-2"))
+P_m, P_m1, P_m2 = (Symbol(f"P_{{{i},j}}", real=True) for i in ("m", "m-1", "m-2"))
 R_0, R_1, R_2 = (Symbol(f"R_{{{i}j}}", real=True) for i in range(3))
 S_0, S_1, S_2 = (Symbol(f"S_{{{i}j}}", real=True) for i in range(3))
 

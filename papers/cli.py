@@ -1,0 +1,133 @@
+"""The `semispline` script: verify and reproduce, with the commands of `solver` and `derivations` mounted beside them.
+
+Heavy imports wait inside the functions, so that `--help` answers fast.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+import derivations.cli
+import solver.cli
+from solver.exit_status import ANSWER_IS_NO, reports_errors
+
+if TYPE_CHECKING:
+    from papers.verification import Decision, Ledger
+
+app = typer.Typer(
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+    help="Verified blending of B-spline surfaces, and what the paper behind it claims.",
+)
+
+Name = Annotated[str, typer.Argument(metavar="PAPER", help="A paper of this package, or a folder with printed.py.")]
+
+
+@app.command("verify")
+@reports_errors
+def verify_command(
+    paper: Name = "lin2014",
+    json_file: Annotated[
+        str | None, typer.Option("--json", metavar="FILE", help="Write the decided ledger; - is standard output.")
+    ] = None,
+    markdown: Annotated[str | None, typer.Option(metavar="FILE", help="Write the report of the paper.")] = None,
+) -> None:
+    """Decide every claim of a paper anew; exit status 1 if a verdict is not the recorded one."""
+    from papers.report import ledger_markdown, ledger_record
+    from solver.io.disk import check_output, write_text
+    from solver.io.json_text import to_text
+
+    for path in (json_file, markdown):
+        if path is not None and path != "-":
+            check_output(path)
+    ledger = decided(paper)
+    if json_file == "-":
+        typer.echo(to_text(ledger_record(ledger)), nl=False)
+    elif json_file is not None:
+        write_text(json_file, to_text(ledger_record(ledger)))
+    if markdown is not None:
+        write_text(markdown, ledger_markdown(ledger))
+    if json_file != "-":
+        print_ledger(ledger)
+    if not ledger.ok:
+        raise typer.Exit(ANSWER_IS_NO)
+
+
+@app.command("reproduce")
+@reports_errors
+def reproduce_command(
+    paper: Name,
+    out: Annotated[str, typer.Option(metavar="DIR", help="Folder for index.html, pictures and numbers.")] = "report",
+) -> None:
+    """Verify the claims of a paper, run its examples, and write tables, pictures and an HTML report."""
+    from papers.ledger import LedgerError, paper_names
+    from papers.reproduction import reproduce
+
+    if paper not in paper_names():
+        raise LedgerError(f"paper: found {paper!r}, expected one of {', '.join(paper_names())}")
+    ledger = reproduce(paper, out, decide=decided, show=print_ledger, echo=typer.echo)
+    if not ledger.ok:
+        raise typer.Exit(ANSWER_IS_NO)
+
+
+def decided(name: str) -> Ledger:
+    """Decide a paper, with a progress bar where standard error is a terminal."""
+    from papers.ledger import load_paper
+    from papers.verification import verify
+
+    total = len(load_paper(name).claims)
+    with _progress(total) as advance:
+        return verify(name, workers=min(os.cpu_count() or 1, 8), progress=advance)
+
+
+def print_ledger(ledger: Ledger) -> None:
+    """Print the table, the counts, and what is not as recorded."""
+    from rich.console import Console
+
+    from papers.report import counts_text, ledger_table
+
+    console = Console()
+    if not console.is_terminal:
+        console = Console(width=160)
+    console.print(ledger_table(ledger))
+    console.print(counts_text(ledger), highlight=False)
+    for decision in ledger.decisions:
+        if not decision.ok:
+            found = decision.verdict or "no answer"
+            survivors = "; ".join(decision.mutation.survivors)
+            details = "; ".join(text for text in (decision.problem, survivors) if text)
+            typer.echo(f"{decision.id}: found {found}, recorded {decision.recorded}. {details}".rstrip(), err=True)
+
+
+@contextmanager
+def _progress(total: int) -> Iterator[Callable[[Decision], None] | None]:
+    from rich.console import Console
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
+
+    console = Console(stderr=True)
+    if not console.is_terminal:
+        yield None
+        return
+    columns = (TextColumn("deciding"), BarColumn(), MofNCompleteColumn(), TextColumn("{task.description}"))
+    with Progress(*columns, console=console, transient=True) as bar:
+        task = bar.add_task("", total=total)
+        yield lambda decision: bar.update(task, advance=1, description=decision.id)
+
+
+for _mounted in (solver.cli.app, derivations.cli.app):
+    app.registered_commands += _mounted.registered_commands
+
+
+def main() -> None:
+    """Run the command line."""
+    app(prog_name="semispline")
+
+
+if __name__ == "__main__":
+    main()
