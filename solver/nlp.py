@@ -71,7 +71,7 @@ class ConstrainedSolution:
 def constrained_problem(problem: BlendProblem) -> ConstrainedProblem:
     """State the blend problem with every control point and shape parameter as an unknown."""
     n = problem.form.offsets[-1]
-    free = [name for name, side in (("alpha", problem.a), ("beta", problem.b)) if side.has_shape_parameter]
+    free = [name for name, is_free in zip(("alpha", "beta"), problem.free, strict=True) if is_free]
     x = ca.MX.sym("x", 3 * n + len(free))
     p = ca.reshape(x[: 3 * n], n, 3)
     parameter = {name: x[3 * n + k] for k, name in enumerate(free)}
@@ -85,28 +85,25 @@ def constrained_problem(problem: BlendProblem) -> ConstrainedProblem:
     f = ca.dot(p, ca.mtimes(energy, p)) / f_scale
 
     g = []
-    m1 = len(problem.form.rows)
-    for name, side, spans, natural, rows in (
-        ("alpha", problem.a, problem.spans[0], problem.natural[0], range(m1)),
-        ("beta", problem.b, problem.spans[1], problem.natural[1], range(m1 - 1, -1, -1)),
+    for name, (side, rows, spans), natural, fixed in zip(
+        ("alpha", "beta"), problem.contacts, problem.natural, problem.start, strict=True
     ):
-        a = parameter[name] ** 2 * natural if name in parameter else 1.0
-        for i, prescribed in enumerate(_contact_rows(side, a, problem.form.u.degree, spans)):
-            row = rows[i]
+        a = parameter[name] ** 2 * natural if name in parameter else fixed
+        for row, prescribed in zip(rows, contact_rows(side, a, problem.form.u.degree, spans), strict=False):
             g.append(ca.vec(p[problem.form.offsets[row] : problem.form.offsets[row + 1], :] - prescribed))
 
     # alpha is measured in units of its natural size, so that the solver does not care about parameter speeds.
     box = [
         np.sqrt(np.array(bounds) / natural)
-        for side, bounds, natural in zip((problem.a, problem.b), problem.bounds, problem.natural, strict=True)
-        if side.has_shape_parameter
+        for bounds, natural, is_free in zip(problem.bounds, problem.natural, problem.free, strict=True)
+        if is_free
     ]
     infinite = np.full(3 * n, np.inf)
     return ConstrainedProblem(
         x=x,
         f=f,
         g=ca.vertcat(*g),
-        start=np.concatenate([first.T.ravel(), np.ones(len(free))]),
+        start=np.concatenate([first.T.ravel(), *([min(max(1.0, low), high)] for low, high in box)]),
         lower=np.concatenate([-infinite, *([low] for low, _ in box)]),
         upper=np.concatenate([infinite, *([high] for _, high in box)]),
         f_scale=f_scale,
@@ -114,7 +111,7 @@ def constrained_problem(problem: BlendProblem) -> ConstrainedProblem:
     )
 
 
-def _contact_rows(side: Side, a: Any, degree: int, spans: tuple[float, float]) -> list[Any]:
+def contact_rows(side: Side, a: Any, degree: int, spans: tuple[float, float]) -> list[Any]:
     """Rows that the contact prescribes, each an (n, 3) expression in a."""
     q = side.degree
     if side.order == 0:
@@ -156,7 +153,7 @@ def solve_constrained(problem: BlendProblem) -> ConstrainedSolution:
     values = np.asarray(result["x"]).ravel()
     shape = dict(zip(nlp.parameters, values[3 * problem.form.offsets[-1] :], strict=True))
     a, b = (
-        float(shape[name] ** 2 * natural) if name in shape else 1.0
-        for name, natural in zip(("alpha", "beta"), problem.natural, strict=True)
+        float(shape[name] ** 2 * natural) if name in shape else fixed
+        for name, natural, fixed in zip(("alpha", "beta"), problem.natural, problem.start, strict=True)
     )
     return ConstrainedSolution(a, b, int(stats["iter_count"]), str(stats["return_status"]), kkt)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Literal
 
 import numpy as np
 from scipy.sparse.linalg import splu
@@ -15,10 +16,28 @@ from solver.knots import basis_matrix, greville
 from solver.layout import ROWS_PER_SIDE, blend_u_basis, middle_basis
 from solver.sides import Side
 
-# Admissible a = alpha^2 lies within this factor of its natural size; near zero the blend folds.
-BOX_FACTOR = 8.0
 # Iterative refinement may change a solution by this fraction; beyond it the system is too ill-conditioned.
 TRUSTED_CORRECTION = 1e-6
+
+
+@dataclass(frozen=True)
+class ProblemOptions:
+    """What may be chosen about a blend beside its bases and contact.
+
+    Attributes
+    ----------
+    middle_curves : int
+    degree_u : int
+    shape : pair of float, "free" or "natural"
+        alpha^2 and beta^2 where contact is geometric.
+    box : (float, float)
+        Admissible range of a free shape parameter, in units of its natural size; near zero the blend folds.
+    """
+
+    middle_curves: int = 1
+    degree_u: int = 3
+    shape: tuple[float | Literal["free", "natural"], float | Literal["free", "natural"]] = ("free", "free")
+    box: tuple[float, float] = (1 / 8, 8.0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,46 +52,38 @@ class BlendProblem:
         Contact at u = 0 and u = 1.
     natural : (float, float)
         Natural sizes of alpha^2 and beta^2: mean gap between the contact curves over mean cross speed of the base.
+    bounds : pair of (float, float)
+        Boxes of alpha^2 and beta^2; low = high where the parameter is fixed.
     """
 
     form: EnergyForm
     a: Side
     b: Side
     natural: tuple[float, float]
+    bounds: tuple[tuple[float, float], tuple[float, float]]
 
     @property
-    def bounds(self) -> tuple[tuple[float, float], tuple[float, float]]:
-        """Boxes of alpha^2 and beta^2; a single value where a side has no shape parameter."""
-        lower, upper = (
-            (n / BOX_FACTOR, n * BOX_FACTOR) if side.has_shape_parameter else (1.0, 1.0)
-            for side, n in zip((self.a, self.b), self.natural, strict=True)
-        )
-        return lower, upper
+    def free(self) -> tuple[bool, bool]:
+        """Whether alpha^2 and beta^2 are unknowns."""
+        (low_a, high_a), (low_b, high_b) = self.bounds
+        return low_a < high_a, low_b < high_b
 
     @property
     def start(self) -> tuple[float, float]:
-        """Natural alpha^2 and beta^2 where they are free, else 1."""
-        first, second = (
-            n if side.has_shape_parameter else 1.0 for side, n in zip((self.a, self.b), self.natural, strict=True)
-        )
-        return first, second
+        """Natural alpha^2 and beta^2, or the nearest admissible ones."""
+        a, b = (min(max(n, low), high) for n, (low, high) in zip(self.natural, self.bounds, strict=True))
+        return a, b
 
     @property
-    def spans(self) -> tuple[tuple[float, float], tuple[float, float]]:
-        """Distances of the two knots of U nearest to each end, measured from that end."""
+    def contacts(self) -> tuple[tuple[Side, range, tuple[float, float]], ...]:
+        """For each contact the side, the rows counted from it, and the distances of the two nearest knots of U."""
         U, p = self.form.u.knots, self.form.u.degree
         from_end = U[-1] - U[::-1]
-        return (float(U[p + 1]), float(U[p + 2])), (float(from_end[p + 1]), float(from_end[p + 2]))
-
-    def prescribed(self, a: float, b: float) -> tuple[FloatArray, FloatArray]:
-        """Return the indices in p that both contacts prescribe, and their values, shapes (F,) and (F, 3)."""
-        spans_a, spans_b = self.spans
-        at_a = self.a.contact_rows(a, self.form.u.degree, spans_a)
-        at_b = self.b.contact_rows(b, self.form.u.degree, spans_b)[::-1]
-        m1 = len(self.form.rows)
-        owned = [*range(len(at_a)), *range(m1 - len(at_b), m1)]
-        index = np.concatenate([np.arange(self.form.offsets[i], self.form.offsets[i + 1]) for i in owned])
-        return index, np.concatenate([at_a.reshape(-1, 3), at_b.reshape(-1, 3)])
+        m = len(self.form.rows) - 1
+        return (
+            (self.a, range(m + 1), (float(U[p + 1]), float(U[p + 2]))),
+            (self.b, range(m, -1, -1), (float(from_end[p + 1]), float(from_end[p + 2]))),
+        )
 
     @cached_property
     def _free_system(self) -> _FreeSystem:
@@ -81,9 +92,14 @@ class BlendProblem:
 
     def control_points(self, a: float, b: float) -> FloatArray:
         """Return p of least energy for given alpha^2 and beta^2, shape (N, 3): one linear solve for the free rows."""
-        fixed, values = self.prescribed(a, b)
         points = np.zeros((self.form.offsets[-1], 3))
-        points[fixed] = values
+        for (side, rows, spans), value in zip(self.contacts, (a, b), strict=True):
+            for row, prescribed in zip(rows, side.contact_rows(value, self.form.u.degree, spans), strict=False):
+                points[self.form.offsets[row] : self.form.offsets[row + 1]] = prescribed
+        return self.completed(points)
+
+    def completed(self, points: FloatArray) -> FloatArray:
+        """Fill the free rows of p, shape (N, d), so that the energy is least."""
         return self._free_system.completed(points)
 
 
@@ -130,8 +146,8 @@ class _FreeSystem:
         return filled
 
 
-def make_problem(a: Side, b: Side, degree_u: int, middle_curves: int) -> BlendProblem:
-    """Lay out the knots of the blend and assemble its energy.
+def make_problem(a: Side, b: Side, options: ProblemOptions) -> BlendProblem:
+    """Lay out the knots of the blend and its admissible shape parameters.
 
     Raises
     ------
@@ -140,10 +156,22 @@ def make_problem(a: Side, b: Side, degree_u: int, middle_curves: int) -> BlendPr
     EdgeError
         The contact curves coincide, one of them is a point, or a cross derivative that contact needs vanishes.
     """
-    u = blend_u_basis(degree_u, middle_curves)
+    u = blend_u_basis(options.degree_u, options.middle_curves)
     middle = middle_basis(a.along, b.along)
-    rows = (a.along,) * ROWS_PER_SIDE + (middle,) * middle_curves + (b.along,) * ROWS_PER_SIDE
-    return BlendProblem(EnergyForm(u, rows), a, b, _natural_sizes(a, b))
+    rows = (a.along,) * ROWS_PER_SIDE + (middle,) * options.middle_curves + (b.along,) * ROWS_PER_SIDE
+    natural = _natural_sizes(a, b)
+    bounds_a, bounds_b = (
+        (1.0, 1.0) if not side.has_shape_parameter else _bounds(size, shape, options.box)
+        for side, size, shape in zip((a, b), natural, options.shape, strict=True)
+    )
+    return BlendProblem(EnergyForm(u, rows), a, b, natural, (bounds_a, bounds_b))
+
+
+def _bounds(natural: float, shape: float | Literal["free", "natural"], box: tuple[float, float]) -> tuple[float, float]:
+    if shape == "free":
+        return natural * box[0], natural * box[1]
+    fixed = natural if shape == "natural" else float(shape)
+    return fixed, fixed
 
 
 def _natural_sizes(a: Side, b: Side) -> tuple[float, float]:

@@ -10,7 +10,7 @@ import numpy as np
 from solver.arrays import FloatArray
 from solver.continuity import Base
 from solver.errors import EdgeError, OptionError
-from solver.generated import contact_numpy
+from solver.generated import contact_numpy, shape_numpy
 from solver.gram import Basis
 from solver.knots import affine_knots, reversed_knots
 from solver.surfaces import BSplineSurface
@@ -67,6 +67,19 @@ class Side:
         else:
             matrix = contact_numpy.contact_rows_2(a, p, *blend_spans, q, *self.spans)
         return np.asarray(np.einsum("ij,jnd->ind", matrix, self.rows[: self.order + 1]))
+
+    def row_powers(self, centre: float, blend_degree: int, blend_spans: tuple[float, float]) -> FloatArray:
+        """Return the prescribed rows as a polynomial in a - centre, shape (order + 1 powers, order + 1, n, 3).
+
+        Only where contact is geometric, order 1 or 2. Source: generated from `derivations.shape`.
+        """
+        p, q, order = blend_degree, self.degree, self.order
+        if order == 1:
+            matrix = shape_numpy.contact_row_powers_1(centre, p, blend_spans[0], q, self.spans[0])
+        else:
+            matrix = shape_numpy.contact_row_powers_2(centre, p, *blend_spans, q, *self.spans)
+        powers = matrix.reshape(order + 1, order + 1, order + 1)
+        return np.asarray(np.einsum("kij,jnd->kind", powers, self.rows[: order + 1]))
 
     def mean_cross_speed(self) -> float:
         """Return the mean |R_w| along the contact."""

@@ -41,10 +41,11 @@ def test_contact_of_random_bases(seed, edges, backwards, middle_curves, planar):
         assert contact.gap <= 1e-14
         assert contact.c1_residual < 1e-11
         assert contact.c2_residual < 1e-11
-    g2 = blend(a, b, continuity="G2", middle_curves=middle_curves)
-    for contact in (g2.contact_a, g2.contact_b):
-        assert contact.angle_degrees < 1e-9
-        assert contact.curvature_jump_relative < 1e-9
+    for method in ("reduced", "casadi"):
+        g2 = blend(a, b, continuity="G2", middle_curves=middle_curves, method=method)
+        for contact in (g2.contact_a, g2.contact_b):
+            assert contact.angle_degrees < 1e-9
+            assert contact.curvature_jump_relative < 1e-9
     c0 = blend(a, b, continuity="C0", middle_curves=middle_curves)
     for contact in (c0.contact_a, c0.contact_b):
         assert contact.gap <= 1e-14
@@ -225,6 +226,11 @@ def flat(x0=0.0, z=0.0):
         ({"method": "magic"}, "method: found 'magic'"),
         ({"degree_u": 9}, "degree_u: found 9"),
         ({"degree_u": 1}, "degree_u: found 1"),
+        ({"alpha": -1.0}, "alpha: found -1.0"),
+        ({"alpha": "wild"}, "alpha: found 'wild'"),
+        ({"alpha": ("free", 1.0, 1.0)}, "alpha: found 3 values"),
+        ({"box": (0.0, 1.0)}, "box: found"),
+        ({"box": (2.0, 1.0)}, "box: found"),
     ],
 )
 def test_options_are_refused(options, message):

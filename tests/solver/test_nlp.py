@@ -13,7 +13,7 @@ from derivations.energy import ExactSurface
 from derivations.problem import ExactBase, blend_problem, derivatives_at, lagrangian
 from solver import Base, BSplineSurface, blend
 from solver.nlp import constrained_problem, solve_constrained
-from solver.problem import make_problem
+from solver.problem import ProblemOptions, make_problem
 from solver.sides import make_side
 
 K2 = (0, 0, 0, 1, 1, 1)
@@ -33,6 +33,12 @@ def small_pair():
     return base(K2_INNER, K2, 0, 0.5), base(K2, K2_INNER, -2, -0.5)
 
 
+def small_problem(middle_curves):
+    a, b = small_pair()
+    sides = make_side(Base(a, "u0"), "G2"), make_side(Base(b, "u0"), "G2")
+    return make_problem(*sides, ProblemOptions(middle_curves))
+
+
 def exact_basis(basis):
     # u-knots such as 1/3 are no binary fractions: the exact problem takes the floats that the solver has.
     return ExactBasis(basis.degree, tuple(map(Fraction, basis.knots)))
@@ -41,8 +47,7 @@ def exact_basis(basis):
 def both_problems():
     """The same G2 problem, ours in floats and the derivation's in exact rationals."""
     a, b = small_pair()
-    sides = make_side(Base(a, "u0"), "G2"), make_side(Base(b, "u0"), "G2")
-    problem = make_problem(*sides, degree_u=3, middle_curves=0)
+    problem = small_problem(0)
     surface = ExactSurface(exact_basis(problem.form.u), tuple(exact_basis(row) for row in problem.form.rows))
     bases = [
         ExactBase(
@@ -107,8 +112,7 @@ def test_hessian_agrees_with_sympy(compared):
 
 @pytest.mark.parametrize("which", ["f", "g"])
 def test_taylor(which):
-    a, b = small_pair()
-    nlp = constrained_problem(make_problem(make_side(Base(a, "u0"), "G2"), make_side(Base(b, "u0"), "G2"), 3, 1))
+    nlp = constrained_problem(small_problem(1))
     rng = np.random.default_rng(2)
     weights = rng.standard_normal(nlp.g.shape[0])
     scalar = nlp.f if which == "f" else ca.dot(ca.DM(weights), nlp.g)
@@ -132,8 +136,7 @@ def test_taylor(which):
 
 
 def test_constraints_have_full_rank():
-    a, b = small_pair()
-    nlp = constrained_problem(make_problem(make_side(Base(a, "u0"), "G2"), make_side(Base(b, "u0"), "G2"), 3, 1))
+    nlp = constrained_problem(small_problem(1))
     jacobian = np.asarray(ca.Function("J", [nlp.x], [ca.jacobian(nlp.g, nlp.x)])(nlp.start))
     assert np.linalg.matrix_rank(jacobian) == jacobian.shape[0]
 
@@ -143,7 +146,7 @@ def test_ipopt_is_not_beaten_near_its_answer(seed):
     # Nelder-Mead on (a, b) over linear solves knows nothing of CasADi.
     a, b = facing_pair(np.random.default_rng(seed), edges=("u0", "u0"), backwards=(False, False))
     sides = make_side(a, "G2"), make_side(b, "G2", a.range_along)
-    problem = make_problem(*sides, degree_u=3, middle_curves=1)
+    problem = make_problem(*sides, ProblemOptions())
     found = solve_constrained(problem)
 
     def energy(z):
@@ -169,6 +172,7 @@ def test_energy_of_the_result_is_that_of_the_exact_problem():
 def test_shape_parameters_do_not_depend_on_units():
     a, b = small_pair()
     big = [BSplineSurface(s.degree_u, s.degree_v, s.knots_u, s.knots_v, 25.4 * s.control_points + 1e3) for s in (a, b)]
-    plain, scaled = blend(Base(a, "u0"), Base(b, "u0")), blend(Base(big[0], "u0"), Base(big[1], "u0"))
+    plain = blend(Base(a, "u0"), Base(b, "u0"), method="casadi")
+    scaled = blend(Base(big[0], "u0"), Base(big[1], "u0"), method="casadi")
     assert scaled.alpha2 == pytest.approx(plain.alpha2, rel=1e-6)
     assert scaled.energy == pytest.approx(plain.energy * 25.4**2, rel=1e-6)

@@ -1,0 +1,121 @@
+"""A checker of proofs: does a polynomial stay above a bound over a box? It shares no code with the search.
+
+It trusts only the definition: the parts must tile the box; on each, the polynomial written in the part's own
+parameters by Taylor shifts must have no Bernstein coefficient below the bound, or be convex and lie above a tangent
+plane that stays above the bound. Everything is rational arithmetic.
+"""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from itertools import combinations
+from math import comb
+from typing import TypeAlias
+
+from solver.errors import ComputationError
+from solver.shape_search import Certificate, Leaf
+
+_Table: TypeAlias = list[list[Fraction]]
+
+
+class CertificateError(ComputationError):
+    """A certificate that does not prove what it claims."""
+
+
+def check_certificate(certificate: Certificate) -> None:
+    """Verify a certificate in exact arithmetic.
+
+    Raises
+    ------
+    CertificateError
+        The parts do not tile the box, or one of them does not prove the bound; the message names it.
+
+    Source: J. Garloff, The Bernstein algorithm, Interval Computations 2 (1993), for range bounds.
+    """
+    _check_tiling(certificate)
+    table = [[Fraction(c) for c in row] for row in certificate.coefficients.tolist()]
+    bound = Fraction(certificate.bound)
+    for leaf in certificate.leaves:
+        ends = [_ends(box, part) for box, part in zip(certificate.box, (leaf.x, leaf.y), strict=True)]
+        local = _transposed(_local(_transposed(_local(table, *ends[0])), *ends[1]))
+        if leaf.tangent_at is None:
+            if min(min(row) for row in _bernstein_table(local)) < bound:
+                raise CertificateError(f"certificate: the Bernstein coefficients on {leaf} fall below the bound")
+        else:
+            _check_tangent(local, leaf, bound)
+
+
+def _check_tiling(certificate: Certificate) -> None:
+    parts = [
+        tuple((Fraction(i, 2**s), Fraction(i + 1, 2**s)) for i, s in (leaf.x, leaf.y)) for leaf in certificate.leaves
+    ]
+    area = sum(((x1 - x0) * (y1 - y0) for (x0, x1), (y0, y1) in parts), Fraction(0))
+    if area != 1 or any(not (low >= 0 and high <= 1) for part in parts for low, high in part):
+        raise CertificateError(f"certificate: its parts have area {area} of the box, expected 1")
+    for one, other in combinations(parts, 2):
+        if all(max(a[0], b[0]) < min(a[1], b[1]) for a, b in zip(one, other, strict=True)):
+            raise CertificateError("certificate: two of its parts overlap")
+
+
+def _ends(box: tuple[float, float], part: tuple[int, int]) -> tuple[Fraction, Fraction]:
+    low, width = Fraction(box[0]), Fraction(box[1]) - Fraction(box[0])
+    return low + width * Fraction(part[0], 2 ** part[1]), low + width * Fraction(part[0] + 1, 2 ** part[1])
+
+
+def _local(table: _Table, low: Fraction, high: Fraction) -> _Table:
+    """Write a table of powers of x (rows) in powers of t, x = low + (high - low) t, by repeated Horner steps."""
+    rows = [list(row) for row in table]
+    n = len(rows)
+    for k in range(n - 1):
+        for i in range(n - 2, k - 1, -1):
+            rows[i] = [a + low * b for a, b in zip(rows[i], rows[i + 1], strict=True)]
+    width = high - low
+    return [[c * width**i for c in row] for i, row in enumerate(rows)]
+
+
+def _transposed(table: _Table) -> _Table:
+    return [list(column) for column in zip(*table, strict=True)]
+
+
+def _bernstein(values: list[Fraction]) -> list[Fraction]:
+    n = len(values) - 1
+    return [
+        sum((Fraction(comb(i, k), comb(n, k)) * values[k] for k in range(i + 1)), Fraction(0)) for i in range(n + 1)
+    ]
+
+
+def _bernstein_table(table: _Table) -> _Table:
+    along = [_bernstein(row) for row in table]
+    return _transposed([_bernstein(column) for column in _transposed(along)])
+
+
+def _derived(table: _Table) -> _Table:
+    """Differentiate by the parameter of the rows."""
+    return [[i * c for c in row] for i, row in enumerate(table)][1:] or [[Fraction(0)] * len(table[0])]
+
+
+def _check_tangent(local: _Table, leaf: Leaf, bound: Fraction) -> None:
+    """Require that the part is convex and that its tangent plane at the given point stays above the bound."""
+    by_s = _derived(local)
+    by_t = _transposed(_derived(_transposed(local)))
+    ss, tt = _derived(by_s), _transposed(_derived(_transposed(by_t)))
+    st = _transposed(_derived(_transposed(by_s)))
+    least_ss, least_tt = (min(min(row) for row in _bernstein_table(t)) for t in (ss, tt))
+    largest_st = max(max(abs(c) for c in row) for row in _bernstein_table(st))
+    if least_ss < 0 or least_tt < 0 or least_ss * least_tt < largest_st**2:
+        raise CertificateError(f"certificate: {leaf} is not proved convex")
+    at = [Fraction(t) for t in leaf.tangent_at or ()]
+    if not all(0 <= t <= 1 for t in at):
+        raise CertificateError(f"certificate: the tangent point of {leaf} lies outside of it")
+    least = _value(local, at)
+    for slope, t in zip((_value(by_s, at), _value(by_t, at)), at, strict=True):
+        least += min(-slope * t, slope * (1 - t))
+    if least < bound:
+        raise CertificateError(f"certificate: the tangent plane on {leaf} falls below the bound")
+
+
+def _value(table: _Table, at: list[Fraction]) -> Fraction:
+    return sum(
+        (c * at[0] ** i * at[1] ** j for i, row in enumerate(table) for j, c in enumerate(row)),
+        Fraction(0),
+    )

@@ -1,0 +1,88 @@
+"""The paper's own route to G1 and G2, for comparison: substitution, then BFGS with finite differences.
+
+Unknown are the free control points, alpha and beta; the contact conditions are substituted into the energy; the search
+starts from the parametric solution, alpha = beta = 1, and stops at some local minimum.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import casadi as ca
+import numpy as np
+from scipy.optimize import minimize
+
+from solver.errors import ComputationError
+from solver.nlp import contact_rows
+from solver.problem import BlendProblem
+
+
+@dataclass(frozen=True)
+class QuasiNewtonSolution:
+    """Where the search stopped.
+
+    Attributes
+    ----------
+    a, b : float
+        alpha^2 and beta^2.
+    iterations, evaluations : int
+    status : str
+        SciPy's word on how it ended.
+    energy : float
+        As the search left it, free rows included, in coordinates of size 1.
+    """
+
+    a: float
+    b: float
+    iterations: int
+    evaluations: int
+    status: str
+    energy: float
+
+
+def solve_quasi_newton(problem: BlendProblem) -> QuasiNewtonSolution:
+    """Run BFGS with finite differences from the parametric solution.
+
+    Raises
+    ------
+    ComputationError
+        The search left the finite numbers.
+
+    Source: section 4 of the paper (its fminunc).
+    """
+    objective, start = substituted_objective(problem)
+    found = minimize(lambda x: float(objective(x)), start, method="BFGS")
+    if not np.isfinite(found.fun):
+        raise ComputationError("BFGS ran out of the finite numbers; try method reduced")
+    # The parameters come after the free control points; alpha enters as its square.
+    shape = iter(found.x[len(start) - sum(problem.free) :])
+    a, b = (
+        float(next(shape)) ** 2 if is_free else fixed
+        for is_free, fixed in zip(problem.free, problem.start, strict=True)
+    )
+    return QuasiNewtonSolution(a, b, int(found.nit), int(found.nfev), str(found.message), float(found.fun))
+
+
+def substituted_objective(problem: BlendProblem) -> tuple[ca.Function, np.ndarray]:
+    """Return the energy as a compiled function of the free control points, alpha and beta, and where to start."""
+    form = problem.form
+    owned = [i for side, rows, _ in problem.contacts for i in rows[: side.order + 1]]
+    free_rows = [i for i in range(len(form.rows)) if i not in owned]
+    sizes = [form.rows[i].size for i in free_rows]
+    x = ca.MX.sym("x", 3 * sum(sizes) + sum(problem.free))
+    values: dict[int, ca.MX] = {}
+    at = 0
+    for i, size in zip(free_rows, sizes, strict=True):
+        values[i] = ca.reshape(x[at : at + 3 * size], size, 3)
+        at += 3 * size
+    for (side, rows, spans), is_free, fixed in zip(problem.contacts, problem.free, problem.start, strict=True):
+        a = x[at] ** 2 if is_free else fixed
+        at += is_free
+        for row, prescribed in zip(rows, contact_rows(side, a, form.u.degree, spans), strict=False):
+            values[row] = prescribed
+    p = ca.vertcat(*(values[i] for i in range(len(form.rows))))
+    energy = ca.dot(p, ca.mtimes(ca.DM(form.matrix(range(len(form.rows))).tocsc()), p))
+    unit = tuple(1.0 if is_free else fixed for is_free, fixed in zip(problem.free, problem.start, strict=True))
+    points = problem.control_points(unit[0], unit[1])
+    first = [points[form.offsets[i] : form.offsets[i + 1]].T.ravel() for i in free_rows]
+    return ca.Function("energy", [x], [energy]), np.concatenate([*first, np.ones(sum(problem.free))])

@@ -1,0 +1,235 @@
+"""The proved global minimum: certificates, rivals, and where local methods go wrong."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from helpers.bases import facing_pair, moved
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.optimize import brute, minimize
+
+from solver import Base, BSplineSurface, blend
+from solver.certificate import CertificateError, check_certificate
+from solver.problem import ProblemOptions, make_problem
+from solver.reduced import shape_polynomial, solve_reduced
+from solver.shape_search import least_point
+from solver.sides import make_side
+
+# (x^2 - 1)^2 + y^2, two equal minima; and a tilted one with a local minimum at x about 0.96.
+DOUBLE_WELL = np.array([[1.0, 0, 1], [0, 0, 0], [-2, 0, 0], [0, 0, 0], [1, 0, 0]])
+TILTED = DOUBLE_WELL + np.array([[0.0, 0, 0], [0.3, 0, 0], [0, 0, 0], [0, 0, 0], [0, 0, 0]])
+
+
+def random_table(rng):
+    """A sum of squares of random quadratics: like an energy, with coefficients of very different size."""
+    root = rng.standard_normal((5, 5)) * 10.0 ** rng.uniform(-2, 2, 5)
+    s = root.T @ root
+    table = np.zeros((5, 5))
+    powers = [(0, 0), (1, 0), (2, 0), (0, 1), (0, 2)]
+    for k, (i, j) in enumerate(powers):
+        for n, (p, q) in enumerate(powers):
+            table[i + p, j + q] += s[k, n]
+    return table
+
+
+@given(st.integers(0, 10**6))
+def test_the_proof_holds_and_no_sample_is_below(seed):
+    table = random_table(np.random.default_rng(seed))
+    box = ((-0.9, 7.0), (-0.5, 3.0))
+    tolerance = 1e-9 * table[0, 0]
+    point, certificate = least_point(table, box, tolerance)
+    check_certificate(certificate)
+    x, y = (np.linspace(*ends, 300) for ends in box)
+    samples = np.polynomial.polynomial.polygrid2d(x, y, table)
+    assert certificate.bound <= samples.min()
+    value = np.polynomial.polynomial.polyval2d(*point, table)
+    # Rounding of the plain evaluation here, not of the proof.
+    rounding = 1e-14 * np.polynomial.polynomial.polyval2d(*np.abs(point), np.abs(table))
+    assert certificate.bound <= value + rounding
+    assert value <= certificate.bound + tolerance + rounding
+    assert value <= samples.min() + rounding
+
+
+def test_the_global_minimum_of_a_tilted_double_well():
+    point, certificate = least_point(TILTED, ((-2.0, 2.0), (-1.0, 1.0)), 1e-10)
+    assert point[0] == pytest.approx(-1.0355, abs=1e-4)
+    assert point[1] == pytest.approx(0, abs=1e-9)
+    check_certificate(certificate)
+
+
+@pytest.mark.parametrize(
+    ("table", "box"),
+    [
+        (np.array([[2.0]]), ((0.0, 0.0), (0.0, 0.0))),
+        (np.array([[2.0, 0, 0]]), ((0.0, 0.0), (-1.0, 4.0))),  # flat in y
+        (np.array([[1.0, 0, 1], [0, -2, 0], [1, 0, 0]]), ((-1.0, 5.0), (-1.0, 5.0))),  # 1 + (x - y)^2: a valley
+        (np.zeros((5, 5)), ((-1.0, 1.0), (-1.0, 1.0))),
+        (DOUBLE_WELL, ((-2.0, 2.0), (-1.0, 1.0))),  # two equal minima
+        (np.array([[1.0, 1.0, 0]]), ((0.0, 0.0), (0.0, 5.0))),  # at a bound
+    ],
+)
+def test_flat_directions_valleys_ties_and_bounds(table, box):
+    point, certificate = least_point(table, box, 1e-10)
+    check_certificate(certificate)
+    x, y = (np.linspace(*ends, 101) for ends in box)
+    assert np.polynomial.polynomial.polyval2d(*point, table) <= (
+        np.polynomial.polynomial.polygrid2d(x, y, table).min() + 1e-14
+    )
+
+
+@pytest.fixture(scope="module")
+def certificate():
+    return least_point(TILTED, ((-2.0, 2.0), (-1.0, 1.0)), 1e-10)[1]
+
+
+def test_a_bound_that_is_too_high_is_refused(certificate):
+    # The local minimum near x = 0.96 planted as if it were the global one.
+    with pytest.raises(CertificateError):
+        check_certificate(replace(certificate, bound=0.29))
+    with pytest.raises(CertificateError):
+        check_certificate(replace(certificate, bound=certificate.bound + 1e-9))
+
+
+def test_a_missing_part_is_refused(certificate):
+    with pytest.raises(CertificateError, match="area"):
+        check_certificate(replace(certificate, leaves=certificate.leaves[1:]))
+
+
+def test_overlapping_parts_are_refused(certificate):
+    leaves = [leaf for leaf in certificate.leaves if leaf.x[1] == certificate.leaves[0].x[1]]
+    same_size = [leaf for leaf in leaves if leaf.y[1] == leaves[0].y[1]]
+    assert len(same_size) > 1
+    doubled = [same_size[1] if leaf is same_size[0] else leaf for leaf in certificate.leaves]
+    with pytest.raises(CertificateError, match="overlap"):
+        check_certificate(replace(certificate, leaves=tuple(doubled)))
+
+
+def test_a_false_claim_of_convexity_is_refused(certificate):
+    claimed = tuple(
+        replace(leaf, tangent_at=(0.5, 0.5)) if leaf.tangent_at is None else leaf for leaf in certificate.leaves
+    )
+    with pytest.raises(CertificateError):
+        check_certificate(replace(certificate, leaves=claimed))
+
+
+def test_another_polynomial_is_refused(certificate):
+    with pytest.raises(CertificateError):
+        check_certificate(replace(certificate, coefficients=TILTED - np.eye(5, 3)))
+
+
+def problem_of(seed, **options):
+    a, b = facing_pair(np.random.default_rng(seed), edges=("u0", "u0"), backwards=(False, False))
+    sides = make_side(a, "G2"), make_side(b, "G2", a.range_along)
+    return make_problem(*sides, ProblemOptions(**options))
+
+
+def energy_at(problem, shape):
+    points = problem.control_points(*shape)
+    return float(problem.form.products(points[None])[0, 0])
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_the_polynomial_is_the_energy_of_the_best_blend(seed):
+    problem = problem_of(seed)
+    centre = tuple(1.3 * n for n in problem.natural)
+    table = shape_polynomial(problem, centre)
+    rng = np.random.default_rng(seed)
+    for x, y in rng.uniform(-1.2, 4, (5, 2)):
+        shape = centre[0] + x * problem.natural[0], centre[1] + y * problem.natural[1]
+        expected = energy_at(problem, shape)
+        assert np.polynomial.polynomial.polyval2d(x, y, table) == pytest.approx(expected, rel=1e-9)
+
+
+def dense_multistart(problem, points):
+    def energy(logs):
+        return energy_at(problem, np.exp(logs))
+
+    ranges = [slice(np.log(low), np.log(high), (np.log(high) - np.log(low)) / points) for low, high in problem.bounds]
+    start = brute(energy, ranges, finish=None)
+    bounds = [(np.log(low), np.log(high)) for low, high in problem.bounds]
+    return float(minimize(energy, start, bounds=bounds, method="L-BFGS-B").fun)
+
+
+def never_beaten(seeds, points):
+    for seed in seeds:
+        problem = problem_of(seed, middle_curves=seed % 3)
+        found = solve_reduced(problem)
+        assert found.gap <= 1e-10
+        assert energy_at(problem, (found.a, found.b)) <= dense_multistart(problem, points) * (1 + 1e-10)
+
+
+def test_a_dense_multistart_never_beats_it():
+    never_beaten(range(12), 12)
+
+
+@pytest.mark.slow
+def test_a_dense_multistart_never_beats_it_300_times():
+    never_beaten(range(300), 20)
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_casadi_agrees_and_is_never_below(seed):
+    a, b = facing_pair(np.random.default_rng(seed))
+    proved, local = (blend(a, b, method=method) for method in ("reduced", "casadi"))
+    assert proved.energy <= local.energy * (1 + 1e-10)
+    assert proved.proven_gap <= 1e-10
+    if local.energy < proved.energy * (1 + 1e-4):
+        assert local.energy == pytest.approx(proved.energy, rel=1e-8)
+
+
+def test_bases_that_continue_each_other_have_no_energy():
+    k = [0, 0, 0, 1, 1, 1]
+    net = np.array([[[x, y, 0.3 * x + 0.1 * y] for y in (0, 0.5, 1)] for x in (0, 0.5, 1)])
+    a = BSplineSurface(2, 2, k, k, net)
+    b = moved(a, offset=(3, 0, 0.9))
+    proved, local = (blend(Base(a, "u1"), Base(b, "u0"), method=m) for m in ("reduced", "casadi"))
+    assert proved.energy == pytest.approx(0, abs=1e-20)
+    assert local.energy == pytest.approx(0, abs=1e-16)
+    assert proved.alpha2 == pytest.approx(2, rel=1e-6)
+
+
+def test_alpha_can_be_set():
+    a, b = facing_pair(np.random.default_rng(3))
+    natural = blend(a, b, alpha="natural")
+    assert natural.method == "linear"
+    assert natural.alpha2_bounds is None
+    set_one = blend(a, b, alpha=(0.9, "free"))
+    assert set_one.alpha2 == pytest.approx(0.81, rel=1e-15)
+    assert set_one.alpha2_bounds is None
+    assert set_one.beta2_bounds is not None
+    for result in (natural, set_one):
+        assert result.contact_a.curvature_jump_relative < 1e-9
+        assert blend(a, b).energy <= result.energy
+    local = blend(a, b, alpha=(0.9, "free"), method="casadi")
+    assert local.energy == pytest.approx(set_one.energy, rel=1e-8)
+
+
+def test_the_box_can_be_set():
+    a, b = facing_pair(np.random.default_rng(9))
+    narrow = blend(a, b, box=(0.9, 1.1))
+    wide = blend(a, b, box=(0.01, 100))
+    assert narrow.alpha2_bounds[1] / narrow.alpha2_bounds[0] == pytest.approx(1.1 / 0.9)
+    assert wide.energy <= narrow.energy
+    assert narrow.active_bounds
+
+
+@pytest.mark.parametrize("pair", [("C2", "G1"), ("G1", "C0"), ("G0", "G2"), ("G1", "G2"), ("C1", "C0"), ("G1", "G1")])
+def test_every_combination_of_sides(pair):
+    a, b = facing_pair(np.random.default_rng(5))
+    result = blend(a, b, continuity=pair)
+    assert result.continuity == pair
+    assert (result.alpha2_bounds is not None) == (pair[0] in ("G1", "G2"))
+    assert (result.alpha2 is None) == (pair[0] in ("C0", "G0"))
+    if "G" in pair[0] + pair[1] and "2" in pair[0] + pair[1]:
+        local = blend(a, b, continuity=pair, method="casadi")
+        assert local.energy == pytest.approx(result.energy, rel=1e-8)
+
+
+def test_bfgs_is_reported_and_never_better():
+    a, b = facing_pair(np.random.default_rng(0), edges=("u0", "u0"), backwards=(False, False))
+    rough = blend(a, b, method="bfgs")
+    assert rough.method == "bfgs"
+    assert rough.iterations > 0
+    wide = blend(a, b, box=(1e-3, 1e3))
+    assert wide.energy <= rough.energy * (1 + 1e-10)
