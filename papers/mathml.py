@@ -87,7 +87,7 @@ def mathml(expression: Any) -> str:
     --------
     >>> from sympy import Symbol
     >>> mathml(Symbol("u_{m-3}"))
-    '<math><msub><mi>u</mi><mrow><mi>m</mi><mo>−</mo><mn>3</mn></mrow></msub></math>'
+    '<math><msub><mi>u</mi><mrow><mi>m</mi><mo>&#8722;</mo><mn>3</mn></mrow></msub></math>'
     """
     text = _Printer().doprint(expression)
     return f"<math>{text}</math>".replace("&InvisibleTimes;", "&#8290;").replace("&dd;", "&#8518;")

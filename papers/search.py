@@ -89,7 +89,7 @@ def smallest_assignment(
     --------
     >>> x, y = sp.symbols("x y", positive=True)
     >>> smallest_assignment([x, y], lambda at: at[x] * at[y] == Fraction(2, 3))
-    {x: 2, y: 1/3}
+    {x: 1, y: 2/3}
     """
     for total in range(limit + 1):
         for at in assignments(symbols, total):

@@ -1,0 +1,84 @@
+"""The commands verify and reproduce: exit statuses, files, and what is printed."""
+
+import json
+import subprocess
+import sys
+
+import pytest
+from typer.testing import CliRunner
+
+from papers.cli import app
+
+runner = CliRunner()
+
+
+def run(*arguments):
+    return runner.invoke(app, [str(argument) for argument in arguments])
+
+
+def test_all_commands_are_mounted():
+    result = run("--help")
+    assert result.exit_code == 0
+    for command in ("verify", "reproduce", "derive", "generate", "blend", "check", "list", "show", "convert"):
+        assert f" {command} " in result.output
+
+
+def test_help_loads_nothing_heavy():
+    code = (
+        "import sys\nfrom papers.cli import app\nfrom typer.testing import CliRunner\n"
+        "assert CliRunner().invoke(app, ['--help']).exit_code == 0\n"
+        "print([name for name in ('sympy', 'scipy', 'casadi', 'pyvista', 'OCP') if name in sys.modules])"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"
+
+
+def test_verify_a_folder_and_write_both_files(made_up_paper, tmp_path):
+    result = run("verify", made_up_paper(), "--json", tmp_path / "l.json", "--markdown", tmp_path / "r.md")
+    assert result.exit_code == 0, result.output
+    assert "2 printed claims, 2 decided" in result.output
+    record = json.loads((tmp_path / "l.json").read_text())
+    assert (record["format"], record["kind"]) == ("semispline/1", "ledger")
+    assert [claim["verdict"] for claim in record["claims"]] == ["holds", "fails"]
+    wanted = {
+        "id", "statement", "verdict", "evidence", "residual", "counterexample", "corrected", "consequence", "seconds",
+    }  # fmt: skip
+    assert all(wanted <= set(claim) for claim in record["claims"])
+    assert record["counts"]["fails"] == 1
+    assert "### eq-2" in (tmp_path / "r.md").read_text()
+
+
+def test_json_on_standard_output_is_nothing_but_json(made_up_paper):
+    result = run("verify", made_up_paper(), "--json", "-")
+    assert json.loads(result.stdout)["counts"]["printed"] == 2
+
+
+def test_a_changed_claim_is_exit_status_1_and_names_it(made_up_paper):
+    result = run("verify", made_up_paper(recorded="HOLDS"))
+    assert result.exit_code == 1
+    assert "eq-2: found fails, recorded holds" in result.stderr
+
+
+@pytest.mark.parametrize("arguments", [("verify", "nowhere"), ("reproduce", "nowhere")])
+def test_an_unknown_paper_is_exit_status_2_on_one_line(arguments):
+    result = run(*arguments)
+    assert result.exit_code == 2
+    assert result.stderr.count("\n") == 1
+    assert "nowhere" in result.stderr
+    assert "lin2014" in result.stderr
+
+
+def test_an_output_that_cannot_be_written_is_found_before_the_work(made_up_paper, tmp_path):
+    result = run("verify", made_up_paper(), "--json", tmp_path / "no" / "l.json")
+    assert result.exit_code == 2
+    assert "does not exist" in result.stderr
+    assert "printed claims" not in result.output
+
+
+def test_a_broken_record_is_exit_status_2(made_up_paper):
+    folder = made_up_paper()
+    text = (folder / "claims.py").read_text()
+    (folder / "claims.py").write_text(text.replace('"The sum is n^2/2."', '" "'))
+    result = run("verify", folder)
+    assert result.exit_code == 2
+    assert "eq-2" in result.stderr

@@ -1,0 +1,179 @@
+"""Deciding: the made-up paper, and every way in which a check may fail to decide."""
+
+from dataclasses import replace
+
+import pytest
+import sympy as sp
+
+from papers.ledger import (
+    Case,
+    Check,
+    Claim,
+    Consequence,
+    Correction,
+    Counterexample,
+    Formula,
+    Part,
+    Reading,
+    Strength,
+    Verdict,
+)
+from papers.mutation import mutants, try_mutants
+from papers.verification import decide, verify
+
+x, y = sp.symbols("x y", real=True)
+
+
+def check_of(*cases, proof=False, strength=Strength.RATIONAL):
+    return Check(lambda formula: iter(cases), strength, "given cases", proof)
+
+
+def claim_of(*cases, verdict=Verdict.HOLDS, condition="", proof=False):
+    part = Part(check_of(*cases, proof=proof))
+    return Claim("sec-1.x", "Section 1", "Something.", verdict, (Reading((part,), condition=condition),))
+
+
+TRUE, FALSE = Case("a", True), Case("b", False)
+ELSEWHERE = Case("c", False, own=False, meets=False)
+EVIDENCE = {
+    "correction": Correction("", (Part(check_of(TRUE)),)),
+    "counterexample": lambda: Counterexample((("n", "2"),), "2", "3"),
+    "consequence": lambda: Consequence("a blend", {"gap": 1.0}),
+}
+
+
+def test_a_made_up_paper_in_a_folder_is_decided(made_up_paper):
+    ledger = verify(str(made_up_paper()), workers=1)
+    assert [d.verdict for d in ledger.decisions] == [Verdict.HOLDS, Verdict.FAILS]
+    assert ledger.ok
+    assert ledger.decisions[1].counterexample == "n = 1: printed 1/2, true 1"
+    assert ledger.decisions[1].readings[0].residual == sp.Rational(-1, 2)
+    counts = ledger.counts()
+    assert (counts["printed"], counts["decided"], counts["holds"], counts["fails"], counts["changed"]) == (
+        2,
+        2,
+        1,
+        1,
+        0,
+    )
+    assert counts["mutants"] > 10
+    assert counts["mutants_survived"] == 0
+
+
+def test_workers_decide_the_same(made_up_paper):
+    ledger = verify(str(made_up_paper()), workers=2)
+    assert [str(d.verdict) for d in ledger.decisions] == ["holds", "fails"]
+    assert ledger.ok
+
+
+def test_a_changed_verdict_is_noticed(made_up_paper):
+    ledger = verify(str(made_up_paper(recorded="HOLDS")), workers=1)
+    assert ledger.decisions[1].verdict is Verdict.FAILS
+    assert not ledger.ok
+    assert ledger.counts()["changed"] == 1
+
+
+@pytest.mark.parametrize(
+    ("claim", "verdict"),
+    [
+        (claim_of(TRUE), Verdict.HOLDS),
+        (replace(claim_of(TRUE, FALSE, verdict=Verdict.FAILS), **EVIDENCE), Verdict.FAILS),
+        (claim_of(TRUE, ELSEWHERE, verdict=Verdict.HOLDS_IF, condition="k = 4"), Verdict.HOLDS_IF),
+        (Claim("c", "w", "s", Verdict.NOT_CHECKABLE, reason="no data"), Verdict.NOT_CHECKABLE),
+    ],
+)
+def test_verdicts_follow_from_the_cases(claim, verdict):
+    decision = decide(claim)
+    assert decision.verdict is verdict
+    assert decision.ok
+
+
+def test_readings_that_differ_are_ambiguous_and_those_that_agree_are_not():
+    one, other = (Reading((Part(check_of(case)),), label=case.label) for case in (TRUE, FALSE))
+    claim = Claim("c", "w", "s", Verdict.AMBIGUOUS, (one, other))
+    assert decide(claim).verdict is Verdict.AMBIGUOUS
+    agreed = decide(replace(claim, readings=(one, replace(one, label="again"))))
+    assert agreed.verdict is Verdict.HOLDS
+    assert not agreed.ok
+
+
+@pytest.mark.parametrize(
+    ("claim", "problem"),
+    [
+        (claim_of(TRUE, Case("b", None)), "no answer for b"),
+        (claim_of(TRUE, ELSEWHERE), "expected a stated condition"),
+        (claim_of(TRUE, replace(ELSEWHERE, meets=True), condition="k = 4"), "does not separate"),
+        (claim_of(replace(TRUE, own=False), ELSEWHERE, condition="k = 4"), "no instance of the paper's own setting"),
+        (replace(claim_of(FALSE), **{**EVIDENCE, "counterexample": lambda: None}), "no counterexample"),
+        (
+            replace(claim_of(FALSE), **{**EVIDENCE, "correction": Correction("", (Part(check_of(FALSE)),))}),
+            "correction",
+        ),
+        (replace(claim_of(TRUE), consequence=lambda: 1 / 0), "ZeroDivisionError"),
+    ],
+)
+def test_no_answer_is_never_a_pass(claim, problem):
+    decision = decide(claim)
+    assert decision.verdict is None
+    assert problem in decision.problem
+    assert not decision.ok
+
+
+def test_a_check_without_an_instance_is_vacuous():
+    decision = decide(claim_of())
+    assert decision.vacuous
+    assert decision.verdict is None
+    assert not decision.ok
+
+
+def test_only_exact_evidence_counts_as_proof():
+    assert decide(claim_of(TRUE, proof=True)).proved
+    assert not decide(claim_of(TRUE)).proved
+    failing = replace(claim_of(FALSE, verdict=Verdict.FAILS), **EVIDENCE)
+    assert decide(failing).proved
+    in_floats = replace(failing, readings=(Reading((Part(check_of(FALSE, strength=Strength.FLOAT)),)),))
+    assert not decide(in_floats).proved
+
+
+def sum_cases(formula):
+    residual = formula.relation.rhs - 2 * x
+    yield Case("all x", sp.expand(residual) == 0, residual=sp.expand(residual))
+
+
+def test_mutants_of_each_kind_are_made():
+    i, j = sp.symbols("i j", integer=True)
+    P = sp.IndexedBase("P")
+    formula = Formula(
+        sp.Eq(y, x**2 + sp.Sum(P[i, j], (i, 0, 3)) - 3 * x), (x, y, j, P.label), neighbours=((x, sp.Symbol("z")),)
+    )
+    kinds = {mutant.kind for mutant in mutants(formula)}
+    assert kinds == {"sign", "factor", "exponent", "index", "limit"}
+    assert all(mutant.relation != formula.relation for mutant in mutants(formula))
+
+
+def test_a_check_that_sees_everything_leaves_no_survivor():
+    result = try_mutants(Part(Check(sum_cases, Strength.SYMBOLIC_ORDER, "expansion"), Formula(sp.Eq(y, 2 * x), (x, y))))
+    assert result.tried >= 2
+    assert result.survivors == ()
+
+
+def test_a_check_that_sees_nothing_is_found_out():
+    blind = Part(check_of(TRUE), Formula(sp.Eq(y, 2 * x), (x, y)))
+    result = try_mutants(blind)
+    assert len(result.survivors) == result.tried > 0
+    claim = Claim("c", "w", "s", Verdict.HOLDS, (Reading((blind,)),))
+    assert not decide(claim).ok
+
+
+def test_an_equivalent_mutant_needs_its_reason():
+    # |x| = |-x|: the sign mutant says the same.
+    def cases(formula):
+        value = formula.relation.rhs.subs(x, -3)
+        yield Case("x = -3", abs(value) == 3, residual=abs(value))
+
+    check = Check(cases, Strength.RATIONAL, "one value")
+    plain = Formula(sp.Eq(y, x), (x, y))
+    assert try_mutants(Part(check, plain)).survivors == ("sign: Eq(y, -x)",)
+    explained = replace(plain, equivalent={"Eq(y, -x)": "the magnitude is the same"})
+    result = try_mutants(Part(check, explained))
+    assert (result.survivors, result.explained) == ((), 1)
