@@ -109,7 +109,7 @@ def best_of_grid(c: FloatArray, box: Box) -> tuple[float, float]:
     starts = np.argwhere(lowest)
     starts = starts[np.argsort(values[lowest])][:4]
     points = [_descend(c, box, (float(axes[0][i]), float(axes[1][j]))) for i, j in starts]
-    return min(points, key=lambda p: float(np.polynomial.polynomial.polyval2d(*p, c)))
+    return min(points, key=lambda p: float(np.polynomial.polynomial.polyval2d(p[0], p[1], c)))
 
 
 def _descend(c: FloatArray, box: Box, start: tuple[float, float]) -> tuple[float, float]:
