@@ -266,6 +266,8 @@ def revolve_polynomial(
         slopes = turn * np.stack([-circle[[0, -1], 1], circle[[0, -1], 0]], axis=1)
         spline = make_interp_spline(u, circle, k=3, bc_type=([(1, slopes[0])], [(1, slopes[1])]))
     knots_u, factors = clamp_knots(3, spline.t, spline.c)
+    if angle == 360.0:
+        factors[-1] = factors[0]
     net = on_axis + factors[:, 0, None, None] * radial + factors[:, 1, None, None] * across
     surface = BSplineSurface(3, curve.degree, knots_u, curve.knots, net)
     return Approximation(surface, radius * 5 / 384 * (turn / spans) ** 4)
