@@ -19,9 +19,10 @@ import numpy as np
 from solver.arrays import FloatArray
 from solver.compatible import combined_curves, compatible_curves
 from solver.errors import InputError
+from solver.evaluation import check_orders
 from solver.knots import derivative_matrix, derivative_points
 from solver.operations import swap_directions
-from solver.surfaces import BSplineCurve, BSplineSurface, SemiStructuredSurface, check_orders
+from solver.surfaces import BSplineCurve, BSplineSurface, SemiStructuredSurface
 
 # One-sided derivatives closer than this fraction of the largest control point of the derivative are one: what is left
 # of a removable knot after rounding. Rounding of the input itself is allowed on top.

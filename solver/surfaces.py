@@ -9,14 +9,14 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from math import comb
 from typing import TypeAlias, final
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from solver.arrays import FloatArray, finite_array, is_whole
-from solver.errors import ControlPointError, InputError, OptionError
+from solver.arrays import FloatArray, SparseMatrix, finite_array
+from solver.errors import ControlPointError, InputError
+from solver.evaluation import check_orders, checked_parameters, domain_of, local_basis, point_parameters, quotient
 from solver.knots import MERGE_TOLERANCE, basis_matrix, breakpoints, checked_knots, derivative_points, merge_breakpoints
 
 
@@ -60,7 +60,7 @@ class BSplineCurve:
     def evaluate(self, v: ArrayLike, derivative: int = 0) -> FloatArray:
         """Evaluate the curve or a derivative at v, shape (K,); returns shape (K, 3)."""
         check_orders(derivative=derivative)
-        x = _parameters(v, self.knots, "v")
+        x = checked_parameters(v, self.knots, "v")
         if derivative > self.degree:
             return np.zeros((len(x), 3))
         points = derivative_points(self.degree, self.knots, self.control_points, derivative)
@@ -123,7 +123,7 @@ class BSplineSurface:
     @property
     def domain(self) -> tuple[tuple[float, float], tuple[float, float]]:
         """The ranges of u and v."""
-        return _range(self.knots_u), _range(self.knots_v)
+        return domain_of(self.knots_u), domain_of(self.knots_v)
 
     @property
     def breakpoints(self) -> tuple[FloatArray, FloatArray]:
@@ -146,23 +146,23 @@ class BSplineSurface:
     def evaluate(self, u: ArrayLike, v: ArrayLike, du: int = 0, dv: int = 0) -> FloatArray:
         """Evaluate the surface or a mixed derivative at the points (u[k], v[k]); returns shape (K, 3)."""
         check_orders(du=du, dv=dv)
-        uu, vv = _point_parameters(self, u, v)
+        uu, vv = point_parameters(u, v, self.knots_u, self.knots_v)
 
         def net(a: int, b: int) -> FloatArray:
             if a > self.degree_u or b > self.degree_v:
                 return np.zeros((len(uu), self.homogeneous.shape[2]))
             points, ku, kv = self._derivative_net(a, b)
-            bu, iu = _local_basis(self.degree_u - a, ku, uu)
-            bv, iv = _local_basis(self.degree_v - b, kv, vv)
+            bu, iu = local_basis(self.degree_u - a, ku, uu)
+            bv, iv = local_basis(self.degree_v - b, kv, vv)
             local = points[iu[:, :, None], iv[:, None, :]]
             return np.asarray(np.einsum("kij,kijd->kd", bu[:, :, None] * bv[:, None, :], local))
 
-        return _quotient(net, du, dv) if self.weights is not None else net(du, dv)
+        return quotient(net, du, dv) if self.weights is not None else net(du, dv)
 
     def evaluate_grid(self, u: ArrayLike, v: ArrayLike, du: int = 0, dv: int = 0) -> FloatArray:
         """Evaluate on the grid u x v; returns shape (len(u), len(v), 3)."""
         check_orders(du=du, dv=dv)
-        uu, vv = _parameters(u, self.knots_u, "u"), _parameters(v, self.knots_v, "v")
+        uu, vv = checked_parameters(u, self.knots_u, "u"), checked_parameters(v, self.knots_v, "v")
 
         def net(a: int, b: int) -> FloatArray:
             d = self.homogeneous.shape[2]
@@ -175,7 +175,7 @@ class BSplineSurface:
             turned = along.reshape(len(vv), n_u, d).transpose(1, 0, 2).reshape(n_u, len(vv) * d)
             return np.asarray((basis_matrix(self.degree_u - a, ku, uu) @ turned).reshape(len(uu), len(vv), d))
 
-        return _quotient(net, du, dv) if self.weights is not None else net(du, dv)
+        return quotient(net, du, dv) if self.weights is not None else net(du, dv)
 
     def derivative(self, du: int = 0, dv: int = 0) -> BSplineSurface:
         """Return a mixed derivative as a surface of lower degree; refused where it jumps, and for rational surfaces."""
@@ -236,14 +236,14 @@ class SemiStructuredSurface:
         for i, curve in enumerate(self.control_curves):
             if not isinstance(curve, BSplineCurve):
                 raise ControlPointError(f"control_curves[{i}]: found a {type(curve).__name__}, expected a BSplineCurve")
-            found, expected = _range(curve.knots), _range(self.control_curves[0].knots)
+            found, expected = domain_of(curve.knots), domain_of(self.control_curves[0].knots)
             if found != expected:
                 raise ControlPointError(f"control_curves[{i}]: v-domain {found}, expected that of curve 0, {expected}")
 
     @property
     def domain(self) -> tuple[tuple[float, float], tuple[float, float]]:
         """The ranges of u and v."""
-        return _range(self.knots_u), _range(self.control_curves[0].knots)
+        return domain_of(self.knots_u), domain_of(self.control_curves[0].knots)
 
     @property
     def breakpoints(self) -> tuple[FloatArray, FloatArray]:
@@ -264,18 +264,18 @@ class SemiStructuredSurface:
     def evaluate(self, u: ArrayLike, v: ArrayLike, du: int = 0, dv: int = 0) -> FloatArray:
         """Evaluate the surface or a mixed derivative at the points (u[k], v[k]); returns shape (K, 3)."""
         check_orders(du=du, dv=dv)
-        uu, vv = _point_parameters(self, u, v)
+        uu, vv = point_parameters(u, v, self.knots_u, self.control_curves[0].knots)
         if du > self.degree_u:
             return np.zeros((len(uu), 3))
         rows = self._rows(vv, dv, du)
-        basis, index = _local_basis(self.degree_u - du, self.knots_u[du : len(self.knots_u) - du], uu)
+        basis, index = local_basis(self.degree_u - du, self.knots_u[du : len(self.knots_u) - du], uu)
         local = rows[index, np.arange(len(uu))[:, None]]
         return np.asarray(np.einsum("ki,kid->kd", basis, local))
 
     def evaluate_grid(self, u: ArrayLike, v: ArrayLike, du: int = 0, dv: int = 0) -> FloatArray:
         """Evaluate on the grid u x v; returns shape (len(u), len(v), 3)."""
         check_orders(du=du, dv=dv)
-        uu, vv = _parameters(u, self.knots_u, "u"), _parameters(v, self.control_curves[0].knots, "v")
+        uu, vv = checked_parameters(u, self.knots_u, "u"), checked_parameters(v, self.control_curves[0].knots, "v")
         if du > self.degree_u:
             return np.zeros((len(uu), len(vv), 3))
         rows = self._rows(vv, dv, du)
@@ -335,69 +335,21 @@ class SemiStructuredSurface:
 
     def _rows(self, v: FloatArray, dv: int, du: int) -> FloatArray:
         """Rows of the du-th u-derivative at each v, shape (m + 1 - du, len(v), 3)."""
-        values = np.stack([curve.evaluate(v, dv) for curve in self.control_curves])
+        values = np.zeros((len(self.control_curves), len(v), 3))
+        known: dict[tuple[int, bytes], SparseMatrix] = {}
+        for row, curve in zip(values, self.control_curves, strict=True):
+            if dv > curve.degree:
+                continue
+            form = curve.degree, curve.knots.tobytes()
+            if form not in known:
+                known[form] = basis_matrix(curve.degree - dv, curve.knots[dv : len(curve.knots) - dv], v)
+            row[:] = known[form] @ derivative_points(curve.degree, curve.knots, curve.control_points, dv)
         return derivative_points(self.degree_u, self.knots_u, values, du)
 
 
 Surface: TypeAlias = BSplineSurface | SemiStructuredSurface
 
 
-def _range(knots: FloatArray) -> tuple[float, float]:
-    return float(knots[0]), float(knots[-1])
-
-
 def _check_dimension(points: FloatArray, name: str) -> None:
     if points.shape[-1] != 3:
         raise ControlPointError(f"{name}: points have {points.shape[-1]} coordinate(s), expected 3")
-
-
-def _parameters(x: ArrayLike, knots: FloatArray, name: str) -> FloatArray:
-    try:
-        array = np.atleast_1d(np.asarray(x, dtype=np.float64))
-    except (TypeError, ValueError):
-        raise InputError(f"{name}: not an array of real numbers, expected parameters") from None
-    if array.ndim != 1:
-        raise InputError(f"{name}: {array.ndim} dimensions, expected a one-dimensional array of parameters")
-    start, end = _range(knots)
-    outside = ~((array >= start) & (array <= end))
-    if outside.any():
-        i = int(np.argmax(outside))
-        raise InputError(f"{name}[{i}]: found {array[i]}, expected a parameter in [{start}, {end}]")
-    return array
-
-
-def _point_parameters(surface: Surface, u: ArrayLike, v: ArrayLike) -> tuple[FloatArray, FloatArray]:
-    knots_v = surface.knots_v if isinstance(surface, BSplineSurface) else surface.control_curves[0].knots
-    uu, vv = _parameters(u, surface.knots_u, "u"), _parameters(v, knots_v, "v")
-    if len(uu) != len(vv) and 1 not in (len(uu), len(vv)):
-        raise InputError(f"v: {len(vv)} parameters, expected as many as u has, {len(uu)}, or one")
-    uu, vv = np.broadcast_arrays(uu, vv)
-    return uu, vv
-
-
-def check_orders(**orders: int) -> None:
-    """Refuse orders of a derivative that are not whole numbers of at least 0."""
-    for name, order in orders.items():
-        if not is_whole(order) or order < 0:
-            raise OptionError(f"{name}: found {order!r}, expected an order of at least 0")
-
-
-def _local_basis(degree: int, knots: FloatArray, x: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Values of the degree + 1 basis functions that live at each x, and their indices, shapes (K, degree + 1)."""
-    matrix = basis_matrix(degree, knots, x)
-    shape = (len(x), degree + 1)
-    return matrix.data.reshape(shape), matrix.indices.reshape(shape)
-
-
-def _quotient(homogeneous: Callable[[int, int], FloatArray], du: int, dv: int) -> FloatArray:
-    """Return derivative (du, dv) of X / w from the derivatives of (X, w), by the product rule on X = w S."""
-    raw = {(a, b): homogeneous(a, b) for a in range(du + 1) for b in range(dv + 1)}
-    result: dict[tuple[int, int], FloatArray] = {}
-    for a, b in raw:
-        value = raw[a, b][..., :3].copy()
-        for i in range(a + 1):
-            for j in range(b + 1):
-                if i or j:
-                    value -= comb(a, i) * comb(b, j) * raw[i, j][..., 3:] * result[a - i, b - j]
-        result[a, b] = value / raw[0, 0][..., 3:]
-    return result[du, dv]
