@@ -45,9 +45,7 @@ def pyvista_module(what: str | Path) -> Any:
     try:
         import pyvista
     except ImportError:
-        raise FileError(
-            f"{what}: pictures and meshes need pyvista; install it with: pip install 'semispline[view]'"
-        ) from None
+        raise FileError(f"{what}: pictures and meshes need pyvista; run: pip install 'semispline[view]'") from None
     return pyvista
 
 

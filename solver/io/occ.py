@@ -20,7 +20,7 @@ from solver.arrays import FloatArray
 from solver.errors import FileError, SemisplineError
 from solver.io.disk import require_file
 from solver.io.faces import MILLIMETRES, Model, surface_from_net, without_equal_weights
-from solver.io.occ_kernel import require_kernel, silenced, system_unit
+from solver.io.occ_kernel import first_line, require_kernel, silenced, system_unit
 from solver.surfaces import BSplineSurface
 
 _STEP_UNITS = {
@@ -60,11 +60,21 @@ class OccFace:
     @property
     def kind(self) -> str:
         """What the file holds."""
-        name = type(self._geometry()).__name__
+        try:
+            name = type(self._geometry()).__name__
+        except FileError:
+            return "none"
         return _KINDS.get(name, name.removeprefix("Geom_"))
 
-    def trimmed(self) -> bool:
-        """Whether curves cut the face out of the surface that `surface` returns."""
+    def trimmed(self) -> bool | None:
+        """Whether curves cut the face out of the surface that `surface` returns; None if the kernel cannot tell."""
+        try:
+            return self._is_trimmed()
+        except Exception:
+            # Each failure of the kernel has a class of its own.
+            return None
+
+    def _is_trimmed(self) -> bool:
         from OCP.BRep import BRep_Tool
         from OCP.BRepAdaptor import BRepAdaptor_Curve2d
         from OCP.TopAbs import TopAbs_ShapeEnum
@@ -97,8 +107,8 @@ class OccFace:
         KnotError
             Knots that the surface class refuses.
         """
-        geometry = self._geometry()
         try:
+            geometry = self._geometry()
             if type(geometry).__name__ == "Geom_BSplineSurface":
                 spline = geometry.Copy() if geometry.IsUPeriodic() or geometry.IsVPeriodic() else geometry
             else:
@@ -111,13 +121,16 @@ class OccFace:
             return _read_out(spline)
         except SemisplineError as error:
             raise type(error)(f"{self.where}: {error}") from None
+        except Exception as error:
+            # Each failure of the kernel has a class of its own.
+            raise FileError(f"{self.where}: Open CASCADE cannot convert it ({first_line(error)})") from None
 
     def _geometry(self) -> Any:
         from OCP.BRep import BRep_Tool
 
         geometry = BRep_Tool.Surface_s(self.face)
         if geometry is None:
-            raise FileError(f"{self.where}: the face has no surface; choose another")
+            raise FileError("the face has no surface; choose another")
         while type(geometry).__name__ == "Geom_RectangularTrimmedSurface":
             geometry = geometry.BasisSurface()
         return geometry
@@ -157,8 +170,8 @@ class OccFace:
         return GeomConvert.SurfaceToBSplineSurface_s(geometry)
 
 
-def open_occ(path: str | Path) -> Model:
-    """Open a STEP, IGES or BREP file.
+def read_occ(path: str | Path) -> Model:
+    """Read a STEP, IGES or BREP file in this process; `occ_process.open_occ` survives what is damaged.
 
     Raises
     ------
@@ -177,10 +190,7 @@ def open_occ(path: str | Path) -> Model:
         raise
     except Exception as error:
         # The kernel raises a class of its own for each of its failures.
-        reason = str(error).splitlines()
-        raise FileError(
-            f"{path}: Open CASCADE cannot read it ({reason[0] if reason else type(error).__name__})"
-        ) from None
+        raise FileError(f"{path}: Open CASCADE cannot read it ({first_line(error)})") from None
     return Model(str(path), unit, [OccFace(face, f"{path}#{number}") for number, face in enumerate(faces)])
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from importlib.util import find_spec
 from pathlib import Path
 
 from solver.errors import FileError
@@ -33,12 +34,8 @@ def require_kernel(what: str | Path) -> None:
     FileError
         With the command that installs it.
     """
-    try:
-        import OCP  # noqa: F401
-    except ImportError:
-        raise FileError(
-            f"{what}: STEP, IGES and BREP need Open CASCADE; install it with: pip install 'semispline[cad]'"
-        ) from None
+    if find_spec("OCP") is None:
+        raise FileError(f"{what}: STEP, IGES and BREP need Open CASCADE; run: pip install 'semispline[cad]'")
 
 
 @contextmanager

@@ -159,7 +159,7 @@ def _library(what: str | Path) -> Any:
     try:
         import rhino3dm
     except ImportError:
-        raise FileError(f"{what}: 3dm needs rhino3dm; install it with: pip install 'semispline[cad]'") from None
+        raise FileError(f"{what}: 3dm needs rhino3dm; run: pip install 'semispline[cad]'") from None
     return rhino3dm
 
 

@@ -1,0 +1,104 @@
+"""STEP, IGES and BREP files read by a process of their own.
+
+On a damaged file Open CASCADE may run into a segmentation fault or an endless loop; half an IGES file is enough. A
+process of its own turns that into a message. It converts all faces and hands over plain arrays.
+"""
+
+from __future__ import annotations
+
+import os
+import pickle
+import subprocess
+import sys
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from solver.errors import FileError, InputError
+from solver.io.disk import require_file
+from solver.io.faces import Model
+from solver.io.occ_kernel import require_kernel
+from solver.surfaces import BSplineSurface
+
+# Open CASCADE reads some megabytes a minute at the slowest.
+_SECONDS, _BYTES_PER_SECOND = 120.0, 20_000
+
+
+@dataclass(frozen=True, eq=False)
+class _ReadFace:
+    """A face as the other process converted it: arguments of `BSplineSurface`, or the error."""
+
+    kind: str
+    is_trimmed: bool | None
+    content: tuple[Any, ...] | InputError
+
+    def trimmed(self) -> bool | None:
+        return self.is_trimmed
+
+    def surface(self) -> BSplineSurface:
+        if isinstance(self.content, InputError):
+            raise self.content
+        return BSplineSurface(*self.content)
+
+
+def open_occ(path: str | Path) -> Model:
+    """Open a STEP, IGES or BREP file.
+
+    Raises
+    ------
+    FileError
+        Missing, not readable by Open CASCADE, or the extra `cad` is not installed.
+    """
+    require_file(path)
+    require_kernel(path)
+    with tempfile.TemporaryDirectory(prefix="semispline-") as folder:
+        result = Path(folder) / "faces"
+        # The other process finds its modules where this one does, and not in the folder that it is started in (-P).
+        environment = os.environ | {"PYTHONPATH": os.pathsep.join(entry for entry in sys.path if entry)}
+        command = [sys.executable, "-P", "-m", "solver.io.occ_process", str(path), str(result)]
+        seconds = _SECONDS + os.path.getsize(path) / _BYTES_PER_SECOND
+        try:
+            ended = subprocess.run(command, env=environment, capture_output=True, check=False, timeout=seconds)
+        except subprocess.TimeoutExpired:
+            raise FileError(f"{path}: Open CASCADE found no end in {seconds:.0f} s; export the file anew") from None
+        if ended.returncode or not result.is_file():
+            raise FileError(
+                f"{path}: Open CASCADE broke down while reading it (status {ended.returncode}); the file is damaged, "
+                "export it anew"
+            )
+        # Our own process wrote this, out of numbers and strings.
+        found = pickle.loads(result.read_bytes())
+    if isinstance(found, InputError):
+        raise found
+    unit, faces = found
+    return Model(str(path), unit, [_ReadFace(*face) for face in faces])
+
+
+def main(path: str, result: str) -> None:
+    """Read the file at `path` and leave unit and faces, or the error, in the file `result`."""
+    from solver.io.occ import read_occ
+
+    found: Any
+    try:
+        model = read_occ(path)
+        found = (model.unit, [(face.kind, face.trimmed(), _content(face)) for face in model.faces])
+    except InputError as error:
+        found = error
+    Path(result).write_bytes(pickle.dumps(found))
+    # Nothing is left to do: the kernel's way out has crashed after damaged files too.
+    sys.stdout.flush()
+    os._exit(0)
+
+
+def _content(face: Any) -> tuple[Any, ...] | InputError:
+    try:
+        surface = face.surface()
+    except InputError as error:
+        return error
+    arrays = (surface.knots_u, surface.knots_v, surface.control_points, surface.weights)
+    return (surface.degree_u, surface.degree_v, *arrays)
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])
