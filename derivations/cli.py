@@ -16,12 +16,14 @@ app = typer.Typer(add_completion=False, no_args_is_help=True, help="Derived form
 NAMES = (
     "basis-pieces",
     "contact-conditions",
+    "contact-jets",
     "contact-rows",
     "end-derivatives",
     "energy",
     "energy-density",
     "gram-block",
     "gram-entries",
+    "shape-polynomial",
     "special-conditions",
     "stationarity",
 )

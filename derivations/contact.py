@@ -127,13 +127,46 @@ def contact_rows(
     [          1,        0],
     [1 + a*h1/H1, -a*h1/H1]])
     """
-    p = sympify(degree)
-    if p.is_number and p < order:
-        raise ValueError(f"degree: found {p}, expected at least {order} for contact of order {order}")
-    blend = end_derivatives(order, p, spans)
+    blend = end_derivatives(order, _blend_degree(degree, order), spans)
     base = end_derivatives(order, base_degree, base_spans)
     rows = _solve_rows(order, blend, base, [(-A) ** d for d in range(order + 1)])
     return rows.subs(A, sympify(a))
+
+
+def contact_jets(order: int, degree: Any, spans: Sequence[Any], a: Any = A) -> Matrix:
+    """Return the matrix J of P_i = sum_d J[i, d] d^d R / dw^d, for a base that need not be a spline.
+
+    Parameters
+    ----------
+    order, degree, spans, a
+        As for `contact_rows`, which is this matrix times the end derivatives of the base.
+
+    Returns
+    -------
+    Matrix, shape (n + 1, n + 1)
+        J[i, d] = (-a)^d (p - d)! / p! e_d(h_1, .., h_i), with e_d the elementary symmetric polynomial: the blossom of
+        the Taylor polynomial of R(w_s - a u, v) at i arguments h_1..h_i and p - i arguments 0.
+
+    Raises
+    ------
+    ValueError
+        As `contact_rows`.
+
+    Examples
+    --------
+    >>> contact_jets(2, Symbol("p"), span_symbols(2))[2, :]
+    Matrix([[1, -a*(h1 + h2)/p, a**2*h1*h2/(p*(p - 1))]])
+    """
+    blend = end_derivatives(order, _blend_degree(degree, order), spans)
+    rows = _solve_rows(order, blend, Matrix.eye(order + 1), [(-A) ** d for d in range(order + 1)])
+    return rows.subs(A, sympify(a))
+
+
+def _blend_degree(degree: Any, order: int) -> Expr:
+    p = sympify(degree)
+    if p.is_number and p < order:
+        raise ValueError(f"degree: found {p}, expected at least {order} for contact of order {order}")
+    return p
 
 
 def contact_rows_from_pieces(

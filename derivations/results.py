@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
-from sympy import Eq, Expr, Poly, Symbol, factor, latex, sstr, sympify
+from sympy import Add, Eq, Expr, Mul, Poly, Symbol, factor, latex, sstr, sympify
 
-from derivations import contact, energy, splines
+from derivations import contact, energy, shape, splines
 from derivations.codegen import catalogue
 from derivations.codegen.c_backend import c_function
 from derivations.codegen.expressions import expression_text
@@ -126,14 +126,34 @@ def _derivative_name(letter: str, by: str, order: int) -> Symbol:
     return Symbol(f"{letter}_{by * order}" if order else letter)
 
 
+def _combination(row: Sequence[Expr], points: Sequence[Symbol], positive: int = 0) -> Expr:
+    """Return sum_j row[j] points[j] as common factors times a combination.
+
+    `positive` is 0 or -1: which of the coefficients that are not zero, the first or the last, is written positive.
+    """
+    value = factor(sum((entry * point for entry, point in zip(row, points, strict=True)), sympify(0)))
+    common, combination = value.as_independent(*points, as_Add=False)
+    poly = Poly(combination, *points)
+    sign = -1 if poly.coeffs()[positive].could_extract_minus_sign() else 1
+    terms = []
+    for point in points:
+        coefficient = factor(sign * poly.coeff_monomial(point))
+        # Written out, so that a minus sign stands before the product and not inside its brackets.
+        negative = coefficient.could_extract_minus_sign()
+        terms.append(Mul(-1, point, -coefficient) if negative else point * coefficient)
+    return sign * common * Add(*terms)
+
+
 def _end_derivatives(request: Request) -> Result:
     routine = catalogue.end_derivative_routine(request.order, request.degree, request.end)
-    equations = []
-    for d, row in enumerate(routine.values):
-        rows = [Symbol(f"P_{i}" if request.end == "start" else f"P_{{m-{i}}}" if i else "P_m") for i in range(len(row))]
-        value = sum((entry * point for entry, point in zip(row, rows, strict=True)), sympify(0))
-        equations.append((_derivative_name("P", "u", d), value))
-    return Result(tuple(equations), routine)
+    rows = [f"P_{i}" if request.end == "start" else f"P_{{m-{i}}}" if i else "P_m" for i in range(request.order + 1)]
+    points = [Symbol(name) for name in rows]
+    # Differences are written forwards: P_1 - P_0.
+    positive = -1 if request.end == "start" else 0
+    equations = tuple(
+        (_derivative_name("P", "u", d), _combination(row, points, positive)) for d, row in enumerate(routine.values)
+    )
+    return Result(equations, routine)
 
 
 def _contact_conditions(request: Request) -> Result:
@@ -149,16 +169,25 @@ def _special_conditions(request: Request) -> Result:
 
 def _contact_rows(request: Request) -> Result:
     routine = catalogue.contact_routine(request.order, request.degree, request.base_degree)
+    points = [Symbol(f"R_{j}") for j in range(request.order + 1)]
+    a = Symbol("a")
     equations = []
     for i, row in enumerate(routine.values):
-        points = [Symbol(f"R_{j}") for j in range(len(row))]
-        value = sum((entry * point for entry, point in zip(row, points, strict=True)), sympify(0))
-        a = Symbol("a")
         # One summand for each power of a: a combination of differences of rows.
-        terms = Poly(value, a, domain="EX").terms()
-        total = sum((a**power * factor(coefficient) for (power,), coefficient in terms), sympify(0))
+        powers = [Poly(entry, a, domain="EX").all_coeffs()[::-1] for entry in row]
+        total = sympify(0)
+        for k in range(i + 1):
+            coefficients = [power[k] if k < len(power) else sympify(0) for power in powers]
+            total += a**k * _combination(coefficients, points) if any(coefficients) else 0
         equations.append((Symbol(f"P_{i}"), total))
     return Result(tuple(equations), routine)
+
+
+def _contact_jets(request: Request) -> Result:
+    routine = catalogue.jets_routine(request.order, request.degree)
+    derivatives = [_derivative_name("R", "w", d) for d in range(request.order + 1)]
+    values = (sum((e * r for e, r in zip(row, derivatives, strict=True)), sympify(0)) for row in routine.values)
+    return Result(tuple((Symbol(f"P_{i}"), value) for i, value in enumerate(values)), routine)
 
 
 def _basis(request: Request) -> energy.Basis:
@@ -218,6 +247,16 @@ def _stationarity(_: Request) -> Result:
     return Result(((energy.stationarity_condition(), sympify(0)),))
 
 
+def _shape_polynomial(request: Request) -> Result:
+    if not 1 <= request.order <= shape.MAX_POWER:
+        raise ValueError(f"order: found {request.order}, expected 1..{shape.MAX_POWER} for the shape polynomial")
+    routine = catalogue.shape_routine(request.order, request.order)
+    x, y = Symbol("x"), Symbol("y")
+    table = enumerate(routine.values)
+    total = sum((entry * x**i * y**j for i, row in table for j, entry in enumerate(row)), sympify(0))
+    return Result(((Symbol("E"), total),), routine)
+
+
 @dataclass(frozen=True)
 class _Entry:
     summary: str
@@ -227,12 +266,14 @@ class _Entry:
 RESULTS: dict[str, _Entry] = {
     "basis-pieces": _Entry("B-spline basis over given knots, span by span", _basis_pieces),
     "contact-conditions": _Entry("G^n contact for general functions p_i, q_i", _contact_conditions),
+    "contact-jets": _Entry("the same rows in derivatives of any base, spline or not", _contact_jets),
     "contact-rows": _Entry("rows P_0..P_n of a blend in G^n contact with a base", _contact_rows),
     "end-derivatives": _Entry("derivatives at a clamped end in the first rows", _end_derivatives),
     "energy": _Entry("thin-plate energy as a quadratic form", _energy),
     "energy-density": _Entry("integrand of the thin-plate energy", _energy_density),
     "gram-block": _Entry("block of the quadratic form in one-dimensional integrals", _gram_block),
     "gram-entries": _Entry("integrals of products of basis derivatives, of two bases", _gram),
+    "shape-polynomial": _Entry("least energy in x = a - a0 and y = b - b0, G^n at both ends", _shape_polynomial),
     "special-conditions": _Entry("G^n contact for p1 = -a, the rest zero", _special_conditions),
     "stationarity": _Entry("what vanishes for each free control point at the least energy", _stationarity),
 }

@@ -8,7 +8,7 @@ from sympy import Expr, Matrix, Symbol, diag
 
 from derivations.codegen.python_backends import CASADI, NUMPY, python_module
 from derivations.codegen.routines import Argument, Routine, plain_symbols
-from derivations.contact import contact_conditions, contact_rows
+from derivations.contact import contact_conditions, contact_jets, contact_rows
 from derivations.energy import SECOND_DERIVATIVES, gram_block, thin_plate_density
 from derivations.shape import MAX_POWER, contact_row_powers, energy_polynomial, product_symbol
 from derivations.splines import end_derivatives, span_symbols
@@ -72,6 +72,22 @@ def contact_routine(order: int, degree: int | None = None, base_degree: int | No
         form="matrix",
         values=_rows(contact_rows(order, p, span_symbols(order), q, span_symbols(order, "H"))),
         names=("C",),
+    )
+
+
+def jets_routine(order: int, degree: int | None = None) -> Routine:
+    """Return `contact_jets_n(a, p, h1, .., hn)`, without p where given."""
+    p, blend = _degree("p", degree, "Degree of the blend in u.", order)
+    spans = _spans("h", order, "the blend, counted from the contact", str(p))
+    alpha = [Argument("a", "number", "alpha^2: the blend leaves the base backwards, P_u = -a R_w.")]
+    return Routine(
+        name=f"contact_jets_{order}",
+        summary=f"Rows of a blend in G{order} contact: P_i = sum_d J[i, d] R^(d), derivatives of the base across.",
+        source=f"chain rule of order {order} with p1 = -a, the rest zero; derivations/contact.py",
+        arguments=(*alpha, *blend, *spans) if order else (),
+        form="matrix",
+        values=_rows(contact_jets(order, p, span_symbols(order))),
+        names=("J",),
     )
 
 

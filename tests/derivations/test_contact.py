@@ -1,6 +1,8 @@
 """Contact: the chain rule against composed polynomials, the rows against Cox-de Boor at all four pairs of ends."""
 
 from fractions import Fraction
+from itertools import combinations
+from math import prod
 from random import Random
 
 import pytest
@@ -13,6 +15,7 @@ from derivations.contact import (
     A,
     base_derivative,
     contact_conditions,
+    contact_jets,
     contact_rows,
     contact_rows_from_pieces,
     special_conditions,
@@ -134,6 +137,21 @@ def test_rows_are_affine_and_triangular(order):
     assert rows.is_lower
     for i in range(order + 1):
         assert cancel(sum(rows.row(i))) == 1
+
+
+@pytest.mark.parametrize("order", range(4))
+def test_rows_are_blossoms_of_the_taylor_polynomial(order):
+    # Another way to the same rows: the blossom of x^d in degree p is the mean of the products of d of its arguments.
+    h = span_symbols(order)
+    jets = contact_jets(order, P, h)
+    for i in range(order + 1):
+        for d in range(order + 1):
+            symmetric = sum(prod(chosen) for chosen in combinations(h[:i], d))
+            falling = prod(P - k for k in range(d))
+            assert cancel(jets[i, d] - (-A) ** d * symmetric / falling) == 0
+    base = end_derivatives(order, Q, span_symbols(order, "H"))
+    rows = contact_rows(order, P, h, Q, span_symbols(order, "H"))
+    assert (jets * base - rows).applyfunc(cancel).is_zero_matrix
 
 
 @pytest.mark.parametrize("q", [1, 2])

@@ -1,0 +1,154 @@
+"""The commands `derive` and `generate`, in a process of their own where their exit status matters."""
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+from derivations.cli import NAMES, app, derived
+from derivations.codegen.files import THEORY, refreshed
+from derivations.results import FORMS, RESULTS, Request, show
+
+ROOT = Path(__file__).parents[2]
+FORMULAS = ("energy", "special-conditions", "stationarity")
+
+
+def run(arguments, folder=ROOT):
+    # PYTHONPATH puts the copy before the installed package.
+    return subprocess.run(
+        [sys.executable, "-m", "derivations.cli", *arguments],
+        cwd=folder,
+        env=os.environ | {"PYTHONPATH": str(folder), "COLUMNS": "200"},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+
+
+@pytest.fixture
+def checkout(tmp_path):
+    """A copy of what `generate` reads and writes."""
+    for name in ("derivations", "solver/generated"):
+        shutil.copytree(ROOT / name, tmp_path / name, ignore=shutil.ignore_patterns("__pycache__"))
+    (tmp_path / "solver" / "__init__.py").write_text("")
+    shutil.copy(ROOT / "pyproject.toml", tmp_path)
+    (tmp_path / "docs").mkdir()
+    shutil.copy(ROOT / THEORY, tmp_path / THEORY)
+    return tmp_path
+
+
+@pytest.mark.parametrize("form", FORMS)
+@pytest.mark.parametrize("name", NAMES)
+def test_every_result_has_every_form_that_it_can_have(name, form):
+    if name in FORMULAS and form not in ("text", "latex"):
+        with pytest.raises(ValueError, match="expected form text or latex"):
+            show(name, Request(), form)
+        return
+    text = show(name, Request(degree=2), form)
+    assert text.endswith("\n")
+    if form in ("numpy", "casadi"):
+        compile(text, name, "exec")
+    elif form == "latex":
+        assert text.count("{") == text.count("}")
+
+
+def test_help_lists_what_there_is():
+    assert sorted(RESULTS) == list(NAMES) == list(RESULTS)
+
+
+def test_derived_rows_are_what_they_say():
+    text = derived("contact-rows --order 2 --degree 3 --base-degree 3")
+    rows = dict(line.split(" = ") for line in text.splitlines())
+    names = {"a": 1.5, "h1": 0.25, "h2": 0.5, "H1": 1.0, "H2": 2.0, "R_0": 1.0, "R_1": 2.0, "R_2": 4.0}
+    found = [eval(rows[f"P_{i}"], {}, names) for i in range(3)]
+    # By hand: P_0 = 1; P_1 = 1 - 0.375; P_2 = 1 - 1.125 + 0.28125 * ((4 - 2)/2 - (2 - 1)/1).
+    assert found == pytest.approx([1.0, 0.625, -0.125], rel=1e-15)
+
+
+def test_derived_numpy_code_runs():
+    space = {}
+    exec(derived("gram-entries --degree 1 --knots 0,0,t,t --derivative 1 --form numpy"), space)
+    np.testing.assert_allclose(space["gram_entries"](0.5), [[2, -2], [-2, 2]])
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["nonsense"], "nonsense: no such result; there are basis-pieces, contact-conditions"),
+        (["contact-rows", "--order", "7"], "order: found 7, expected 0..3"),
+        (["contact-rows", "--order", "2", "--degree", "1"], "degree: found 1, expected at least 2"),
+        (["contact-rows", "--base-degree", "0"], "base_degree: found 0"),
+        (["gram-entries", "--knots", "0,0,q!,1"], "knots[2]: found 'q!'"),
+        (["gram-entries", "--derivative", "-1"], "derivative: found -1"),
+        (["basis-pieces", "--knots", "0,1"], "2 knots for degree 3"),
+        (["energy", "--form", "c"], "expected form text or latex"),
+    ],
+)
+def test_bad_requests_end_with_status_two_and_one_line(arguments, words):
+    result = CliRunner().invoke(app, ["derive", *arguments])
+    assert result.exit_code == 2
+    assert result.stdout == ""
+    assert words in result.stderr
+    assert result.stderr.count("\n") == 1
+
+
+def test_check_is_quiet_in_this_checkout():
+    found = run(["generate", "--check"])
+    assert (found.returncode, found.stdout) == (0, ""), found.stdout + found.stderr
+
+
+def test_check_sees_and_generate_repairs_whatever_differs(checkout):
+    folder = checkout / "solver" / "generated"
+    edited, missing, stale = folder / "contact_numpy.py", folder / "energy_casadi.py", folder / "old_numpy.py"
+    original = {path: path.read_text() for path in (edited, missing)}
+    edited.write_text(original[edited].replace("+ 1", "- 1", 1))
+    missing.unlink()
+    stale.write_text("x = 1\n")
+    theory = checkout / THEORY
+    text = theory.read_text()
+    theory.write_text(text.replace("P_{0}", "P_{1}", 1))
+
+    found = run(["generate", "--check"], checkout)
+    assert found.returncode == 1, found.stderr
+    assert "--- solver/generated/contact_numpy.py (found)" in found.stdout
+    assert "+++ solver/generated/energy_casadi.py (generated)" in found.stdout
+    assert "+++ solver/generated/old_numpy.py (stale: nothing generates it)" in found.stdout
+    assert "--- docs/theory.md (found)" in found.stdout
+    assert [line[0] for line in found.stdout.splitlines() if "x = 1" in line] == ["-"]
+    # Nothing was touched.
+    assert stale.exists()
+    assert not missing.exists()
+
+    assert run(["generate"], checkout).returncode == 0
+    assert {path: path.read_text() for path in original} == original
+    assert theory.read_text() == text
+    assert not stale.exists()
+    again = run(["generate", "--check"], checkout)
+    assert (again.returncode, again.stdout) == (0, "")
+
+
+def test_generate_outside_a_checkout_says_so(tmp_path):
+    shutil.copytree(ROOT / "derivations", tmp_path / "derivations", ignore=shutil.ignore_patterns("__pycache__"))
+    found = run(["generate"], tmp_path)
+    assert found.returncode == 2
+    assert "not a checkout of semispline" in found.stderr
+    assert found.stderr.count("\n") == 1
+    assert [path.name for path in tmp_path.iterdir()] == ["derivations"]
+
+
+def test_formulas_of_the_theory_are_printed_by_derive():
+    text = (ROOT / THEORY).read_text(encoding="utf-8")
+    assert text.count("<!-- derive ") >= 8
+    assert refreshed(text, derived) == text
+    # Each formula in the page is such a block: none was typed in by hand.
+    assert text.count("```math") == text.count("<!-- derive ")
+
+
+def test_a_refused_call_in_the_theory_is_an_error():
+    with pytest.raises(ValueError, match="derive nonsense"):
+        refreshed("<!-- derive nonsense -->\n```math\n\n```\n", derived)
