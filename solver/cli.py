@@ -47,7 +47,7 @@ def blend_command(
         str, typer.Option(metavar="FLIP", help="Whether edge B runs against edge A: auto, yes or no.")
     ] = "auto",
     middle_curves: Annotated[int, typer.Option(metavar="N", help="v-control curves between the contacts.")] = 1,
-    method: Annotated[str, typer.Option(metavar="METHOD", help="How alpha and beta are found: casadi.")] = "casadi",
+    method: Annotated[str, typer.Option(metavar="METHOD", help="How alpha and beta are found: reduced, casadi or bfgs.")] = "reduced",
     report: Annotated[str | None, typer.Option(metavar="FILE", help="JSON with energy, alpha, beta, contact.")] = None,
 ) -> None:
     """Join an edge of A and an edge of B by a semi-structured surface of least energy."""

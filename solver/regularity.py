@@ -34,6 +34,7 @@ def measure_regularity(surface: Surface) -> Regularity:
 
     Examples
     --------
+    >>> from solver.surfaces import BSplineSurface
     >>> k = [0, 0, 1, 1]
     >>> flat = BSplineSurface(1, 1, k, k, [[[0, 0, 0], [0, 1, 0]], [[1, 0, 0], [1, 1, 0]]])
     >>> measure_regularity(flat)
