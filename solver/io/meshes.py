@@ -15,6 +15,8 @@ from solver.surfaces import Surface
 
 # Samples along each parameter of an exported mesh: a quarter circle is met to 1e-5 of its radius.
 _SAMPLES = 160
+# Twice the area of a triangle, over the square of the extent, that is rounding of three points in a line.
+_NO_AREA = 1e-15
 
 
 def write_mesh(path: Path, surface: Surface) -> None:
@@ -79,7 +81,8 @@ def triangle_mesh(geometry: LocalGeometry, normal: FloatArray) -> Any:
     a, b, c, d = (x.ravel() for x in (corner[:-1, :-1], corner[1:, :-1], corner[1:, 1:], corner[:-1, 1:]))
     triangles = np.concatenate([np.stack([a, b, c], axis=1), np.stack([a, c, d], axis=1)])
     sides = points[triangles[:, 1:]] - points[triangles[:, :1]]
-    triangles = triangles[np.any(np.cross(sides[:, 0], sides[:, 1]) != 0, axis=1)]
+    area = np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1)
+    triangles = triangles[area > _NO_AREA * np.ptp(points, axis=0).max() ** 2]
     faces = np.hstack([np.full((len(triangles), 1), 3), triangles])
     mesh = pyvista.PolyData(points, faces.ravel())
     mesh.point_data["Normals"] = normal.reshape(-1, 3)
