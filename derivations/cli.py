@@ -47,7 +47,7 @@ _Number = Annotated[int | None, typer.Option(help="A number; a symbol where left
 
 
 def _fail(error: Exception) -> typer.Exit:
-    typer.echo(f"semispline: {error}", err=True)
+    typer.echo(f"error: {' '.join(str(error).split())}", err=True)
     return typer.Exit(2)
 
 
@@ -129,10 +129,10 @@ def generate(
     try:
         root = checkout_root(Path(__file__).parent)
         expected = expected_files(root, derived)
-    except ValueError as error:
+        changed = [] if check else write_files(root, expected)
+    except (ValueError, OSError) as error:
         raise _fail(error) from None
     if not check:
-        changed = write_files(root, expected)
         for path in changed:
             typer.echo(f"{'wrote' if path in expected else 'removed'} {path}")
         if not changed:
@@ -141,7 +141,7 @@ def generate(
     difference = differences(root, expected)
     if difference:
         typer.echo(difference, nl=False)
-        typer.echo("semispline: generated files differ from the derivations; run `semispline generate`", err=True)
+        typer.echo("generated files differ from the derivations; run `semispline generate`", err=True)
         raise typer.Exit(1)
 
 

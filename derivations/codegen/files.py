@@ -95,8 +95,11 @@ def write_files(root: Path, expected: dict[Path, str]) -> list[Path]:
         target = root / path
         if not target.is_file() or target.read_text(encoding="utf-8", errors="replace") != text:
             partial = target.with_name(f".{target.name}.partial")
-            partial.write_text(text, encoding="utf-8", newline="\n")
-            os.replace(partial, target)
+            try:
+                partial.write_text(text, encoding="utf-8", newline="\n")
+                os.replace(partial, target)
+            finally:
+                partial.unlink(missing_ok=True)
             changed.append(path)
     for path in stale_files(root, expected):
         (root / path).unlink()

@@ -1,18 +1,23 @@
 """The commands `derive` and `generate`, in a process of their own where their exit status matters."""
 
 import os
+import re
 import shutil
 import subprocess
 import sys
+from fractions import Fraction
 from pathlib import Path
 
 import numpy as np
 import pytest
+from sympy import Matrix, Rational, diag
 from typer.testing import CliRunner
 
 from derivations.cli import NAMES, app, derived
-from derivations.codegen.files import THEORY, refreshed
+from derivations.codegen.files import THEORY, differences, expected_files, refreshed
+from derivations.contact import contact_jets, contact_rows
 from derivations.results import FORMS, RESULTS, Request, show
+from derivations.splines import end_derivatives
 
 ROOT = Path(__file__).parents[2]
 FORMULAS = ("energy", "special-conditions", "stationarity")
@@ -68,6 +73,41 @@ def test_derived_rows_are_what_they_say():
     found = [eval(rows[f"P_{i}"], {}, names) for i in range(3)]
     # By hand: P_0 = 1; P_1 = 1 - 0.375; P_2 = 1 - 1.125 + 0.28125 * ((4 - 2)/2 - (2 - 1)/1).
     assert found == pytest.approx([1.0, 0.625, -0.125], rel=1e-15)
+
+
+@pytest.mark.parametrize("order", range(4))
+def test_text_and_matrices_of_contact_agree(order):
+    # The equations are rearranged for reading; with exact numbers put in they must give what the matrices give.
+    h, H, p, q, a = (
+        [Fraction(1, 3), Fraction(1, 2), Fraction(3, 4)],
+        [Fraction(2, 5), 1, Fraction(6, 5)],
+        5,
+        4,
+        Fraction(3, 2),
+    )
+    rows = [Fraction(k, 3) for k in (7, -2, 5, 1)][: order + 1]
+    numbers = {f"h{r + 1}": h[r] for r in range(3)} | {f"H{r + 1}": H[r] for r in range(3)} | {"p": p, "q": q, "a": a}
+    exact = [list(map(Rational, values[:order])) for values in (h, H)]
+    at_start = end_derivatives(order, p, exact[0])
+    matrices = {
+        ("end-derivatives", "start", "P_{}"): at_start,
+        ("end-derivatives", "end", "P_{{m-{}}}"): diag(*((-1) ** d for d in range(order + 1))) * at_start,
+        ("contact-rows", "start", "R_{}"): contact_rows(order, p, exact[0], q, exact[1], Rational(a)),
+        ("contact-jets", "start", "R_{}"): contact_jets(order, p, exact[0], Rational(a)),
+    }
+    for (name, end, point), matrix in matrices.items():
+        places = [point.format(i) for i in range(order + 1)]
+        if end == "end":
+            places[0] = "P_m"
+        if name == "contact-jets":
+            places = ["R", "R_w", "R_ww", "R_www"][: order + 1]
+        text = show(name, Request(order=order, end=end))
+        for i, place in sorted(enumerate(places), key=lambda pair: -len(pair[1])):
+            text = re.sub(rf"(?<![\w]){re.escape(place)}(?!\w)", f"rows[{i}]", text)
+        right_sides = [line.split(" = ")[1] for line in text.splitlines()]
+        found = [eval(side, {"rows": rows}, numbers) for side in right_sides]
+        expected = matrix * Matrix(list(map(Rational, rows)))
+        assert [Rational(value) for value in found] == list(expected), name
 
 
 def test_derived_numpy_code_runs():
@@ -128,8 +168,7 @@ def test_check_sees_and_generate_repairs_whatever_differs(checkout):
     assert {path: path.read_text() for path in original} == original
     assert theory.read_text() == text
     assert not stale.exists()
-    again = run(["generate", "--check"], checkout)
-    assert (again.returncode, again.stdout) == (0, "")
+    assert differences(checkout, expected_files(checkout, derived)) == ""
 
 
 def test_generate_outside_a_checkout_says_so(tmp_path):
@@ -139,6 +178,19 @@ def test_generate_outside_a_checkout_says_so(tmp_path):
     assert "not a checkout of semispline" in found.stderr
     assert found.stderr.count("\n") == 1
     assert [path.name for path in tmp_path.iterdir()] == ["derivations"]
+
+
+def test_a_folder_that_cannot_be_written_is_one_line(checkout):
+    target = checkout / "solver" / "generated" / "contact_numpy.py"
+    target.unlink()
+    # A folder in its place: the finished file cannot be moved there, whoever runs the test.
+    target.mkdir()
+    (target / "keep").write_text("")
+    found = run(["generate"], checkout)
+    assert found.returncode == 2
+    assert found.stderr.count("\n") == 1
+    assert "contact_numpy.py" in found.stderr
+    assert (target / "keep").exists()
 
 
 def test_formulas_of_the_theory_are_printed_by_derive():
