@@ -44,10 +44,8 @@ def curve_points(
     n, d = control_points.shape[-2:]
     if derivative > degree:
         return np.zeros((len(x), d))
-    # The span k has t_k <= x < t_(k+1); the end of the domain belongs to the last one.
-    k = np.searchsorted(knots, x, side="right") - 1
-    k = np.where(x >= knots[-1], np.searchsorted(knots, knots[-1], side="left") - 1, k)
-    k = np.clip(k, degree, n - 1)
+    # The span k has t_k <= x < t_(k+1); the end of the domain belongs to the last span, which ends at t_n.
+    k = np.clip(np.searchsorted(knots, x, side="right") - 1, degree, n - 1)
     local = k[:, None] - degree + np.arange(degree + 1)
     if control_points.ndim == 2:
         points = [control_points[local[:, j]] for j in range(degree + 1)]

@@ -100,6 +100,17 @@ def test_known_small_cases():
     assert reversed_knots(np.array([0, 0, 0.25, 1, 1])).tolist() == [0, 0, 0.75, 1, 1]
 
 
+@laws
+@given(st.floats(-100, 100), st.floats(1e-3, 100))
+def test_reversed_knots_keep_their_ends_and_stay_clamped(start, width):
+    end = start + width
+    knots = np.array([start, start, start, start + 0.3 * width, end, end, end])
+    mirrored = reversed_knots(knots)
+    assert mirrored[[0, 1, 2]].tolist() == [start] * 3
+    assert mirrored[[-3, -2, -1]].tolist() == [end] * 3
+    assert start < mirrored[3] < end
+
+
 def test_uniform_unclamped_quadratic():
     knots, points = clamp_knots(2, [0, 1, 2, 3, 4, 5, 6], [[0.0], [2], [4], [6]])
     assert knots.tolist() == [2, 2, 2, 3, 4, 4, 4]

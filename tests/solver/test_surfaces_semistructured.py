@@ -273,6 +273,20 @@ def test_continuity_that_the_curve_does_not_have_is_refused():
         surface.set_continuity(0, 0.5, 3)
 
 
+@pytest.mark.parametrize("tolerance", [1e-4, 1e-7])
+def test_the_tolerance_decides_what_counts_as_smooth(tolerance):
+    curve = set_curve_continuity(curve_over([0.2, 0.8]), 0.5, 0)
+    extent = np.ptp(curve.control_points, axis=0).max()
+    points = curve.control_points.copy()
+    # The point at the crease itself, pushed off the smooth curve.
+    at = int(np.argmin(np.linalg.norm(points - curve.evaluate([0.5]), axis=1)))
+    points[at] += [0, 0, tolerance * extent]
+    creased = BSplineCurve(3, curve.knots, points)
+    assert inner(set_curve_continuity(creased, 0.5, 3, tolerance=tolerance)) == [0.2, 0.8]
+    with pytest.raises(KnotError, match="would move by"):
+        set_curve_continuity(creased, 0.5, 3, tolerance=tolerance / 20)
+
+
 def test_a_bent_curve_moves_alone_and_only_around_its_knot():
     surface = surface_over([[], [0.2, 0.4, 0.6, 0.8], [], []]).set_continuity(1, 0.5, 0)
     curve = surface.control_curves[1]
