@@ -47,7 +47,9 @@ def blend_command(
         str, typer.Option(metavar="FLIP", help="Whether edge B runs against edge A: auto, yes or no.")
     ] = "auto",
     middle_curves: Annotated[int, typer.Option(metavar="N", help="v-control curves between the contacts.")] = 1,
-    method: Annotated[str, typer.Option(metavar="METHOD", help="How alpha and beta are found: reduced, casadi or bfgs.")] = "reduced",
+    method: Annotated[
+        str, typer.Option(metavar="METHOD", help="How alpha and beta are found: reduced, casadi or bfgs.")
+    ] = "reduced",
     report: Annotated[str | None, typer.Option(metavar="FILE", help="JSON with energy, alpha, beta, contact.")] = None,
 ) -> None:
     """Join an edge of A and an edge of B by a semi-structured surface of least energy."""
@@ -218,6 +220,8 @@ def report_record(result: BlendResult) -> dict[str, Any]:
         "control_points": result.surface.n_control_points,
         "iterations": result.iterations,
         "kkt_residual": result.kkt_residual,
+        "proven_gap": result.proven_gap,
+        "regularity": asdict(result.regularity),
         "seconds": result.seconds,
         "contact_a": contact_record(result.contact_a),
         "contact_b": contact_record(result.contact_b),

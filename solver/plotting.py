@@ -106,6 +106,8 @@ def render(
     pyvista = pyvista_module(path)
     count = int(np.clip(np.sqrt(_TOTAL / len(surfaces)), _COARSEST, _FINEST))
     samples = [_Sampled(*sampled(surface, count)) for surface in surfaces]
+    if _extent(samples) == 0:
+        raise OptionError("surfaces: all points coincide, so there is nothing to draw; give a surface with an extent")
     view = _view(samples)
     shown = control_points or [False] * len(surfaces)
     polygons = [_polygons(surface) if show else [] for surface, show in zip(surfaces, shown, strict=True)]

@@ -27,6 +27,7 @@ _Number: TypeAlias = Annotated[float, Strict(), AllowInfNan(False)]
 _Degree: TypeAlias = Annotated[int, Strict(), Field(ge=1)]
 _Count: TypeAlias = Annotated[int, Strict()]
 _Text: TypeAlias = Annotated[str, Strict()]
+_Shape: TypeAlias = _Number | _Text
 _Points: TypeAlias = list[list[_Number]]
 
 
@@ -61,8 +62,11 @@ class _OptionsRecord(_Record):
 
     continuity: _Text | tuple[_Text, _Text] = "G2"
     middle_curves: _Count = 1
+    degree_u: _Count = 3
     method: _Text = ""
     flip: _Text = "auto"
+    alpha: _Shape | tuple[_Shape, _Shape] = "free"
+    box: tuple[_Number, _Number] = (0.125, 8.0)
 
 
 class _ProblemRecord(_Record):
@@ -83,7 +87,7 @@ class StoredProblem:
         A surface, or "PATH#N" with PATH relative to the folder of the file.
     edge_a, edge_b : {"u0", "u1", "v0", "v1"}
     options : mapping
-        Keyword arguments of `blend`: continuity, middle_curves, method, flip.
+        Keyword arguments of `blend`.
 
     Raises
     ------
@@ -286,7 +290,7 @@ def _first_fault(error: ValidationError) -> str:
     place = "".join(
         f"[{part}]" if isinstance(part, int) else f".{part}"
         for part in fault["loc"]
-        if isinstance(part, int) or (part.isidentifier() and part != "str")
+        if isinstance(part, int) or (part.isidentifier() and part not in ("str", "float"))
     )
     if fault["type"] == "missing":
         return f"{place}: missing, expected a value"

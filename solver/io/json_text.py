@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+import math
+import re
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from reprlib import Repr
 from typing import Any
@@ -11,6 +13,7 @@ from typing import Any
 from solver.errors import FileError
 from solver.io.disk import read_bytes
 
+_PERHAPS_NOT_FINITE = re.compile(rb"NaN|Infinity|[eE]\+?[0-9]{3}")
 _REPR = Repr()
 _REPR.maxstring, _REPR.maxother, _REPR.maxlong = 40, 40, 40
 _REPR.maxlist, _REPR.maxdict, _REPR.maxlevel = 3, 2, 2
@@ -56,7 +59,7 @@ def load_json(path: str | Path) -> Any:
     """
     data = read_bytes(path)
     try:
-        return json.loads(data, parse_constant=_refuse_constant, object_pairs_hook=_unique_keys)
+        content = json.loads(data, object_pairs_hook=_unique_keys)
     except RecursionError:
         raise FileError(f"{path}: brackets nested too deeply for this format") from None
     except json.JSONDecodeError as error:
@@ -65,10 +68,12 @@ def load_json(path: str | Path) -> Any:
         ) from None
     except ValueError as error:
         raise FileError(f"{path}: {error}") from None
-
-
-def _refuse_constant(constant: str) -> Any:
-    raise ValueError(f"found {constant}, expected a finite number")
+    # Python reads NaN, Infinity and 1e999; looking for the place takes time, and is needed for them alone.
+    if _PERHAPS_NOT_FINITE.search(data):
+        for place, number in _numbers(content):
+            if not math.isfinite(number):
+                raise FileError(f"{path}: {place}: found {number}, expected a finite number")
+    return content
 
 
 def _unique_keys(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
@@ -78,6 +83,19 @@ def _unique_keys(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
             raise ValueError(f"key {short(key)} occurs twice, expected once")
         record[key] = value
     return record
+
+
+def _numbers(content: Any) -> Iterator[tuple[str, float]]:
+    """Yield every float with its place, in the order of the file."""
+    waiting = [("", content)]
+    while waiting:
+        place, value = waiting.pop()
+        if isinstance(value, float):
+            yield place, value
+        elif isinstance(value, dict):
+            waiting += [(f"{place}.{key}".lstrip("."), item) for key, item in reversed(value.items())]
+        elif isinstance(value, list):
+            waiting += [(f"{place}[{i}]", item) for i, item in reversed(list(enumerate(value)))]
 
 
 def _pretty(value: Any, indent: str) -> str:

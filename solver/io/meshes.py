@@ -83,6 +83,8 @@ def triangle_mesh(geometry: LocalGeometry, normal: FloatArray) -> Any:
     sides = points[triangles[:, 1:]] - points[triangles[:, :1]]
     area = np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1)
     triangles = triangles[area > _NO_AREA * np.ptp(points, axis=0).max() ** 2]
+    if not len(triangles):
+        raise FileError("surface: has no area, so there is no mesh of it; write .json, .step or .3dm")
     faces = np.hstack([np.full((len(triangles), 1), 3), triangles])
     mesh = pyvista.PolyData(points, faces.ravel())
     mesh.point_data["Normals"] = normal.reshape(-1, 3)

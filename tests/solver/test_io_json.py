@@ -172,8 +172,8 @@ def test_bad_semistructured_surface_names_the_curve(change, words):
     [
         ("", ["not JSON", "line 1"]),
         ('{"a": 1', ["not JSON"]),
-        ('{"a": NaN}', ["NaN", "finite"]),
-        ('{"a": [-Infinity]}', ["-Infinity", "finite"]),
+        ('{"a": NaN}', ["a: found nan", "finite"]),
+        ('{"a": [-Infinity]}', ["a[0]: found -inf", "finite"]),
         ('{"a": 1, "b": 2, "a": 3}', ["'a'", "twice"]),
         ("[" * 100_000, ["nested"]),
         ('{"a": 1' + "0" * 5000 + "}", ["digits"]),
