@@ -59,7 +59,8 @@ def checked_knots(knots: ArrayLike, degree: int, n_control: int, name: str = "kn
     for index, end, side in ((0, array[degree], "first"), (len(array) - 1, array[-degree - 1], "last")):
         if array[index] != end:
             raise KnotError(
-                f"{name}[{index}]: found {array[index]}, expected {end}: the {side} {degree + 1} knots must be equal"
+                f"{name}[{index}]: found {array[index]}, expected {end}: the {side} {degree + 1} knots must be equal "
+                "(clamped_surface and clamp_knots take other vectors)"
             )
     inner = array[degree + 1 : -degree - 1]
     ends = (array[0], array[-1])

@@ -14,9 +14,10 @@ from numpy.typing import ArrayLike
 from solver.arrays import FloatArray, SparseMatrix, finite_array
 from solver.compatible import combined_curves
 from solver.curves import elevate_curve, insert_curve_knots, restrict_curve, reverse_curve
-from solver.errors import InputError, KnotError
+from solver.errors import ControlPointError, InputError, KnotError
 from solver.knots import affine_knots, reversed_knots
 from solver.refinement import (
+    clamp_knots,
     elevated_knots,
     elevation_matrix,
     refinement_matrix,
@@ -289,3 +290,40 @@ def from_homogeneous(
         return BSplineSurface(degree_u, degree_v, knots_u, knots_v, net)
     weights = net[..., 3]
     return BSplineSurface(degree_u, degree_v, knots_u, knots_v, net[..., :3] / weights[..., None], weights)
+
+
+def clamped_surface(
+    degree_u: int,
+    degree_v: int,
+    knots_u: ArrayLike,
+    knots_v: ArrayLike,
+    control_points: ArrayLike,
+    weights: ArrayLike | None = None,
+) -> BSplineSurface:
+    """Return the surface with unclamped or periodic knots over its domain, clamped by exact knot insertion.
+
+    Parameters
+    ----------
+    degree_u, degree_v : int
+    knots_u, knots_v : array_like, shapes (n_u + degree_u + 1,), (n_v + degree_v + 1,)
+        Non-decreasing; the domain is [t_p, t_n]. What `clamp_knots` says of periodic splines holds here.
+    control_points : array_like, shape (n_u, n_v, 3)
+        Euclidean.
+    weights : array_like, shape (n_u, n_v), optional
+
+    Examples
+    --------
+    >>> x, y = np.mgrid[0:2, 0:3]
+    >>> surface = clamped_surface(1, 2, [0, 0, 1, 1], [0, 1, 2, 3, 4, 5], np.dstack([x, y, x]))
+    >>> surface.knots_v, surface.control_points[0, :, 1]
+    (array([2., 2., 2., 3., 3., 3.]), array([0.5, 1. , 1.5]))
+    """
+    net = finite_array(control_points, 3, "control_points", ControlPointError)
+    if weights is not None:
+        w = finite_array(weights, 2, "weights", ControlPointError)
+        if w.shape != net.shape[:2]:
+            raise ControlPointError(f"weights: shape {w.shape}, expected {net.shape[:2]}")
+        net = np.concatenate([net * w[..., None], w[..., None]], axis=2)
+    new_u, net = clamp_knots(degree_u, knots_u, net)
+    new_v, turned = clamp_knots(degree_v, knots_v, net.transpose(1, 0, 2))
+    return from_homogeneous(degree_u, degree_v, new_u, new_v, turned.transpose(1, 0, 2))

@@ -17,6 +17,7 @@ from solver.curves import insert_curve_knots, reverse_curve, split_curve
 from solver.de_boor import curve_points, surface_points
 from solver.operations import (
     bounding_box,
+    clamped_surface,
     elevate_degree,
     insert_knots,
     map_domain,
@@ -224,6 +225,25 @@ def test_unclamped_knots_are_clamped_exactly(degree, data, seed):
     # The referee takes unclamped vectors as well: its spans are those of the domain.
     expected = curve_points(degree, knots, points, x)
     assert np.abs(curve_points(degree, clamped, net, x) - expected).max() <= 1e-13
+
+
+@laws
+@given(st.integers(1, 4), st.integers(1, 4), st.booleans(), SEEDS)
+def test_unclamped_surfaces_are_clamped_exactly(p, q, rational, seed):
+    rng = np.random.default_rng(seed)
+    n_u, n_v = p + 1 + rng.integers(0, 4), q + 1 + rng.integers(0, 4)
+    knots_u, knots_v = np.cumsum(rng.uniform(0.01, 1, n_u + p + 1)), np.cumsum(rng.uniform(0.01, 1, n_v + q + 1))
+    points = rng.uniform(-1, 1, (n_u, n_v, 3))
+    weights = rng.uniform(0.5, 2, (n_u, n_v)) if rational else None
+    surface = clamped_surface(p, q, knots_u, knots_v, points, weights)
+    assert surface.domain == ((knots_u[p], knots_u[n_u]), (knots_v[q], knots_v[n_v]))
+    assert (surface.weights is None) != rational
+    u, v = inside(surface, seed)
+    w = np.ones((n_u, n_v)) if weights is None else weights
+    net = np.dstack([points * w[..., None], w])
+    rows = np.stack([curve_points(q, knots_v, row, v) for row in net], axis=1)
+    exact = curve_points(p, knots_u, rows, u)
+    assert np.abs(surface.evaluate(u, v) - exact[:, :3] / exact[:, 3:]).max() <= 1e-12
 
 
 @laws
