@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import numpy as np
 import scipy.sparse as sp
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from solver.arrays import FloatArray, SparseMatrix, finite_array
 from solver.errors import KnotError
@@ -41,24 +41,40 @@ def blossom_matrix(degree: int, knots: FloatArray, start: FloatArray, arguments:
     >>> blossom_matrix(1, np.array([0, 0, 1, 1.0]), np.array([0.0]), np.array([[0.25]])).toarray()
     array([[0.75, 0.25]])
     """
-    n = len(knots) - degree - 1
-    k = np.clip(np.searchsorted(knots, start, side="right") - 1, degree, n - 1)
-    values = np.zeros((len(start), degree + 1))
+    span = _spans(degree, knots, start)
+    return _banded(_blossom_values(degree, knots, span, arguments), span - degree, len(knots) - degree - 1)
+
+
+def _spans(degree: int, knots: FloatArray, start: FloatArray) -> NDArray[np.intp]:
+    last = len(knots) - degree - 2
+    return np.asarray(np.clip(np.searchsorted(knots, start, side="right") - 1, degree, last))
+
+
+def _blossom_values(degree: int, knots: FloatArray, span: NDArray[np.intp], arguments: FloatArray) -> FloatArray:
+    """Return the weights of the degree + 1 control points of each span, shape (N, degree + 1)."""
+    values = np.zeros((len(span), degree + 1))
     values[:, 0] = 1.0
     for level in range(1, degree + 1):
         x = arguments[:, level - 1]
-        carried = np.zeros(len(start))
+        carried = np.zeros(len(span))
         for s in range(level):
-            right, left = knots[k + s + 1], knots[k + 1 - level + s]
+            right, left = knots[span + s + 1], knots[span + 1 - level + s]
             # 1 - a, not (right - x) / width: a knot that meets an argument then gives exactly 0 and 1.
             a = (x - left) / (right - left)
             passed = a * values[:, s]
             values[:, s] = carried + (1.0 - a) * values[:, s]
             carried = passed
         values[:, level] = carried
-    columns = (k - degree)[:, None] + np.arange(degree + 1)
-    rows = np.arange(0, values.size + 1, degree + 1)
-    matrix = sp.csr_array((values.ravel(), columns.ravel(), rows), shape=(len(start), n))
+    return values
+
+
+def _banded(values: FloatArray, first: NDArray[np.intp], n: int) -> SparseMatrix:
+    """Return the sparse matrix with n columns whose row j has `values[j]` from column `first[j]` on."""
+    width = values.shape[1]
+    columns = first[:, None] + np.arange(width)
+    matrix = sp.csr_array(
+        (values.ravel(), columns.ravel(), np.arange(0, values.size + 1, width)), shape=(len(values), n)
+    )
     matrix.eliminate_zeros()
     return matrix
 
@@ -134,10 +150,9 @@ def elevation_matrix(degree: int, knots: FloatArray, new_degree: int) -> SparseM
         raised = elevated_knots(knots)
         n = len(raised) - p - 2
         window = _windows(raised, p + 1, n)
-        total = sp.csr_array((n, len(knots) - p - 1))
-        for left_out in range(p + 1):
-            total = total + blossom_matrix(p, knots, raised[:n], np.delete(window, left_out, axis=1))
-        matrix = (total / (p + 1)) @ matrix
+        span = _spans(p, knots, raised[:n])
+        blossoms = (_blossom_values(p, knots, span, np.delete(window, i, axis=1)) for i in range(p + 1))
+        matrix = _banded(sum(blossoms, np.zeros((n, p + 1))) / (p + 1), span - p, len(knots) - p - 1) @ matrix
         knots = raised
     return matrix
 
