@@ -8,16 +8,20 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
+from typing import TypeAlias
 
 import numpy as np
 import scipy.sparse as sp
+from numpy.typing import NDArray
 
 from solver.arrays import FloatArray, SparseMatrix
 from solver.errors import InputError
 from solver.generated.energy_numpy import gram_block
-from solver.knots import basis_matrix, breakpoints, derivative_points, merge_breakpoints
+from solver.knots import breakpoints, derivative_points, merge_breakpoints
 from solver.surfaces import BSplineSurface, Surface
+
+IndexArray: TypeAlias = NDArray[np.intp]
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,78 +45,98 @@ class Basis:
 class Samples:
     """A basis and its derivatives at Gauss points, the points of one merged span together.
 
+    Spans are the last axis: there are many of them, and few points and functions on each.
+
     Attributes
     ----------
     basis : Basis
-    weights : ndarray, shape (S, G)
+    weights : ndarray, shape (G, S)
     first : ndarray of int, shape (S,)
         Index of the first basis function that lives on the span; the same for the derivative's basis.
-    lower : tuple of ndarray, each of shape (S, G, degree - order + 1)
+    lower : tuple of ndarray, each of shape (degree - order + 1, G, S)
         The basis functions of the derivative of order 0, 1, 2, to be multiplied with its control points.
     """
 
     basis: Basis
     weights: FloatArray
-    first: FloatArray
+    first: IndexArray
     lower: tuple[FloatArray, ...]
 
-    def local(self, order: int = 0) -> FloatArray:
-        """Return indices of the derivative's basis functions that live on each span, shape (S, degree - order + 1)."""
-        return np.asarray(self.first[:, None] + np.arange(self.basis.degree - order + 1))
+    def local(self, order: int = 0) -> IndexArray:
+        """Return indices of the derivative's basis functions that live on each span, shape (degree - order + 1, S)."""
+        return np.asarray(self.first + np.arange(self.basis.degree - order + 1)[:, None])
 
     def derivative(self, order: int) -> FloatArray:
-        """Return derivatives of the basis functions themselves, shape (S, G, degree + 1).
+        """Return derivatives of the basis functions themselves, shape (degree + 1, G, S).
 
         The basis of the derivative's degree is raised step by step:
         N'_(i,p) = p (N_(i,p-1) / (t_(i+p) - t_i) - N_(i+1,p-1) / (t_(i+p+1) - t_(i+1))).
         """
         p, t = self.basis.degree, self.basis.knots
         if order > p:
-            return np.zeros((*self.weights.shape, p + 1))
+            return np.zeros((p + 1, *self.weights.shape))
         values = self.lower[order]
         for degree in range(p - order + 1, p + 1):
             # The p functions of the lower degree have indices first + (p + 1 - degree) .. in the full vector.
-            i = self.first[:, None] + (p - degree + 1) + np.arange(degree)
-            scaled = degree * values / (t[i + degree] - t[i])[:, None, :]
-            values = np.zeros((*self.weights.shape, degree + 1))
-            values[..., 1:] += scaled
-            values[..., :-1] -= scaled
+            i = self.first + (p - degree + 1) + np.arange(degree)[:, None]
+            scaled = values * (degree / (t[i + degree] - t[i]))[:, None]
+            values = np.zeros((degree + 1, *self.weights.shape))
+            values[1:] += scaled
+            values[:-1] -= scaled
         return values
 
-    def curve(self, points: FloatArray, order: int) -> FloatArray:
-        """Return the derivative of the curve with these control points, shape (S, G, 3), from differences of them."""
-        if order > self.basis.degree:
-            return np.zeros((*self.weights.shape, points.shape[-1]))
-        differences = derivative_points(self.basis.degree, self.basis.knots, points, order)
-        return np.asarray(np.matmul(self.lower[order], differences[self.local(order)]))
+    def part(self, spans: slice) -> Samples:
+        """Return the same samples on some of the spans."""
+        lower = tuple(values[..., spans] for values in self.lower)
+        return Samples(self.basis, self.weights[:, spans], self.first[spans], lower)
+
+    def curves(self, points: FloatArray, order: int) -> FloatArray:
+        """Return values from control points of the derivative, shape (C, degree - order + n): shape (C, G, S)."""
+        return np.asarray(np.einsum("kgs,cks->cgs", self.lower[order], points[:, self.local(order)]))
+
+
+@cache
+def _legendre(points: int) -> tuple[FloatArray, FloatArray]:
+    return np.polynomial.legendre.leggauss(points)
 
 
 def gauss_rule(breaks: FloatArray, degree: int) -> tuple[FloatArray, FloatArray]:
     """Return points and weights that integrate piecewise polynomials of `degree` over `breaks` exactly.
 
+    Returns
+    -------
+    points, weights : ndarray, shape (G, S)
+        One column for each span.
+
     Examples
     --------
     >>> x, w = gauss_rule(np.array([0.0, 1.0, 3.0]), 3)
-    >>> round(float(w @ x**3), 12)
+    >>> round(float(np.sum(w * x**3)), 12)
     20.25
     """
-    points, weights = np.polynomial.legendre.leggauss(degree // 2 + 1)
-    half = np.diff(breaks)[:, None] / 2
-    middle = (breaks[:-1, None] + breaks[1:, None]) / 2
-    return (middle + half * points).ravel(), (half * weights).ravel()
+    points, weights = _legendre(degree // 2 + 1)
+    half = np.diff(breaks) / 2
+    return (breaks[:-1] + breaks[1:]) / 2 + half * points[:, None], half * weights[:, None]
 
 
 def sample(basis: Basis, breaks: FloatArray, degree: int) -> Samples:
     """Sample a basis at the Gauss points that integrate polynomials of `degree` on every span of `breaks`."""
-    x, w = gauss_rule(breaks, degree)
-    weights = w.reshape(len(breaks) - 1, -1)
-    lower = []
-    for order in range(min(2, basis.degree) + 1):
-        matrix = basis_matrix(basis.degree - order, basis.knots[order : len(basis.knots) - order], x)
-        lower.append(matrix.data.reshape(*weights.shape, -1))
-        if order == 0:
-            first = matrix.indices.reshape(*weights.shape, -1)[:, 0, 0].astype(np.intp)
-    return Samples(basis, weights, first, tuple(lower))
+    x, weights = gauss_rule(breaks, degree)
+    p, t = basis.degree, basis.knots
+    # The span of the basis that holds each span of `breaks`, so that t[span] < t[span + 1].
+    span = np.searchsorted(t, (breaks[:-1] + breaks[1:]) / 2, side="right") - 1
+    values = np.ones((1, *x.shape))
+    lower = [values]
+    for d in range(1, p + 1):
+        # Cox-de Boor: each function of degree d - 1 rises into the next of degree d and falls out of its own.
+        i = span - d + 1 + np.arange(d)[:, None]
+        left, right = t[i], t[i + d]
+        scaled = values / (right - left)[:, None]
+        values = np.zeros((d + 1, *x.shape))
+        values[1:] = (x - left[:, None]) * scaled
+        values[:-1] += (right[:, None] - x) * scaled
+        lower = [values, *lower[:2]]
+    return Samples(basis, weights, span - p, tuple(lower))
 
 
 def gram_matrix(a: Basis, b: Basis, order: int = 0) -> SparseMatrix:
@@ -142,16 +166,28 @@ def gram_matrix(a: Basis, b: Basis, order: int = 0) -> SparseMatrix:
 
 
 def _products(a: Samples, b: Samples) -> list[SparseMatrix]:
-    """Gram matrices of orders 0, 1, 2, all of one sparsity pattern."""
-    rows = np.repeat(a.local(), b.basis.degree + 1, axis=1).ravel()
-    columns = np.tile(b.local(), a.basis.degree + 1).ravel()
-    shape = (a.basis.size, b.basis.size)
+    """Gram matrices of orders 0, 1, 2, all of one sparsity pattern.
+
+    Supports are intervals, so each function of a meets neighbouring functions of b: `start` .. in one run.
+    """
+    every = np.arange(a.basis.size)
+    spans = np.searchsorted(a.first + a.basis.degree, every), np.searchsorted(a.first, every, side="right") - 1
+    start = b.first[spans[0]]
+    width = b.first[spans[1]] + b.basis.degree + 1 - start
+    row_starts = np.concatenate([[0], np.cumsum(width)])
+    shift = row_starts[:-1] - start
+    columns = np.arange(row_starts[-1]) - np.repeat(shift, width)
+    place = (shift[a.local()][:, None] + b.local()).ravel()
     grams = []
     for order in range(3):
-        left = (a.derivative(order) * a.weights[..., None]).transpose(0, 2, 1)
-        entries = np.matmul(left, b.derivative(order))
-        grams.append(sp.coo_array((entries.ravel(), (rows, columns)), shape=shape).tocsr())
+        entries = np.einsum("kgs,lgs->kls", a.derivative(order) * a.weights, b.derivative(order))
+        data = np.bincount(place, entries.ravel(), minlength=row_starts[-1])
+        grams.append(sp.csr_array((data, columns, row_starts), shape=(a.basis.size, b.basis.size)))
     return grams
+
+
+# Spans that are worked on at once where an energy is summed: enough for speed, few enough to stay in fast memory.
+_SPANS_AT_ONCE = 1024
 
 
 @dataclass(frozen=True, eq=False)
@@ -191,13 +227,12 @@ class EnergyForm:
         return sample(self.u, breakpoints(self.u.knots), 2 * self.u.degree)
 
     @cached_property
-    def along(self) -> list[Samples]:
-        """Samples of each row's space, all at the same points."""
-        distinct, kind = self._kinds
+    def _along(self) -> list[Samples]:
+        """Samples of each distinct space, all at the same points."""
+        distinct = self._kinds[0]
         breaks = merge_breakpoints(*(breakpoints(basis.knots) for basis in distinct))
         degree = 2 * max(basis.degree for basis in distinct)
-        samples = [sample(basis, breaks, degree) for basis in distinct]
-        return [samples[k] for k in kind]
+        return [sample(basis, breaks, degree) for basis in distinct]
 
     @cached_property
     def _grams(self) -> dict[tuple[int, int], list[SparseMatrix]]:
@@ -213,7 +248,7 @@ class EnergyForm:
             for j in range(max(0, i - self.u.degree), min(len(self.rows), i + self.u.degree + 1)):
                 pair = kind[i], kind[j]
                 if pair not in self._grams:
-                    self._grams[pair] = [gram.tocoo() for gram in _products(self.along[i], self.along[j])]
+                    self._grams[pair] = [gram.tocoo() for gram in _products(*(self._along[k] for k in pair))]
                 grams = self._grams[pair]
                 data.append(gram_block(*(a[i, j] for a in across), *(gram.data for gram in grams)))
                 line.append(grams[0].coords[0] + start)
@@ -232,24 +267,50 @@ class EnergyForm:
         ----------
         points : ndarray, shape (K, N, 3)
         """
-        k = len(points)
-        rows = [part.transpose(1, 0, 2).reshape(-1, 3 * k) for part in np.split(points, self.offsets[1:-1], axis=1)]
-        p, knots = self.u.degree, self.u.knots
+        k, m = len(points), len(self.rows) - 1
+        p, U = self.u.degree, self.u.knots
+        rows = np.split(points.transpose(1, 0, 2).reshape(-1, 3 * k), self.offsets[1:-1])
+        nets = [[self._nets(members, rows, dv) for members in self._members] for dv in range(3)]
         total = np.zeros((k, k))
-        for du in range(min(2, p) + 1):
-            # The factor of |d^2 P / du^du dv^(2 - du)|^2 in the energy: 1, 2, 1.
-            factor = float(gram_block(*np.eye(3)[du], *np.eye(3)[2 - du]))
-            curves = np.stack([s.curve(row, 2 - du) for s, row in zip(self.along, rows, strict=True)])
-            across = derivative_points(p, knots, curves, du)
-            # The u-derivative at Gauss points in u: one matrix product for each span of u.
-            for span, first in enumerate(self.across.first):
-                local = across[first : first + p - du + 1].reshape(p - du + 1, -1)
-                values = (self.across.lower[du][span] @ local).reshape(-1, *curves.shape[1:3], k, 3)
-                weight = factor * np.multiply.outer(self.across.weights[span], self.along[0].weights)
-                scaled = values * np.sqrt(weight)[..., None, None]
-                flat = np.moveaxis(scaled, 3, 0).reshape(k, -1)
-                total += flat @ flat.T
+        for start in range(0, len(self._along[0].first), _SPANS_AT_ONCE):
+            along = [samples.part(slice(start, start + _SPANS_AT_ONCE)) for samples in self._along]
+            weights = along[0].weights
+            for du in range(min(2, p) + 1):
+                curves = np.zeros((m + 1, 3 * k, *weights.shape))
+                for samples, members, net in zip(along, self._members, nets[2 - du], strict=True):
+                    if net is not None:
+                        curves[members] = samples.curves(net, 2 - du).reshape(len(members), 3 * k, *weights.shape)
+                across = derivative_points(p, U, curves, du)
+                values = (self._roots[du] @ across.reshape(m + 1 - du, -1)).reshape(-1, k, 3, *weights.shape)
+                flat = np.moveaxis(values * np.sqrt(weights), 1, 0).reshape(k, -1)
+                # The factor of |d^2 P / du^du dv^(2 - du)|^2 in the energy: 1, 2, 1.
+                total += float(gram_block(*np.eye(3)[du], *np.eye(3)[2 - du])) * np.einsum("ka,la->kl", flat, flat)
         return total
+
+    @cached_property
+    def _members(self) -> list[list[int]]:
+        """The rows of each distinct space."""
+        distinct, kind = self._kinds
+        return [[i for i, other in enumerate(kind) if other == k] for k in range(len(distinct))]
+
+    def _nets(self, members: list[int], rows: list[FloatArray], dv: int) -> FloatArray | None:
+        """Return control points of the derivatives of rows of one space, one line for each coordinate of each row."""
+        basis = self.rows[members[0]]
+        if dv > basis.degree:
+            return None
+        together = np.concatenate([rows[i] for i in members], axis=1)
+        return np.ascontiguousarray(derivative_points(basis.degree, basis.knots, together, dv).T)
+
+    @cached_property
+    def _roots(self) -> list[FloatArray]:
+        """Triangular L' of the Gram matrices L L' of the derivatives' bases in u, without forming these."""
+        s = self.across
+        roots = []
+        for order, values in enumerate(s.lower):
+            dense = np.zeros((*s.weights.shape, self.u.size - order))
+            dense[:, np.arange(len(s.first)), s.local(order)] = (values * np.sqrt(s.weights)).swapaxes(0, 1)
+            roots.append(np.asarray(np.linalg.qr(dense.reshape(-1, self.u.size - order), mode="r")))
+        return roots
 
 
 def thin_plate_energy(surface: Surface) -> float:
