@@ -15,6 +15,8 @@ from solver.errors import KnotError
 
 # Knots closer than this fraction of the domain count as one wherever knot vectors are merged.
 MERGE_TOLERANCE = 1e-12
+# Narrower spans and domains, and wider domains, would overflow in derivatives.
+NARROWEST = 1e-30
 
 
 def checked_knots(knots: ArrayLike, degree: int, n_control: int, name: str = "knots") -> FloatArray:
@@ -56,6 +58,16 @@ def checked_knots(knots: ArrayLike, degree: int, n_control: int, name: str = "kn
         raise KnotError(f"{name}[{i + 1}]: {array[i + 1]} after {array[i]}, expected a non-decreasing vector")
     if not array[degree] < array[-degree - 1]:
         raise KnotError(f"{name}: the domain [{array[degree]}, {array[-degree - 1]}] is empty")
+    width = float(array[-1]) - float(array[0])
+    if not NARROWEST <= width <= 1 / NARROWEST:
+        raise KnotError(f"{name}: the domain has length {width}, expected {NARROWEST:g} to {1 / NARROWEST:g}")
+    narrow = (steps > 0) & (steps < NARROWEST * width)
+    if narrow.any():
+        i = int(np.argmax(narrow))
+        raise KnotError(
+            f"{name}[{i + 1}]: {array[i + 1]} is {steps[i]:g} after {array[i]}, expected the same knot or a step of at "
+            f"least {NARROWEST:g} of the domain"
+        )
     for index, end, side in ((0, array[degree], "first"), (len(array) - 1, array[-degree - 1], "last")):
         if array[index] != end:
             raise KnotError(

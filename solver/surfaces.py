@@ -19,6 +19,9 @@ from solver.errors import ControlPointError, InputError
 from solver.evaluation import check_orders, checked_parameters, domain_of, local_basis, point_parameters, quotient
 from solver.knots import MERGE_TOLERANCE, basis_matrix, breakpoints, checked_knots, derivative_points, merge_breakpoints
 
+# Squares of derivatives, and what an energy adds up, stay finite below.
+LARGEST = 1e75
+
 
 @final
 @dataclass(frozen=True, eq=False)
@@ -52,7 +55,7 @@ class BSplineCurve:
 
     def __post_init__(self) -> None:
         points = finite_array(self.control_points, 2, f"{self.name}.control_points", ControlPointError)
-        _check_dimension(points, f"{self.name}.control_points")
+        _check_points(points, f"{self.name}.control_points")
         object.__setattr__(self, "control_points", points)
         knots = checked_knots(self.knots, self.degree, len(points), f"{self.name}.knots")
         object.__setattr__(self, "knots", knots)
@@ -107,7 +110,7 @@ class BSplineSurface:
 
     def __post_init__(self) -> None:
         points = finite_array(self.control_points, 3, "control_points", ControlPointError)
-        _check_dimension(points, "control_points")
+        _check_points(points, "control_points")
         object.__setattr__(self, "control_points", points)
         object.__setattr__(self, "knots_u", checked_knots(self.knots_u, self.degree_u, points.shape[0], "knots_u"))
         object.__setattr__(self, "knots_v", checked_knots(self.knots_v, self.degree_v, points.shape[1], "knots_v"))
@@ -115,9 +118,12 @@ class BSplineSurface:
             weights = finite_array(self.weights, 2, "weights", ControlPointError)
             if weights.shape != points.shape[:2]:
                 raise ControlPointError(f"weights: shape {weights.shape}, expected {points.shape[:2]}")
-            if (weights <= 0).any():
-                i, j = (int(k) for k in np.argwhere(weights <= 0)[0])
-                raise ControlPointError(f"weights[{i}, {j}]: found {weights[i, j]}, expected a positive number")
+            wrong = ~((weights >= 1 / LARGEST) & (weights <= LARGEST))
+            if wrong.any():
+                i, j = np.argwhere(wrong)[0].tolist()
+                raise ControlPointError(
+                    f"weights[{i}, {j}]: found {weights[i, j]}, expected a positive number, {1 / LARGEST:g} to {LARGEST:g}"
+                )
             object.__setattr__(self, "weights", weights)
 
     @property
@@ -350,6 +356,10 @@ class SemiStructuredSurface:
 Surface: TypeAlias = BSplineSurface | SemiStructuredSurface
 
 
-def _check_dimension(points: FloatArray, name: str) -> None:
+def _check_points(points: FloatArray, name: str) -> None:
     if points.shape[-1] != 3:
         raise ControlPointError(f"{name}: points have {points.shape[-1]} coordinate(s), expected 3")
+    if (np.abs(points) > LARGEST).any():
+        index = tuple(np.argwhere(np.abs(points) > LARGEST)[0].tolist())
+        where = ", ".join(map(str, index))
+        raise ControlPointError(f"{name}[{where}]: found {points[index]}, expected at most {LARGEST:g} in magnitude")
