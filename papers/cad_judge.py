@@ -6,7 +6,7 @@ from importlib.util import find_spec
 
 import numpy as np
 
-from solver.continuity import Base
+from solver.base import Base
 from solver.surfaces import BSplineSurface
 
 # Limits of the kernel's own analysis: a length, and an angle in radians.

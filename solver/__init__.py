@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from solver.base import Base
     from solver.bezier import BezierFunction, bezier_patch, divide_bezier, trim_bezier
-    from solver.blending import BlendResult, blend
+    from solver.blend_result import BlendResult
+    from solver.blending import blend
     from solver.compatible import Conversion, convert_to_bspline
     from solver.construction import (
         Approximation,
@@ -45,6 +46,7 @@ if TYPE_CHECKING:
         ControlPointError,
         EdgeError,
         FileError,
+        FoldError,
         InputError,
         KnotError,
         OptionError,
@@ -74,7 +76,7 @@ _EXPORTS = {
     "BSplineSurface": "solver.surfaces",
     "Base": "solver.base",
     "BezierFunction": "solver.bezier",
-    "BlendResult": "solver.blending",
+    "BlendResult": "solver.blend_result",
     "ComputationError": "solver.errors",
     "Contact": "solver.continuity",
     "ContactError": "solver.errors",
@@ -82,6 +84,7 @@ _EXPORTS = {
     "Conversion": "solver.compatible",
     "EdgeError": "solver.errors",
     "FileError": "solver.errors",
+    "FoldError": "solver.errors",
     "InputError": "solver.errors",
     "KnotError": "solver.errors",
     "LocalGeometry": "solver.curvature",
@@ -148,6 +151,7 @@ __all__ = [
     "Conversion",
     "EdgeError",
     "FileError",
+    "FoldError",
     "InputError",
     "KnotError",
     "LocalGeometry",

@@ -3,90 +3,34 @@
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from typing import Literal, TypeAlias, get_args
 
 import numpy as np
 
 from solver.arrays import FloatArray
+from solver.base import Base
+from solver.blend_result import BlendResult
 from solver.certificate import check_certificate
-from solver.continuity import Base, Contact, Flip, corresponding_samples, measure_contact
-from solver.errors import ContactError, OptionError
+from solver.closing import snapped_seam
+from solver.continuity import Contact, measure_contact
+from solver.correspondence import Correspondence, Flip, correspond
+from solver.errors import ContactError, FoldError, OptionError
 from solver.gram import thin_plate_energy
-from solver.problem import BlendProblem, ProblemOptions, make_problem
+from solver.knots import inner_knots
+from solver.limits import required_limits
+from solver.problem import BlendProblem, ProblemOptions, VScale, make_problem
 from solver.regularity import Regularity, measure_regularity
 from solver.shape_search import Certificate
-from solver.sides import Continuity, Side, make_side
+from solver.sides import Continuity, Side, make_side, matched_sides
 from solver.surfaces import BSplineCurve, SemiStructuredSurface
 
 Method: TypeAlias = Literal["reduced", "casadi", "bfgs"]
 Shape: TypeAlias = float | Literal["free", "natural"]
 
-# What the referee must confirm; rounding of the input is allowed on top (see `Contact.rounding`).
-GAP_LIMIT = 1e-11  # of the size of the model
-RESIDUAL_LIMIT = 1e-11  # of the largest derivative
-ANGLE_LIMIT = 1e-9  # degrees
-JUMP_LIMIT = 1e-9  # of the largest curvature across the edge
-# The bound on rounding counts each control point once; a few operations follow before it is measured.
-_ROUNDINGS = 8.0
-
-
-@dataclass(frozen=True, eq=False)
-class BlendResult:
-    """A blend of two bases, with what was measured of it.
-
-    Attributes
-    ----------
-    surface : SemiStructuredSurface
-        u = 0 on a, u = 1 on b; the v-domain is that of a's edge.
-    continuity : (str, str)
-        Asked for and confirmed at a and at b.
-    method : str
-        "linear" where nothing but a linear solve was needed.
-    energy : float
-        Thin-plate energy (11) over [0, 1] x the v-domain.
-    alpha2, beta2 : float or None
-        Of (2.1) and (2.2), the bases in their own parameters; 1 for C1 and C2, None for C0 and G0.
-    alpha2_bounds, beta2_bounds : (float, float) or None
-        The admissible box; None where there is no such unknown.
-    active_bounds : tuple of str
-        Which bounds stopped the search, such as "alpha2 lower".
-    flipped : bool
-        Whether edge b runs against edge a.
-    contact_a, contact_b : Contact
-        Judged by the de Boor referee.
-    regularity : Regularity
-        How far the blend is from folding.
-    iterations : int
-        Of the nonlinear solver; 0 where there is none.
-    kkt_residual : float or None
-        Largest entry of the gradient of the Lagrangian, scaled; only for method casadi.
-    certificate : Certificate or None
-        Proof that no admissible alpha and beta have less energy, in coordinates of size 1; only for method reduced.
-    proven_gap : float or None
-        What the proof leaves open, as a fraction of the energy.
-    seconds : float
-        For the solve, without the final checks.
-    """
-
-    surface: SemiStructuredSurface
-    continuity: tuple[Continuity, Continuity]
-    method: str
-    energy: float
-    alpha2: float | None
-    beta2: float | None
-    alpha2_bounds: tuple[float, float] | None
-    beta2_bounds: tuple[float, float] | None
-    active_bounds: tuple[str, ...]
-    flipped: bool
-    contact_a: Contact
-    contact_b: Contact
-    regularity: Regularity
-    iterations: int
-    kkt_residual: float | None
-    certificate: Certificate | None
-    proven_gap: float | None
-    seconds: float
+# A normal that turns this far between neighbouring samples has met a fold.
+FOLD_TURN = 90.0
 
 
 def blend(
@@ -100,6 +44,10 @@ def blend(
     flip: Flip = "auto",
     alpha: Shape | tuple[Shape, Shape] = "free",
     box: tuple[float, float] = (1 / 8, 8.0),
+    v_scale: VScale = "paper",
+    u_knots: Sequence[float] | None = None,
+    middle_knots: Sequence[Sequence[float]] | None = None,
+    strict: bool = False,
 ) -> BlendResult:
     """Blend two B-spline surfaces with a semi-structured surface of least thin-plate energy.
 
@@ -123,6 +71,15 @@ def blend(
         or set alpha itself.
     box : (float, float)
         Admissible alpha^2 and beta^2, in units of their natural sizes.
+    v_scale : {"paper", "unit", "length"}
+        What (11) takes the length of the v-domain for: itself, 1, or mean contact length over mean gap. With the last
+        two the blend does not depend on the units of v nor on the order of the bases.
+    u_knots : sequence of float, optional
+        Inner knots of U instead of uniform ones.
+    middle_knots : sequence of sequences of float, optional
+        Inner knots of each middle curve, in v of a's edge, instead of the paper's rule.
+    strict : bool
+        Refuse a blend with warnings.
 
     Returns
     -------
@@ -136,6 +93,8 @@ def blend(
         The solver failed.
     ContactError
         The referee found the contact worse than its limits.
+    FoldError
+        With `strict`: the blend folds or is creased.
 
     Source: section 3 and equation (11) of the paper; contact conditions from `derivations.contact`.
 
@@ -151,32 +110,47 @@ def blend(
     """
     started = time.perf_counter()
     pair: tuple[Continuity, Continuity] = (continuity, continuity) if isinstance(continuity, str) else continuity
-    options = ProblemOptions(middle_curves, degree_u, _checked_shape(alpha), box)
     _check_choices(pair, method, box)
-    side_a, side_b, flipped = _contacts(a, b, pair, flip)
-    centre, size = _frame(side_a, side_b)
-    problem = make_problem(side_a.moved(centre, size), side_b.moved(centre, size), options)
+    options = ProblemOptions(
+        middle_curves, degree_u, _checked_shape(alpha), box, v_scale, u_knots=u_knots, middle_knots=middle_knots
+    )
+    # The bases as the blend sees them: contact at w = 0, one parameter v, coordinates of size 1.
+    sides = make_side(a, pair[0]), make_side(b, pair[1])
+    matched = _matched(a, b, flip, sides[1])
+    sides = matched_sides(*sides, matched)
+    frame = _frame(*sides)
+    problem = make_problem(sides[0].moved(*frame), sides[1].moved(*frame), options)
+    # The one or two numbers that are not linear, then everything that is.
     found = _shape_parameters(problem, method)
-    surface = _surface(problem, found, side_a, side_b, centre, size)
+    surface = _surface(problem, found, sides, frame)
     energy = thin_plate_energy(surface)
     seconds = time.perf_counter() - started
-    contact_a, contact_b = _checked_contacts(a, b, surface, pair, flipped)
+    # What came out, judged by code that knows nothing of the above.
+    contact_a, contact_b = _checked_contacts(a, b, surface, pair, matched)
     if found.certificate is not None:
         check_certificate(found.certificate)
+    seam = _seam(surface, problem)
+    regularity = measure_regularity(surface)
+    warnings = _warnings(surface, regularity)
+    if strict and warnings:
+        raise FoldError(f"{'; '.join(warnings)}; try other middle curves, alpha='natural', or without strict")
     return BlendResult(
         surface=surface,
         continuity=pair,
         method=found.method,
         energy=energy,
-        alpha2=None if side_a.order == 0 else found.a,
-        beta2=None if side_b.order == 0 else found.b,
+        alpha2=None if sides[0].order == 0 else found.a,
+        beta2=None if sides[1].order == 0 else found.b,
         alpha2_bounds=problem.bounds[0] if problem.free[0] else None,
         beta2_bounds=problem.bounds[1] if problem.free[1] else None,
         active_bounds=_active_bounds(problem, found),
-        flipped=flipped,
+        flipped=matched.flipped,
+        seam_shift=matched.shift,
         contact_a=contact_a,
         contact_b=contact_b,
-        regularity=measure_regularity(surface),
+        seam=seam,
+        regularity=regularity,
+        warnings=warnings,
         iterations=found.iterations,
         kkt_residual=found.kkt_residual,
         certificate=found.certificate,
@@ -219,12 +193,10 @@ def _checked_shape(alpha: Shape | tuple[Shape, Shape]) -> tuple[Shape, Shape]:
     return first, second
 
 
-def _contacts(a: Base, b: Base, continuity: tuple[Continuity, Continuity], flip: Flip) -> tuple[Side, Side, bool]:
-    """Both contacts in the blend's parameter v, b turned round where its edge runs against a's."""
-    side_a = make_side(a, continuity[0])
-    make_side(b, continuity[1])  # refuses a bad base before its edge is looked at
-    *_, flipped = corresponding_samples(a, b, flip)
-    return side_a, make_side(b, continuity[1], a.range_along, flipped), flipped
+def _matched(a: Base, b: Base, flip: Flip, side_b: Side) -> Correspondence:
+    """Return how edge b runs along edge a; a new seam of b close to one of its knots is moved onto the knot."""
+    matched = correspond(a, b, flip)
+    return replace(matched, shift=snapped_seam(side_b.along, matched.shift)) if matched.shift else matched
 
 
 def _frame(a: Side, b: Side) -> tuple[FloatArray, float]:
@@ -255,16 +227,17 @@ def _shape_parameters(problem: BlendProblem, method: Method) -> _Found:
 
 
 def _surface(
-    problem: BlendProblem, found: _Found, a: Side, b: Side, centre: FloatArray, size: float
+    problem: BlendProblem, found: _Found, sides: tuple[Side, Side], frame: tuple[FloatArray, float]
 ) -> SemiStructuredSurface:
     """Set the prescribed rows anew from alpha and beta, solve for the free ones, and go back to model units."""
+    centre, size = frame
     points = problem.control_points(found.a, found.b) * size + centre
     pieces = np.split(points, problem.form.offsets[1:-1])
     # The contact curves themselves are the bases' own, to the last bit.
-    pieces[0], pieces[-1] = a.rows[0], b.rows[0]
+    pieces[0], pieces[-1] = sides[0].rows[0], sides[1].rows[0]
     curves = [
         BSplineCurve(row.degree, row.knots, piece, name=f"control_curves[{i}]")
-        for i, (row, piece) in enumerate(zip(problem.form.rows, pieces, strict=True))
+        for i, (row, piece) in enumerate(zip(problem.rows, pieces, strict=True))
     ]
     return SemiStructuredSurface(problem.form.u.degree, problem.form.u.knots, tuple(curves))
 
@@ -285,11 +258,11 @@ def _checked_contacts(
     b: Base,
     surface: SemiStructuredSurface,
     continuity: tuple[Continuity, Continuity],
-    flipped: bool,
+    matched: Correspondence,
 ) -> tuple[Contact, Contact]:
     """Let the referee measure both contacts, and refuse a result that misses its limits."""
     contact_a = measure_contact(a, Base(surface, "u0"), flip="no")
-    contact_b = measure_contact(Base(surface, "u1"), b, flip="yes" if flipped else "no")
+    contact_b = measure_contact(Base(surface, "u1"), b, correspondence=matched)
     for name, contact, wanted in (("a", contact_a, continuity[0]), ("b", contact_b, continuity[1])):
         for measure, value, limit in required_limits(contact, wanted):
             if not value <= limit:
@@ -300,24 +273,27 @@ def _checked_contacts(
     return contact_a, contact_b
 
 
-def required_limits(contact: Contact, continuity: Continuity) -> list[tuple[str, float, float]]:
-    """Return name, measured value and limit of each measure that `continuity` requires.
+def _seam(surface: SemiStructuredSurface, problem: BlendProblem) -> Contact | None:
+    if problem.seam_order < 0:
+        return None
+    return measure_contact(Base(surface, "v1"), Base(surface, "v0"), flip="no")
 
-    Source: the measures of the design document; rounding of the input is allowed on top of each limit.
-    """
-    measures = {
-        "C0": ("gap",),
-        "C1": ("gap", "c1_residual"),
-        "C2": ("gap", "c1_residual", "c2_residual"),
-        "G0": ("gap",),
-        "G1": ("gap", "angle_degrees"),
-        "G2": ("gap", "angle_degrees", "curvature_jump_relative"),
-    }[continuity]
-    limits = {
-        "gap": GAP_LIMIT * contact.size,
-        "c1_residual": RESIDUAL_LIMIT,
-        "c2_residual": RESIDUAL_LIMIT,
-        "angle_degrees": ANGLE_LIMIT,
-        "curvature_jump_relative": JUMP_LIMIT,
-    }
-    return [(m, getattr(contact, m), limits[m] + _ROUNDINGS * contact.rounding[m]) for m in measures]
+
+def _warnings(surface: SemiStructuredSurface, regularity: Regularity) -> tuple[str, ...]:
+    """Return what a user should look at before the blend is used."""
+    found = []
+    if regularity.largest_turn_degrees >= FOLD_TURN:
+        found.append(
+            f"the blend folds: its normal turns by {regularity.largest_turn_degrees:.0f} degrees between samples"
+        )
+    creases = sorted({float(v) for c in surface.control_curves for v, n in _multiplicities(c) if n >= c.degree})
+    if creases:
+        found.append(
+            f"the blend may be creased at v = {', '.join(f'{v:g}' for v in creases)}: knots of full multiplicity"
+        )
+    return tuple(found)
+
+
+def _multiplicities(curve: BSplineCurve) -> list[tuple[float, int]]:
+    values, counts = np.unique(inner_knots(curve.knots, curve.degree), return_counts=True)
+    return list(zip(values.tolist(), counts.tolist(), strict=True))

@@ -16,7 +16,7 @@ from solver.errors import EdgeError, OptionError
 from solver.exit_status import ANSWER_IS_NO, reports_errors
 
 if TYPE_CHECKING:
-    from solver.blending import BlendResult
+    from solver.blend_result import BlendResult
     from solver.continuity import Contact
     from solver.io.faces import SurfaceEntry
 
@@ -262,7 +262,7 @@ def _misses(contact: Contact, require: str | None) -> list[str]:
     """Return, of each measure that falls short, its name, value and limit."""
     if require is None:
         return []
-    from solver.blending import required_limits
+    from solver.limits import required_limits
 
     return [
         f"{name.replace('_', ' ')} is {value:.3g}, at most {limit:.3g} allowed"

@@ -3,62 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal, TypeAlias, get_args
 
 import numpy as np
 
 from solver.arrays import FloatArray
-from solver.de_boor import surface_points
+from solver.base import Base
+from solver.correspondence import Correspondence, Flip, correspond, corresponding_samples
 from solver.errors import EdgeError
-from solver.knots import affine_knots, merge_breakpoints, reversed_knots
 from solver.surfaces import BSplineSurface, Surface
-
-Edge: TypeAlias = Literal["u0", "u1", "v0", "v1"]
-Flip: TypeAlias = Literal["auto", "yes", "no"]
-
-# Where each merged span of the edge is sampled: inside, since at a knot the two sides may be seen from different spans.
-_FRACTIONS = np.array([0.002, 0.1, 0.3, 0.5, 0.7, 0.9, 0.998])
-
-
-@dataclass(frozen=True)
-class Base:
-    """A surface and the edge along which it is met.
-
-    Parameters
-    ----------
-    surface : BSplineSurface or SemiStructuredSurface
-    edge : {"u0", "u1", "v0", "v1"}
-        The parameter that is constant along the edge, and at which end of its range.
-
-    Raises
-    ------
-    EdgeError
-        The edge is not one of the four.
-    """
-
-    surface: Surface
-    edge: Edge
-
-    def __post_init__(self) -> None:
-        if self.edge not in get_args(Edge):
-            raise EdgeError(f"edge: found {self.edge!r}, expected one of u0, u1, v0, v1")
-
-    @property
-    def range_along(self) -> tuple[float, float]:
-        """The range of the parameter that runs along the edge."""
-        return self.surface.domain[1 if self.edge[0] == "u" else 0]
-
-    def derivative(self, s: FloatArray, across: int, along: int) -> FloatArray:
-        """Referee's derivative at parameters s along the edge, shape (K, 3), in the surface's own parameters."""
-        constant = 0 if self.edge[0] == "u" else 1
-        at = np.full_like(s, self.surface.domain[constant][int(self.edge[1])])
-        if constant == 0:
-            return surface_points(self.surface, at, s, across, along)
-        return surface_points(self.surface, s, at, along, across)
-
-    def breakpoints_along(self) -> FloatArray:
-        """Return breakpoints of the parameter that runs along the edge."""
-        return self.surface.breakpoints[1 if self.edge[0] == "u" else 0]
 
 
 @dataclass(frozen=True)
@@ -93,6 +45,8 @@ class Contact:
     gap_at, angle_at, curvature_at : Place
     flipped : bool
         The two edges run in opposite directions.
+    shift : float
+        Closed edges: how far edge b's seam is from edge a's, in b's parameter.
     """
 
     gap: float
@@ -107,9 +61,10 @@ class Contact:
     angle_at: Place
     curvature_at: Place
     flipped: bool
+    shift: float
 
 
-def measure_contact(a: Base, b: Base, flip: Flip = "auto") -> Contact:
+def measure_contact(a: Base, b: Base, flip: Flip = "auto", correspondence: Correspondence | None = None) -> Contact:
     """Measure how edge a and edge b meet; parameters along the edges correspond affinely.
 
     Parameters
@@ -117,6 +72,8 @@ def measure_contact(a: Base, b: Base, flip: Flip = "auto") -> Contact:
     a, b : Base
     flip : {"auto", "yes", "no"}
         Whether the edges run in opposite directions; "auto" takes the closer way.
+    correspondence : Correspondence, optional
+        How the edges correspond, where that is known.
 
     Returns
     -------
@@ -136,7 +93,8 @@ def measure_contact(a: Base, b: Base, flip: Flip = "auto") -> Contact:
     >>> round(measure_contact(Base(left, "u1"), Base(right, "u0")).angle_degrees, 12)
     45.0
     """
-    s_a, s_b, flipped = corresponding_samples(a, b, flip)
+    matched = correspondence or correspond(a, b, flip)
+    s_a, s_b = corresponding_samples(a, b, matched)
     side_a, side_b = _Side(a, s_a), _Side(b, s_b)
     size = model_size(a.surface, b.surface)
     places = [Place(float(s), (float(p[0]), float(p[1]), float(p[2]))) for s, p in zip(s_a, side_a.point, strict=True)]
@@ -172,7 +130,8 @@ def measure_contact(a: Base, b: Base, flip: Flip = "auto") -> Contact:
         gap_at=places[int(gap.argmax())],
         angle_at=places[int(angle.argmax())],
         curvature_at=places[int(jump.argmax())],
-        flipped=flipped,
+        flipped=matched.flipped,
+        shift=matched.shift,
     )
 
 
@@ -209,44 +168,6 @@ class _Side:
         along = self.x_s / np.linalg.norm(self.x_s, axis=1)[:, None]
         across = self.x_w - np.sum(self.x_w * along, axis=1)[:, None] * along
         return float(np.linalg.norm(across, axis=1).min())
-
-
-def corresponding_samples(a: Base, b: Base, flip: Flip = "auto") -> tuple[FloatArray, FloatArray, bool]:
-    """Return parameters along edge a and along edge b that correspond, in every span of both, and whether b is flipped.
-
-    Raises
-    ------
-    EdgeError
-        `flip` is not one of auto, yes, no.
-    """
-    if flip not in get_args(Flip):
-        raise EdgeError(f"flip: found {flip!r}, expected one of auto, yes, no")
-    flipped = edges_opposed(a, b) if flip == "auto" else flip == "yes"
-    start, end = a.range_along
-    breaks_b = b.breakpoints_along()
-    breaks = affine_knots(reversed_knots(breaks_b) if flipped else breaks_b, start, end)
-    merged = merge_breakpoints(a.breakpoints_along(), breaks)
-    inside = (merged[:-1, None] + np.diff(merged)[:, None] * _FRACTIONS).ravel()
-    s_a = np.concatenate([[start], inside, [end]])
-    t = (s_a - start) / (end - start)
-    b_start, b_end = b.range_along
-    if flipped:
-        t = 1 - t
-    return s_a, np.clip(b_start + t * (b_end - b_start), b_start, b_end), flipped
-
-
-def edges_opposed(a: Base, b: Base) -> bool:
-    """Tell whether b's edge lies closer to a's when it runs backwards; a tie keeps the direction.
-
-    Closeness is the mean squared distance of corresponding points. Both curves are centred first, which changes the
-    two sums alike but keeps the rounding of a large offset out of the comparison.
-    """
-    t = (np.arange(64) + 0.5) / 64
-    points = [base.derivative(base.range_along[0] + t * np.diff(base.range_along), 0, 0) for base in (a, b)]
-    first, second = (p - p.mean(axis=0) for p in points)
-    straight = float(np.sum((first - second) ** 2))
-    backwards = float(np.sum((first - second[::-1]) ** 2))
-    return backwards < straight * (1 - 1e-9)
 
 
 def control_point_cloud(surface: Surface) -> FloatArray:

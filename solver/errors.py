@@ -37,3 +37,7 @@ class ComputationError(SemisplineError):
 
 class ContactError(ComputationError):
     """A finished blend whose measured contact misses its limits."""
+
+
+class FoldError(ComputationError):
+    """A finished blend that folds or is creased, where that was not allowed."""

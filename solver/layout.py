@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
-from solver.arrays import FloatArray
+from solver.arrays import FloatArray, finite_array
 from solver.errors import OptionError
 from solver.gram import Basis
-from solver.knots import breakpoints, clamped, merge_breakpoints, uniform_knots
+from solver.knots import breakpoints, checked_knots, clamped, merge_breakpoints, uniform_knots
 
 # Rows that each contact owns: position, first and second derivative.
 ROWS_PER_SIDE = 3
@@ -15,13 +17,14 @@ ROWS_PER_SIDE = 3
 _LEAST_DEGREE = 2
 
 
-def blend_u_basis(degree_u: int, middle_curves: int) -> Basis:
-    """Return U: clamped on [0, 1], uniform, for 6 + `middle_curves` rows.
+def blend_u_basis(degree_u: int, middle_curves: int, inner: Sequence[float] | None = None) -> Basis:
+    """Return U: clamped on [0, 1], for 6 + `middle_curves` rows; inner knots uniform unless given.
 
     Raises
     ------
     OptionError
-        A negative number of middle curves, or a degree below 2 or too high for the number of rows.
+        A negative number of middle curves, a degree below 2 or too high for the number of rows, or knots that do not
+        fit.
 
     Source: section 3 of the paper, with u_i = i / (m - k + 2).
 
@@ -37,7 +40,42 @@ def blend_u_basis(degree_u: int, middle_curves: int) -> Basis:
         raise OptionError(
             f"degree_u: found {degree_u}, expected {_LEAST_DEGREE} to {rows - 1} with {middle_curves} middle curve(s)"
         )
-    return Basis(degree_u, uniform_knots(degree_u, rows - degree_u))
+    if inner is None:
+        return Basis(degree_u, uniform_knots(degree_u, rows - degree_u))
+    given = np.sort(finite_array(inner, 1, "u_knots", OptionError))
+    if len(given) != rows - degree_u - 1:
+        raise OptionError(f"u_knots: found {len(given)} inner knots, expected {rows - degree_u - 1} for {rows} rows")
+    return Basis(degree_u, _clamped_inside(given, degree_u, 0.0, 1.0, "u_knots"))
+
+
+def middle_bases(a: Basis, b: Basis, count: int, given: Sequence[Sequence[float]] | None = None) -> list[Basis]:
+    """Return degree and knots of the middle curves: as given, else all of them by `middle_basis`.
+
+    Raises
+    ------
+    OptionError
+        Given knots that are not one list of inner knots for each middle curve.
+    """
+    if given is None:
+        return [middle_basis(a, b)] * count
+    if len(given) != count:
+        raise OptionError(
+            f"middle_knots: found {len(given)} lists of inner knots, expected {count}, one for each curve"
+        )
+    start, end = float(a.knots[0]), float(a.knots[-1])
+    bases = []
+    for i, inner in enumerate(given):
+        name = f"middle_knots[{i}]"
+        values = np.sort(finite_array(inner, 1, name, OptionError))
+        bases.append(Basis(a.degree, _clamped_inside(values, a.degree, start, end, name)))
+    return bases
+
+
+def _clamped_inside(inner: FloatArray, degree: int, start: float, end: float, name: str) -> FloatArray:
+    if len(inner) and not (start < inner[0] and inner[-1] < end):
+        raise OptionError(f"{name}: found {inner[0]} to {inner[-1]}, expected values inside ({start}, {end})")
+    knots = clamped(inner, degree, start, end)
+    return checked_knots(knots, degree, len(knots) - degree - 1, name)
 
 
 def middle_basis(a: Basis, b: Basis) -> Basis:
@@ -47,7 +85,7 @@ def middle_basis(a: Basis, b: Basis) -> Basis:
     end. With n odd the paper leaves the rule open; we pair from both ends, so that the result does not depend on the
     direction of v: the middle knot stays alone, or with its two neighbours makes one mean of three.
 
-    Source: section 3 of the paper, made total.
+    Source: section 3 of the paper, made total; several middle curves all take these knots.
 
     Examples
     --------
@@ -57,8 +95,7 @@ def middle_basis(a: Basis, b: Basis) -> Basis:
     array([0.5])
     """
     merged = merge_breakpoints(breakpoints(a.knots), breakpoints(b.knots))
-    degree = max(a.degree, b.degree)
-    return Basis(degree, clamped(_paired_means(merged[1:-1]), degree, merged[0], merged[-1]))
+    return Basis(a.degree, clamped(_paired_means(merged[1:-1]), a.degree, merged[0], merged[-1]))
 
 
 def _paired_means(v: FloatArray) -> FloatArray:

@@ -9,6 +9,7 @@ import casadi as ca
 import numpy as np
 
 from solver.arrays import FloatArray
+from solver.closing import end_conditions
 from solver.errors import ComputationError
 from solver.generated import contact_casadi
 from solver.problem import BlendProblem
@@ -92,6 +93,8 @@ def constrained_problem(problem: BlendProblem) -> ConstrainedProblem:
         for row, prescribed in zip(rows, contact_rows(side, a, problem.form.u.degree, spans), strict=False):
             g.append(ca.vec(p[problem.form.offsets[row] : problem.form.offsets[row + 1], :] - prescribed))
 
+    g += [ca.vec(seam) for seam in _seam_conditions(problem, p)]
+
     # alpha is measured in units of its natural size, so that the solver does not care about parameter speeds.
     box = [
         np.sqrt(np.array(bounds) / natural)
@@ -109,6 +112,19 @@ def constrained_problem(problem: BlendProblem) -> ConstrainedProblem:
         f_scale=f_scale,
         parameters=tuple(free),
     )
+
+
+def _seam_conditions(problem: BlendProblem, p: Any) -> list[Any]:
+    """Return what vanishes where closed free rows are smooth across their seam: derivatives at both ends agree."""
+    conditions = []
+    for i in problem.free_rows:
+        order = problem.seam_order_of(i)
+        if order >= 0:
+            first, last = end_conditions(problem.form.rows[i], order)
+            start, end = problem.form.offsets[i], problem.form.offsets[i + 1]
+            at_start = ca.mtimes(ca.DM(first), p[start : start + order + 1, :])
+            conditions.append(at_start - ca.mtimes(ca.DM(last), p[end - order - 1 : end, :]))
+    return conditions
 
 
 def contact_rows(side: Side, a: Any, degree: int, spans: tuple[float, float]) -> list[Any]:

@@ -2,22 +2,29 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Literal
+from typing import Literal, TypeAlias, get_args
 
 import numpy as np
+import scipy.sparse as sp
 from scipy.sparse.linalg import splu
 
 from solver.arrays import FloatArray
-from solver.errors import ComputationError, EdgeError
-from solver.gram import EnergyForm
-from solver.knots import basis_matrix, greville
-from solver.layout import ROWS_PER_SIDE, blend_u_basis, middle_basis
+from solver.closing import periodic_points, seam_order, with_least_size
+from solver.errors import ComputationError, EdgeError, OptionError
+from solver.gram import Basis, EnergyForm
+from solver.knots import affine_knots, basis_matrix, greville
+from solver.layout import ROWS_PER_SIDE, blend_u_basis, middle_bases
 from solver.sides import Side
 
 # Iterative refinement may change a solution by this fraction; beyond it the system is too ill-conditioned.
 TRUSTED_CORRECTION = 1e-6
+# Lengths below this fraction of the model count as zero.
+VANISHING = 1e-12
+
+VScale: TypeAlias = Literal["paper", "unit", "length"]
 
 
 @dataclass(frozen=True)
@@ -32,12 +39,21 @@ class ProblemOptions:
         alpha^2 and beta^2 where contact is geometric.
     box : (float, float)
         Admissible range of a free shape parameter, in units of its natural size; near zero the blend folds.
+    v_scale : {"paper", "unit", "length"}
+        Length of the v-domain in the energy: as it is, 1, or mean contact length over mean gap.
+    u_knots : sequence of float, optional
+        Inner knots of U.
+    middle_knots : sequence of sequences of float, optional
+        Inner knots of each middle curve.
     """
 
     middle_curves: int = 1
     degree_u: int = 3
     shape: tuple[float | Literal["free", "natural"], float | Literal["free", "natural"]] = ("free", "free")
     box: tuple[float, float] = (1 / 8, 8.0)
+    v_scale: VScale = "paper"
+    u_knots: Sequence[float] | None = None
+    middle_knots: Sequence[Sequence[float]] | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,20 +63,26 @@ class BlendProblem:
     Attributes
     ----------
     form : EnergyForm
-        U and V_i of the m + 1 rows, and the energy over them.
+        U and V_i of the m + 1 rows, the v-domain scaled to the length that the energy takes it for.
+    rows : tuple of Basis, length m + 1
+        V_i on the v-domain of the blend itself.
     a, b : Side
         Contact at u = 0 and u = 1.
     natural : (float, float)
         Natural sizes of alpha^2 and beta^2: mean gap between the contact curves over mean cross speed of the base.
     bounds : pair of (float, float)
         Boxes of alpha^2 and beta^2; low = high where the parameter is fixed.
+    seam_order : int
+        How many derivatives free rows keep across the seam of closed contact curves; -1 where these are open.
     """
 
     form: EnergyForm
+    rows: tuple[Basis, ...]
     a: Side
     b: Side
     natural: tuple[float, float]
     bounds: tuple[tuple[float, float], tuple[float, float]]
+    seam_order: int
 
     @property
     def free(self) -> tuple[bool, bool]:
@@ -85,10 +107,18 @@ class BlendProblem:
             (self.b, range(m, -1, -1), (float(from_end[p + 1]), float(from_end[p + 2]))),
         )
 
+    @property
+    def free_rows(self) -> range:
+        """Indices of the rows that no contact prescribes."""
+        return range(self.a.order + 1, len(self.rows) - self.b.order - 1)
+
+    def seam_order_of(self, row: int) -> int:
+        """How many derivatives a free row keeps across the seam: as many as it has control points for."""
+        return min(self.seam_order, self.form.rows[row].size // 2 - 1)
+
     @cached_property
     def _free_system(self) -> _FreeSystem:
-        owned_a, owned_b = self.a.order + 1, self.b.order + 1
-        return _FreeSystem(self.form, range(owned_a, len(self.form.rows) - owned_b))
+        return _FreeSystem(self.form, self.free_rows, [self.seam_order_of(i) for i in self.free_rows])
 
     def control_points(self, a: float, b: float) -> FloatArray:
         """Return p of least energy for given alpha^2 and beta^2, shape (N, 3): one linear solve for the free rows."""
@@ -104,21 +134,33 @@ class BlendProblem:
 
 
 class _FreeSystem:
-    """The stationarity system of the free rows, factorised once."""
+    """The stationarity system of the free rows, factorised once.
 
-    def __init__(self, form: EnergyForm, rows: range) -> None:
+    Free control points are Z y: Z is the identity, but for closed rows that are to be smooth across their seam.
+    """
+
+    def __init__(self, form: EnergyForm, rows: range, seam_orders: list[int]) -> None:
         self.free = slice(form.offsets[rows.start], form.offsets[rows.stop])
         self.size = self.free.stop - self.free.start
         if self.size == 0:
             return
         self.lines = form.matrix(rows)
+        self.z = None
+        along = [greville(form.rows[i].knots, form.rows[i].degree) for i in rows]
+        matrix = self.lines[:, self.free]
+        if max(seam_orders) >= 0:
+            self.z = sp.block_diag(
+                [periodic_points(form.rows[i], order) for i, order in zip(rows, seam_orders, strict=True)], format="csr"
+            )
+            along = [x[: len(x) - order - 1] for x, order in zip(along, seam_orders, strict=True)]
+            matrix = self.z.T @ matrix @ self.z
         # Sorting by the place along v, rows side by side, makes the matrix banded.
-        along = np.concatenate([greville(form.rows[i].knots, form.rows[i].degree) for i in rows])
-        self.order = np.argsort(along, kind="stable")
-        matrix = self.lines[:, self.free][self.order][:, self.order].tocsc()
-        self.matrix = matrix
+        self.order = np.argsort(np.concatenate(along), kind="stable")
+        self.matrix = matrix[self.order][:, self.order].tocsc()
         try:
-            self.factor = splu(matrix, permc_spec="NATURAL", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+            self.factor = splu(
+                self.matrix, permc_spec="NATURAL", diag_pivot_thresh=0.0, options={"SymmetricMode": True}
+            )
         except RuntimeError:
             raise ComputationError(
                 "the stationarity system is singular; try fewer middle curves or knots that are not so close"
@@ -130,7 +172,8 @@ class _FreeSystem:
             return points
         filled = points.copy()
         filled[self.free] = 0.0
-        right = -(self.lines @ filled)[self.order]
+        right = -(self.lines @ filled)
+        right = (right if self.z is None else self.z.T @ right)[self.order]
         x = self.factor.solve(right)
         correction = self.factor.solve(right - self.matrix @ x)
         x += correction
@@ -142,7 +185,7 @@ class _FreeSystem:
             )
         free = np.empty(x.shape)
         free[self.order] = x
-        filled[self.free] = free
+        filled[self.free] = free if self.z is None else self.z @ free
         return filled
 
 
@@ -156,15 +199,28 @@ def make_problem(a: Side, b: Side, options: ProblemOptions) -> BlendProblem:
     EdgeError
         The contact curves coincide, one of them is a point, or a cross derivative that contact needs vanishes.
     """
-    u = blend_u_basis(options.degree_u, options.middle_curves)
-    middle = middle_basis(a.along, b.along)
-    rows = (a.along,) * ROWS_PER_SIDE + (middle,) * options.middle_curves + (b.along,) * ROWS_PER_SIDE
-    natural = _natural_sizes(a, b)
+    if options.v_scale not in get_args(VScale):
+        raise OptionError(f"v_scale: found {options.v_scale!r}, expected one of {', '.join(get_args(VScale))}")
+    u = blend_u_basis(options.degree_u, options.middle_curves, options.u_knots)
+    orders = [seam_order(side.along, side.rows[: side.order + 1]) for side in (a, b)]
+    closed = min(orders)
+    middle = middle_bases(a.along, b.along, options.middle_curves, options.middle_knots)
+    if closed >= 0 and options.middle_knots is None:
+        middle = [with_least_size(basis, 2 * closed + 2) for basis in middle]
+    rows = ((a.along,) * ROWS_PER_SIDE) + tuple(middle) + ((b.along,) * ROWS_PER_SIDE)
+    gap, lengths = _gap_and_lengths(a, b)
+    natural_a, natural_b = (
+        gap / speed if (speed := _cross_speed(side, name)) else 1.0 for name, side in zip("ab", (a, b), strict=True)
+    )
     bounds_a, bounds_b = (
         (1.0, 1.0) if not side.has_shape_parameter else _bounds(size, shape, options.box)
-        for side, size, shape in zip((a, b), natural, options.shape, strict=True)
+        for side, size, shape in zip((a, b), (natural_a, natural_b), options.shape, strict=True)
     )
-    return BlendProblem(EnergyForm(u, rows), a, b, natural, (bounds_a, bounds_b))
+    form = EnergyForm(u, rows)
+    if options.v_scale != "paper":
+        length = 1.0 if options.v_scale == "unit" else sum(lengths) / 2 / gap
+        form = EnergyForm(u, tuple(Basis(row.degree, affine_knots(row.knots, 0.0, length)) for row in rows))
+    return BlendProblem(form, rows, a, b, (natural_a, natural_b), (bounds_a, bounds_b), closed)
 
 
 def _bounds(natural: float, shape: float | Literal["free", "natural"], box: tuple[float, float]) -> tuple[float, float]:
@@ -174,22 +230,24 @@ def _bounds(natural: float, shape: float | Literal["free", "natural"], box: tupl
     return fixed, fixed
 
 
-def _natural_sizes(a: Side, b: Side) -> tuple[float, float]:
+def _gap_and_lengths(a: Side, b: Side) -> tuple[float, list[float]]:
+    """Return the mean distance of the contact curves and their lengths, in coordinates of size 1."""
     start, end = a.along.knots[0], a.along.knots[-1]
-    x = start + (end - start) * (np.arange(64) + 0.5) / 64
+    x = start + (end - start) * np.arange(129) / 128
     curves = [basis_matrix(side.along.degree, side.along.knots, x) @ side.rows[0] for side in (a, b)]
-    # Coordinates are of size 1, so these limits are fractions of the model's size.
-    for name, curve in zip("ab", curves, strict=True):
-        if np.ptp(curve, axis=0).max() < 1e-12:
+    lengths = [float(np.linalg.norm(np.diff(curve, axis=0), axis=1).sum()) for curve in curves]
+    for name, length in zip("ab", lengths, strict=True):
+        if length < VANISHING:
             raise EdgeError(f"base {name}: the contact curve has zero length; choose another edge")
     gap = float(np.linalg.norm(curves[0] - curves[1], axis=1).mean())
-    if gap < 1e-12:
-        raise EdgeError(
-            "bases: the contact curves coincide, so there is nothing to blend; move a base or choose an edge"
-        )
-    speeds = [side.mean_cross_speed() for side in (a, b)]
-    for name, side, speed in zip("ab", (a, b), speeds, strict=True):
-        if side.order > 0 and speed * side.spans[0] < 1e-12:
-            raise EdgeError(f"base {name}: the cross derivative vanishes along the contact curve; choose another edge")
-    natural_a, natural_b = (gap / speed if speed > 0 else 1.0 for speed in speeds)
-    return natural_a, natural_b
+    if gap < VANISHING:
+        raise EdgeError("bases: the contact curves coincide, there is nothing to blend; choose another edge")
+    return gap, lengths
+
+
+def _cross_speed(side: Side, name: str) -> float:
+    """Return the mean speed across the contact, refused where contact needs it and it vanishes."""
+    speed = side.mean_cross_speed()
+    if side.order > 0 and speed * side.spans[0] < VANISHING:
+        raise EdgeError(f"base {name}: the cross derivative vanishes along the contact curve; choose another edge")
+    return speed

@@ -12,6 +12,7 @@ import casadi as ca
 import numpy as np
 from scipy.optimize import minimize
 
+from solver.closing import periodic_points
 from solver.errors import ComputationError
 from solver.nlp import contact_rows
 from solver.problem import BlendProblem
@@ -66,14 +67,18 @@ def solve_quasi_newton(problem: BlendProblem) -> QuasiNewtonSolution:
 def substituted_objective(problem: BlendProblem) -> tuple[ca.Function, np.ndarray]:
     """Return the energy as a compiled function of the free control points, alpha and beta, and where to start."""
     form = problem.form
-    owned = [i for side, rows, _ in problem.contacts for i in rows[: side.order + 1]]
-    free_rows = [i for i in range(len(form.rows)) if i not in owned]
-    sizes = [form.rows[i].size for i in free_rows]
+    # Free rows are Z y, Z the identity where they are open.
+    bases = [
+        periodic_points(form.rows[i], problem.seam_order_of(i)) if problem.seam_order >= 0 else None
+        for i in problem.free_rows
+    ]
+    sizes = [form.rows[i].size if z is None else z.shape[1] for i, z in zip(problem.free_rows, bases, strict=True)]
     x = ca.MX.sym("x", 3 * sum(sizes) + sum(problem.free))
     values: dict[int, ca.MX] = {}
     at = 0
-    for i, size in zip(free_rows, sizes, strict=True):
-        values[i] = ca.reshape(x[at : at + 3 * size], size, 3)
+    for i, z, size in zip(problem.free_rows, bases, sizes, strict=True):
+        y = ca.reshape(x[at : at + 3 * size], size, 3)
+        values[i] = y if z is None else ca.mtimes(ca.DM(z.tocsc()), y)
         at += 3 * size
     for (side, rows, spans), is_free, fixed in zip(problem.contacts, problem.free, problem.start, strict=True):
         a = x[at] ** 2 if is_free else fixed
@@ -84,5 +89,9 @@ def substituted_objective(problem: BlendProblem) -> tuple[ca.Function, np.ndarra
     energy = ca.dot(p, ca.mtimes(ca.DM(form.matrix(range(len(form.rows))).tocsc()), p))
     unit = tuple(1.0 if is_free else fixed for is_free, fixed in zip(problem.free, problem.start, strict=True))
     points = problem.control_points(unit[0], unit[1])
-    first = [points[form.offsets[i] : form.offsets[i + 1]].T.ravel() for i in free_rows]
+    # y is the first part of each row.
+    first = [
+        points[form.offsets[i] : form.offsets[i] + size].T.ravel()
+        for i, size in zip(problem.free_rows, sizes, strict=True)
+    ]
     return ca.Function("energy", [x], [energy]), np.concatenate([*first, np.ones(sum(problem.free))])

@@ -8,12 +8,15 @@ from typing import Literal, TypeAlias, get_args
 import numpy as np
 
 from solver.arrays import FloatArray
-from solver.continuity import Base
+from solver.base import Base
+from solver.closing import reseamed
+from solver.correspondence import Correspondence
+from solver.curves import elevate_curve
 from solver.errors import EdgeError, OptionError
 from solver.generated import contact_numpy, shape_numpy
 from solver.gram import Basis
 from solver.knots import affine_knots, reversed_knots
-from solver.surfaces import BSplineSurface
+from solver.surfaces import BSplineCurve, BSplineSurface
 
 Continuity: TypeAlias = Literal["C0", "C1", "C2", "G0", "G1", "G2"]
 
@@ -91,10 +94,8 @@ class Side:
         return replace(self, rows=(self.rows - centre) / size)
 
 
-def make_side(
-    base: Base, continuity: Continuity, v_range: tuple[float, float] | None = None, flipped: bool = False
-) -> Side:
-    """Read the contact of `base`, with the parameter along its edge mapped onto `v_range` and reversed if flipped.
+def make_side(base: Base, continuity: Continuity) -> Side:
+    """Read the contact of `base`, in the base's own parameter along its edge.
 
     Raises
     ------
@@ -122,10 +123,31 @@ def make_side(
     else:
         steps = knots - knots[0]
     rows = net[[min(i, len(net) - 1) for i in range(_ROWS)]]
-    degree_v, knots_v = along
-    if flipped:
-        rows, knots_v = rows[:, ::-1], reversed_knots(knots_v)
-    if v_range is not None:
-        knots_v = affine_knots(knots_v, *v_range)
     spans = (float(steps[degree + 1]), float(steps[min(degree + 2, len(steps) - 1)]))
-    return Side(continuity, degree, spans, Basis(degree_v, knots_v), rows)
+    return Side(continuity, degree, spans, Basis(*along), rows)
+
+
+def matched_sides(a: Side, b: Side, matched: Correspondence) -> tuple[Side, Side]:
+    """Bring both sides to one parameter v, that of a, and to one degree along it; all exact up to rounding.
+
+    Side b is re-seamed and turned round as `matched` says; the lower degree is elevated.
+    """
+    along, rows = b.along, b.rows
+    if matched.shift:
+        along, rows = reseamed(along, rows, matched.shift)
+    knots = along.knots
+    if matched.flipped:
+        rows, knots = rows[:, ::-1], reversed_knots(knots)
+    knots = affine_knots(knots, float(a.along.knots[0]), float(a.along.knots[-1]))
+    b = replace(b, along=Basis(along.degree, knots), rows=rows)
+    degree = max(a.along.degree, b.along.degree)
+    return _elevated(a, degree), _elevated(b, degree)
+
+
+def _elevated(side: Side, degree: int) -> Side:
+    if side.along.degree == degree:
+        return side
+    curves = [elevate_curve(BSplineCurve(side.along.degree, side.along.knots, row), degree) for row in side.rows]
+    return replace(
+        side, along=Basis(degree, curves[0].knots), rows=np.stack([curve.control_points for curve in curves])
+    )

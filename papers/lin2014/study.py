@@ -36,7 +36,7 @@ def impeller_path() -> Path | None:
 
 
 def _impeller(path: Path) -> Example:
-    from solver.continuity import Base
+    from solver.base import Base
     from solver.io.surface_files import read_surfaces
 
     loaded = read_surfaces([f"{path}#{face}" for face in IMPELLER_FACES])

@@ -98,7 +98,10 @@ def test_the_contact_curves_are_the_bases_own_to_the_last_bit():
 def test_no_knot_is_inserted_in_either_base():
     a, b = facing_pair(np.random.default_rng(11), edges=("u0", "u0"))
     result = blend(a, b, middle_curves=0)
-    counts = [base.surface.control_points.shape[1] for base in (a, b)]
+    surfaces = [base.surface for base in (a, b)]
+    degree = max(s.degree_v for s in surfaces)
+    # The lower degree is elevated: one more control point for each of its spans.
+    counts = [s.control_points.shape[1] + (degree - s.degree_v) * (len(np.unique(s.knots_v)) - 1) for s in surfaces]
     assert result.surface.n_control_points == 3 * sum(counts)
 
 

@@ -12,9 +12,10 @@ from derivations.energy import Basis as ExactBasis
 from derivations.energy import ExactSurface
 from derivations.problem import ExactBase, blend_problem, derivatives_at, lagrangian
 from solver import Base, BSplineSurface, blend
+from solver.correspondence import Correspondence
 from solver.nlp import constrained_problem, solve_constrained
 from solver.problem import ProblemOptions, make_problem
-from solver.sides import make_side
+from solver.sides import make_side, matched_sides
 
 K2 = (0, 0, 0, 1, 1, 1)
 K2_INNER = (0, 0, 0, 0.25, 1, 1, 1)
@@ -145,7 +146,7 @@ def test_constraints_have_full_rank():
 def test_ipopt_is_not_beaten_near_its_answer(seed):
     # Nelder-Mead on (a, b) over linear solves knows nothing of CasADi.
     a, b = facing_pair(np.random.default_rng(seed), edges=("u0", "u0"), backwards=(False, False))
-    sides = make_side(a, "G2"), make_side(b, "G2", a.range_along)
+    sides = matched_sides(make_side(a, "G2"), make_side(b, "G2"), Correspondence(flipped=False))
     problem = make_problem(*sides, ProblemOptions())
     found = solve_constrained(problem)
 

@@ -11,10 +11,11 @@ from scipy.optimize import brute, minimize
 
 from solver import Base, BSplineSurface, blend
 from solver.certificate import CertificateError, check_certificate
+from solver.correspondence import Correspondence
 from solver.problem import ProblemOptions, make_problem
 from solver.reduced import shape_polynomial, solve_reduced
 from solver.shape_search import least_point
-from solver.sides import make_side
+from solver.sides import make_side, matched_sides
 
 # (x^2 - 1)^2 + y^2, two equal minima; and a tilted one with a local minimum at x about 0.96.
 DOUBLE_WELL = np.array([[1.0, 0, 1], [0, 0, 0], [-2, 0, 0], [0, 0, 0], [1, 0, 0]])
@@ -120,7 +121,7 @@ def test_another_polynomial_is_refused(certificate):
 
 def problem_of(seed, **options):
     a, b = facing_pair(np.random.default_rng(seed), edges=("u0", "u0"), backwards=(False, False))
-    sides = make_side(a, "G2"), make_side(b, "G2", a.range_along)
+    sides = matched_sides(make_side(a, "G2"), make_side(b, "G2"), Correspondence(flipped=False))
     return make_problem(*sides, ProblemOptions(**options))
 
 

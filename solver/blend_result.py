@@ -1,0 +1,78 @@
+"""What a blend comes to: the surface, and everything that was measured of it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from solver.continuity import Contact
+from solver.regularity import Regularity
+from solver.shape_search import Certificate
+from solver.sides import Continuity
+from solver.surfaces import SemiStructuredSurface
+
+
+@dataclass(frozen=True, eq=False)
+class BlendResult:
+    """A blend of two bases, with what was measured of it.
+
+    Attributes
+    ----------
+    surface : SemiStructuredSurface
+        u = 0 on a, u = 1 on b; the v-domain is that of a's edge.
+    continuity : (str, str)
+        Asked for and confirmed at a and at b.
+    method : str
+        "linear" where nothing but a linear solve was needed.
+    energy : float
+        Thin-plate energy (11) over [0, 1] x the v-domain, whatever `v_scale` was minimised.
+    alpha2, beta2 : float or None
+        Of (2.1) and (2.2), the bases in their own parameters; 1 for C1 and C2, None for C0 and G0.
+    alpha2_bounds, beta2_bounds : (float, float) or None
+        The admissible box; None where there is no such unknown.
+    active_bounds : tuple of str
+        Which bounds stopped the search, such as "alpha2 lower".
+    flipped : bool
+        Whether edge b runs against edge a.
+    seam_shift : float
+        Closed contact curves: how far b was re-seamed, in b's own parameter, to face the seam of a.
+    contact_a, contact_b : Contact
+        Judged by the de Boor referee.
+    seam : Contact or None
+        Closed contact curves: how the blend's own edges v0 and v1 meet.
+    regularity : Regularity
+        How far the blend is from folding.
+    warnings : tuple of str
+        What a user should look at: folds, creases.
+    iterations : int
+        Of the nonlinear solver; 0 where there is none.
+    kkt_residual : float or None
+        Largest entry of the gradient of the Lagrangian, scaled; only for method casadi.
+    certificate : Certificate or None
+        Proof that no admissible alpha and beta have less energy, in coordinates of size 1; only for method reduced.
+    proven_gap : float or None
+        What the proof leaves open, as a fraction of the energy.
+    seconds : float
+        For the solve, without the final checks.
+    """
+
+    surface: SemiStructuredSurface
+    continuity: tuple[Continuity, Continuity]
+    method: str
+    energy: float
+    alpha2: float | None
+    beta2: float | None
+    alpha2_bounds: tuple[float, float] | None
+    beta2_bounds: tuple[float, float] | None
+    active_bounds: tuple[str, ...]
+    flipped: bool
+    seam_shift: float
+    contact_a: Contact
+    contact_b: Contact
+    seam: Contact | None
+    regularity: Regularity
+    warnings: tuple[str, ...]
+    iterations: int
+    kkt_residual: float | None
+    certificate: Certificate | None
+    proven_gap: float | None
+    seconds: float

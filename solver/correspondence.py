@@ -1,0 +1,132 @@
+"""Which parameters along two edges belong together: direction, and for closed edges the shift between their seams."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal, TypeAlias, get_args
+
+import numpy as np
+
+from solver.arrays import FloatArray
+from solver.base import Base
+from solver.errors import EdgeError
+from solver.knots import merge_breakpoints
+
+Flip: TypeAlias = Literal["auto", "yes", "no"]
+
+# Where each merged span of the edge is sampled: inside, since at a knot the two sides may be seen from different spans.
+_FRACTIONS = np.array([0.002, 0.1, 0.3, 0.5, 0.7, 0.9, 0.998])
+# An edge whose ends are closer than this fraction of its extent is closed.
+CLOSED = 1e-9
+_SAMPLES = 256
+
+
+@dataclass(frozen=True)
+class Correspondence:
+    """How edge b runs along edge a; parameters correspond affinely.
+
+    Attributes
+    ----------
+    flipped : bool
+        Edge b runs against edge a.
+    shift : float
+        Where on edge b the start of edge a belongs, beyond b's own start, in b's parameter. Not zero only where both
+        edges are closed.
+    """
+
+    flipped: bool
+    shift: float = 0.0
+
+
+def correspond(a: Base, b: Base, flip: Flip = "auto") -> Correspondence:
+    """Find the direction, and for closed edges the shift, that bring the edges closest.
+
+    Closeness is the mean squared distance of corresponding points. Both curves are centred first, which changes all
+    sums alike but keeps the rounding of a large offset out of the comparison. A tie keeps the direction.
+
+    Raises
+    ------
+    EdgeError
+        `flip` is not one of auto, yes, no.
+    """
+    if flip not in get_args(Flip):
+        raise EdgeError(f"flip: found {flip!r}, expected one of auto, yes, no")
+    closed = is_closed(a) and is_closed(b)
+    # Closed curves are sampled from the seam on, so that shifts by whole steps meet equal parameters.
+    t = (np.arange(_SAMPLES) + (0.0 if closed else 0.5)) / _SAMPLES
+    first, second = (_centred(base, t) for base in (a, b))
+    candidates = []
+    for flipped in (False, True) if flip == "auto" else (flip == "yes",):
+        turned = (np.roll(second[::-1], 1, axis=0) if closed else second[::-1]) if flipped else second
+        # Distance grows as the correlation falls: its terms of one curve alone do not depend on the match.
+        steps = np.arange(_SAMPLES) if closed else np.zeros(1, dtype=int)
+        correlation = np.array([np.sum(first * np.roll(turned, -k, axis=0)) for k in steps])
+        best = int(correlation.argmax())
+        candidates.append((float(correlation[best]), flipped, best))
+    slack = 1e-9 * float(np.sum(first**2) + np.sum(second**2))
+    value, flipped, step = candidates[0]
+    if len(candidates) > 1 and candidates[1][0] > value + slack:
+        value, flipped, step = candidates[1]
+    if not closed:
+        return Correspondence(flipped)
+    length = b.range_along[1] - b.range_along[0]
+    guess = (-step if flipped else step) % _SAMPLES / _SAMPLES * length
+    return Correspondence(flipped, _refined(a, b, Correspondence(flipped, guess)))
+
+
+def is_closed(base: Base) -> bool:
+    """Tell whether the edge is a closed curve."""
+    start, end = base.range_along
+    points = base.derivative(np.linspace(start, end, 33), 0, 0)
+    return bool(np.linalg.norm(points[0] - points[-1]) <= CLOSED * np.ptp(points, axis=0).max())
+
+
+def corresponding(a: Base, b: Base, matched: Correspondence, s: FloatArray) -> FloatArray:
+    """Return the parameters along edge b that belong to `s` along edge a."""
+    (start, end), (b_start, b_end) = a.range_along, b.range_along
+    t = (s - start) / (end - start)
+    along = (1 - t if matched.flipped else t) * (b_end - b_start)
+    if matched.shift:
+        along = np.mod(along + matched.shift, b_end - b_start)
+    return np.asarray(np.clip(b_start + along, b_start, b_end))
+
+
+def corresponding_samples(a: Base, b: Base, matched: Correspondence) -> tuple[FloatArray, FloatArray]:
+    """Return parameters along edge a and along edge b that correspond, in every span of both and at the ends."""
+    start, end = a.range_along
+    # Where b's knots lie on edge a: the correspondence backwards.
+    b_start, b_end = b.range_along
+    t = np.mod((b.breakpoints_along() - b_start - matched.shift) / (b_end - b_start), 1.0)
+    on_a = np.sort(start + (1 - t if matched.flipped else t) * (end - start))
+    merged = merge_breakpoints(a.breakpoints_along(), np.concatenate([[start], on_a, [end]]))
+    inside = (merged[:-1, None] + np.diff(merged)[:, None] * _FRACTIONS).ravel()
+    s_a = np.concatenate([[start], inside, [end]])
+    return s_a, corresponding(a, b, matched, s_a)
+
+
+def _centred(base: Base, t: FloatArray) -> FloatArray:
+    start, end = base.range_along
+    points = base.derivative(start + t * (end - start), 0, 0)
+    return np.asarray(points - points.mean(axis=0))
+
+
+def _refined(a: Base, b: Base, matched: Correspondence) -> float:
+    """Refine the shift by Gauss-Newton; where the curves coincide it converges to rounding."""
+    start, end = a.range_along
+    length = b.range_along[1] - b.range_along[0]
+    s = start + (np.arange(_SAMPLES) + 0.5) / _SAMPLES * (end - start)
+    on_a = a.derivative(s, 0, 0)
+    on_a = on_a - on_a.mean(axis=0)
+    shift = matched.shift
+    for _ in range(50):
+        s_b = corresponding(a, b, Correspondence(matched.flipped, shift or length), s)
+        on_b, slope = b.derivative(s_b, 0, 0), b.derivative(s_b, 0, 1)
+        step = float(np.sum((on_a - on_b + on_b.mean(axis=0)) * slope) / np.sum(slope**2))
+        shift += step
+        if abs(step) < 1e-16 * length:
+            break
+    # A search that leaves its sample has no better answer than the sample.
+    if abs(shift - matched.shift) > 2 * length / _SAMPLES:
+        shift = matched.shift
+    shift %= length
+    return 0.0 if min(shift, length - shift) < CLOSED * length else shift

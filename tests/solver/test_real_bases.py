@@ -1,0 +1,223 @@
+"""Bases as CAD has them: other degrees, closed curves with seams anywhere, knots of full multiplicity, units of v."""
+
+import numpy as np
+import pytest
+from helpers.bases import facing_pair, patch, turned
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.interpolate import make_interp_spline
+
+from solver import Base, BSplineSurface, FoldError, OptionError, SemiStructuredSurface, blend
+from solver.closing import periodic_points, reseamed, seam_order
+from solver.de_boor import curve_points, surface_points
+from solver.gram import Basis
+from solver.operations import map_domain
+
+
+def circle(n_spans, degree=3, seam=0.0):
+    """A closed C^(degree - 1) spline close to the unit circle, clamped, its seam at an angle."""
+    t = np.linspace(0, 1, n_spans + 1)
+    angle = 2 * np.pi * (t + seam)
+    values = np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    values[-1] = values[0]
+    periodic = make_interp_spline(t, values, k=degree, bc_type="periodic")
+    # Clamp by inserting both ends to full multiplicity.
+    knots = np.concatenate([[0.0] * (degree + 1), t[1:-1], [1.0] * (degree + 1)])
+    greville = np.array([knots[i + 1 : i + degree + 1].mean() for i in range(len(knots) - degree - 1)])
+    unit = np.eye(len(greville))
+    collocation = np.column_stack([curve_points(degree, knots, e[:, None], greville)[:, 0] for e in unit])
+    return knots, np.linalg.solve(collocation, periodic(greville))
+
+
+def cylinder(n_spans, radius, heights, *, seam=0.0, tilt=0.0, offset=(0.0, 0.0)):
+    """Open along u (the axis), closed along v, with contact at u0."""
+    knots_v, points = circle(n_spans, seam=seam)
+    knots_u = np.array([0, 0, 0, 0, 1, 1, 1, 1.0])
+    rows = []
+    for i, z in enumerate(np.linspace(*heights, 4)):
+        r = radius * (1 + tilt * i)
+        rows.append(np.column_stack([r * points + np.array(offset), np.full(len(points), z)]))
+    return BSplineSurface(3, 3, knots_u, knots_v, np.array(rows))
+
+
+@pytest.mark.parametrize("order", [0, 1, 2])
+def test_periodic_points_span_the_smooth_closed_curves(order):
+    knots, points = circle(7)
+    basis = Basis(3, knots)
+    z = periodic_points(basis, order).toarray()
+    assert z.shape == (basis.size, basis.size - order - 1)
+    # The circle is one of them, and every one of them is closed and smooth.
+    y = points[: basis.size - order - 1]
+    np.testing.assert_allclose(z @ y, points, atol=1e-12)
+    random = z @ np.random.default_rng(0).standard_normal((z.shape[1], 2))
+    for d in range(order + 1):
+        ends = curve_points(3, knots, random, np.array([0.0, 1.0]), d)
+        np.testing.assert_allclose(ends[0], ends[1], rtol=0, atol=1e-11 * 50**d)
+
+
+@given(st.integers(4, 12), st.floats(0.05, 0.95))
+def test_reseaming_keeps_the_curve(n_spans, shift):
+    knots, points = circle(n_spans)
+    rows = np.stack([np.column_stack([points, np.full(len(points), z)]) for z in (0.0, 1.0)])
+    along, moved = reseamed(Basis(3, knots), rows, shift)
+    assert along.knots[0] == pytest.approx(shift)
+    assert along.knots[-1] == pytest.approx(1 + shift)
+    # The old seam is smooth, so it costs one knot, as any other.
+    assert np.count_nonzero(np.abs(along.knots - 1.0) < 1e-12) == 1
+    v = np.linspace(shift, 1 + shift, 97)
+    for old, new in zip(rows, moved, strict=True):
+        expected = curve_points(3, knots, old, np.mod(v, 1.0))
+        np.testing.assert_allclose(curve_points(3, along.knots, new, v), expected, atol=1e-11)
+    assert seam_order(along, moved) == 2
+
+
+@pytest.mark.parametrize("continuity", ["C0", "C1", "C2", "G1", "G2"])
+@pytest.mark.parametrize("middle_curves", [0, 1, 2])
+def test_closed_cylinders_blend_smoothly_across_the_seam(continuity, middle_curves):
+    a = cylinder(7, 1.0, (0.0, 1.0))
+    b = cylinder(5, 0.7, (-1.5, -2.5), seam=0.31, offset=(0.2, 0.0))
+    for method in ("reduced", "casadi"):
+        result = blend(Base(a, "u0"), Base(b, "u0"), continuity=continuity, middle_curves=middle_curves, method=method)
+        assert result.seam_shift != 0
+        assert result.seam.gap < 1e-13
+        assert result.seam.angle_degrees < 1e-8
+        assert result.seam.curvature_jump_relative < 1e-8
+        assert result.seam.c2_residual < 1e-8
+
+
+def test_seams_face_each_other():
+    a = cylinder(7, 1.0, (0.0, 1.0))
+    b = cylinder(5, 0.7, (-1.0, -2.0), seam=0.4)
+    result = blend(Base(a, "u0"), Base(b, "u0"))
+    # 0.4 of a turn ahead, so the seam of a faces b at the parameter 0.6.
+    assert result.seam_shift == pytest.approx(0.6, abs=1e-3)
+    ends = surface_points(result.surface, [0.0, 1.0], [0.0, 0.0])
+    angles = np.arctan2(ends[:, 1], ends[:, 0])
+    assert angles[0] == pytest.approx(angles[1], abs=1e-2)
+    straight = blend(Base(a, "u0"), Base(cylinder(5, 0.7, (-1.0, -2.0)), "u0"))
+    assert straight.seam_shift == 0
+    assert result.energy == pytest.approx(straight.energy, rel=0.02)
+
+
+@pytest.mark.parametrize("backwards", [False, True])
+def test_closed_and_turned_round(backwards):
+    a = cylinder(7, 1.0, (0.0, 1.0))
+    b = turned(cylinder(5, 0.7, (-1.0, -2.0), seam=0.23), "v1", backwards)
+    result = blend(Base(a, "u0"), Base(b, "v1"))
+    assert result.flipped == backwards
+    assert result.contact_b.curvature_jump_relative < 1e-9
+    assert result.regularity.largest_turn_degrees < 30
+
+
+def test_a_smooth_seam_has_a_lower_bound_in_the_open_problem():
+    # The same blend without the seam condition has no more energy: a constraint cannot help.
+    a, b = cylinder(7, 1.0, (0.0, 1.0)), cylinder(7, 0.6, (-1.0, -2.0))
+    closed = blend(Base(a, "u0"), Base(b, "u0"), continuity="C0")
+    cut = a.control_points.copy()
+    cut[0, -1] += 1e-6
+    opened = blend(Base(BSplineSurface(3, 3, a.knots_u, a.knots_v, cut), "u0"), Base(b, "u0"), continuity="C0")
+    assert opened.seam is None
+    assert opened.energy < closed.energy
+
+
+@pytest.mark.parametrize("degrees", [(2, 3), (3, 5), (1, 4)])
+def test_the_lower_degree_along_the_contact_is_elevated(degrees):
+    rng = np.random.default_rng(1)
+    bases = []
+    for q, sign in zip(degrees, (1, -1), strict=True):
+        s = patch(rng, degrees=(3, q), counts=(5, q + 4))
+        net = s.control_points * np.array([sign, 1, 1]) + np.array([-0.5 + 0.5 * sign, 0, 0])
+        bases.append(Base(BSplineSurface(3, q, s.knots_u, s.knots_v, net), "u0"))
+    result = blend(*bases)
+    assert {curve.degree for curve in result.surface.control_curves} == {max(degrees)}
+    for contact in (result.contact_a, result.contact_b):
+        assert contact.curvature_jump_relative < 1e-9
+
+
+@pytest.mark.parametrize("multiplicity", [2, 3])
+def test_inner_knots_of_any_multiplicity(multiplicity):
+    rng = np.random.default_rng(0)
+    knots = np.concatenate([[0.0] * 4, [0.4] * multiplicity, [0.7], [1.0] * 4])
+    s = patch(rng, degrees=(3, 3), counts=(5, len(knots) - 4))
+    a = BSplineSurface(3, 3, s.knots_u, knots, s.control_points)
+    _, b = facing_pair(rng, edges=("u0", "u0"), backwards=(False, False))
+    for continuity in ("C2", "G2"):
+        result = blend(Base(a, "u0"), b, continuity=continuity)
+        assert result.contact_a.curvature_jump_relative < 1e-9
+        # Full multiplicity lets the blend crease for nothing; the result says so, lower multiplicity does not.
+        assert any("creased at v = 0.4" in w for w in result.warnings) == (multiplicity == 3)
+    if multiplicity == 3:
+        with pytest.raises(FoldError, match="creased"):
+            blend(Base(a, "u0"), b, strict=True)
+
+
+def test_a_fold_is_a_warning_and_an_error_if_strict():
+    a, b = facing_pair(np.random.default_rng(0), edges=("u0", "u0"), backwards=(False, False))
+    folded = blend(a, b, continuity="C2", flip="yes")
+    if not folded.warnings:
+        folded = blend(a, b, alpha=12.0)
+        assert any("folds" in w for w in folded.warnings)
+        with pytest.raises(FoldError, match="folds"):
+            blend(a, b, alpha=12.0, strict=True)
+
+
+@pytest.mark.parametrize("v_scale", ["unit", "length"])
+@given(seed=st.integers(0, 10**6))
+@settings(max_examples=15)
+def test_units_of_v_and_order_of_bases_do_not_matter(v_scale, seed):
+    a, b = facing_pair(np.random.default_rng(seed), edges=("u0", "u0"), backwards=(False, False))
+    plain = blend(a, b, v_scale=v_scale)
+    stretched = Base(map_domain(a.surface, v_range=(3.0, 21.0)), "u0")
+    other = blend(stretched, b, v_scale=v_scale)
+    assert other.alpha2 == pytest.approx(plain.alpha2, rel=1e-6)
+    swapped = blend(b, a, v_scale=v_scale)
+    assert swapped.beta2 == pytest.approx(plain.alpha2, rel=1e-6)
+    (v0, v1), (w0, w1) = plain.surface.domain[1], swapped.surface.domain[1]
+    u, t = np.linspace(0, 1, 9), np.linspace(0, 1, 9)
+    here = plain.surface.evaluate_grid(u, v0 + t * (v1 - v0))
+    stretched_grid = other.surface.evaluate_grid(u, 3.0 + 18.0 * t)
+    there = swapped.surface.evaluate_grid(1 - u, w0 + t * (w1 - w0))
+    # Points agree to the accuracy with which a flat minimum fixes alpha.
+    np.testing.assert_allclose(stretched_grid, here, atol=1e-6)
+    np.testing.assert_allclose(there, here, atol=1e-6)
+
+
+def test_paper_scale_does_depend_on_units_of_v():
+    a, b = facing_pair(np.random.default_rng(0), edges=("u0", "u0"), backwards=(False, False))
+    plain = blend(a, b)
+    other = blend(Base(map_domain(a.surface, v_range=(0.0, 100.0)), "u0"), b)
+    assert other.alpha2 != pytest.approx(plain.alpha2, rel=1e-3)
+
+
+def test_knots_can_be_given():
+    a, b = facing_pair(np.random.default_rng(4), edges=("u0", "u0"), backwards=(False, False))
+    (v0, v1) = a.range_along
+    middle = [[v0 + 0.3 * (v1 - v0), v0 + 0.6 * (v1 - v0)]]
+    result = blend(a, b, u_knots=[0.2, 0.5, 0.8], middle_knots=middle)
+    assert isinstance(result.surface, SemiStructuredSurface)
+    np.testing.assert_allclose(result.surface.knots_u[4:-4], [0.2, 0.5, 0.8])
+    curve = result.surface.control_curves[3]
+    np.testing.assert_allclose(curve.knots[curve.degree + 1 : -curve.degree - 1], middle[0])
+    assert result.contact_b.curvature_jump_relative < 1e-9
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"u_knots": [0.5]}, "u_knots: found 1 inner knots, expected 3"),
+        ({"u_knots": [0.2, 0.5, 1.5]}, "u_knots: found"),
+        ({"middle_knots": []}, "middle_knots: found 0 lists"),
+        ({"middle_knots": [[1e9]]}, r"middle_knots\[0\]: found"),
+        ({"v_scale": "metric"}, "v_scale: found 'metric'"),
+    ],
+)
+def test_knots_that_do_not_fit_are_refused(options, message):
+    a, b = facing_pair(np.random.default_rng(4), edges=("u0", "u0"))
+    with pytest.raises(OptionError, match=message):
+        blend(a, b, **options)
+
+
+def test_orientation_is_the_same_every_time_and_either_way():
+    for seed in range(10):
+        a, b = facing_pair(np.random.default_rng(seed))
+        assert blend(a, b).flipped == blend(b, a).flipped == blend(a, b).flipped
