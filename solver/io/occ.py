@@ -217,15 +217,16 @@ def _read_iges(path: str) -> tuple[Any, str | None]:
     from OCP.IFSelect import IFSelect_ReturnStatus
     from OCP.IGESControl import IGESControl_Reader
 
-    with system_unit("mm"):
-        reader = IGESControl_Reader()
-        if reader.ReadFile(path) != IFSelect_ReturnStatus.IFSelect_RetDone:
-            raise FileError(f"{path}: not an IGES file that Open CASCADE can read")
-        millimetres = reader.IGESModel().GlobalSection().UnitValue()
-    unit = next((u for u, size in MILLIMETRES.items() if abs(millimetres / size - 1) < 1e-9), "mm")
-    with system_unit(unit):
-        reader.TransferRoots()
-        return reader.OneShape(), unit
+    reader = IGESControl_Reader()
+    if reader.ReadFile(path) != IFSelect_ReturnStatus.IFSelect_RetDone:
+        raise FileError(f"{path}: not an IGES file that Open CASCADE can read")
+    header = reader.IGESModel().GlobalSection()
+    unit = next((u for u, size in MILLIMETRES.items() if abs(header.UnitValue() / size - 1) < 1e-9), "mm")
+    # This translator asks the model for the system's unit, and not the static that the one for STEP asks.
+    header.SetCascadeUnit(MILLIMETRES[unit])
+    reader.IGESModel().SetGlobalSection(header)
+    reader.TransferRoots()
+    return reader.OneShape(), unit
 
 
 def _read_brep(path: str) -> tuple[Any, str | None]:

@@ -40,14 +40,12 @@ def require_kernel(what: str | Path) -> None:
 
 @contextmanager
 def system_unit(unit: str) -> Iterator[None]:
-    """Make `unit` the kernel's unit of length, so that nothing is scaled, and put millimetres back."""
-    from OCP.IGESControl import IGESControl_Controller
+    """Make `unit` the kernel's unit of length in STEP, so that nothing is scaled, and put the old one back."""
     from OCP.Interface import Interface_Static
     from OCP.STEPControl import STEPControl_Controller
 
     STEPControl_Controller.Init_s()
-    IGESControl_Controller.Init_s()
-    keys = ("xstep.cascade.unit", "write.step.unit", "write.iges.unit")
+    keys = ("xstep.cascade.unit", "write.step.unit")
     before = {key: Interface_Static.CVal_s(key) for key in keys}
     try:
         for key in keys:

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from solver.errors import FileError, SemisplineError
+from solver.io.faces import MILLIMETRES
 from solver.io.occ_kernel import UNIT_NAMES, first_line, require_kernel, silenced, system_unit
 from solver.surfaces import BSplineSurface
 
@@ -102,20 +103,21 @@ def _iges_bytes(face: Any, unit: str) -> bytes:
     from OCP.IGESSelect import IGESSelect_WorkLibrary
     from OCP.TCollection import TCollection_HAsciiString
 
-    with system_unit(unit):
-        writer = IGESControl_Writer(UNIT_NAMES[unit], 0)
-        if not writer.AddShape(face):
-            raise FileError("Open CASCADE cannot translate the surface to IGES; try .step, .json or .3dm")
-        writer.ComputeModel()
-        model = writer.Model()
-        header = model.GlobalSection()
-        # The kernel would enter the login name of whoever runs this.
-        header.SetAuthorName(TCollection_HAsciiString("semispline"))
-        model.SetGlobalSection(header)
-        text = IGESData_IGESWriter(model)
-        text.FloatWriter().SetFormat(_REAL)
-        text.SendModel(IGESSelect_WorkLibrary.DefineProtocol_s())
-        return _printed(text)
+    writer = IGESControl_Writer(UNIT_NAMES[unit], 0)
+    model = writer.Model()
+    header = model.GlobalSection()
+    # This translator asks the model for the system's unit, and not the static that the one for STEP asks.
+    header.SetCascadeUnit(MILLIMETRES[unit])
+    # The kernel would enter the login name of whoever runs this.
+    header.SetAuthorName(TCollection_HAsciiString("semispline"))
+    model.SetGlobalSection(header)
+    if not writer.AddShape(face):
+        raise FileError("Open CASCADE cannot translate the surface to IGES; try .step, .json or .3dm")
+    writer.ComputeModel()
+    text = IGESData_IGESWriter(model)
+    text.FloatWriter().SetFormat(_REAL)
+    text.SendModel(IGESSelect_WorkLibrary.DefineProtocol_s())
+    return _printed(text)
 
 
 def _brep_bytes(face: Any, unit: str) -> bytes:

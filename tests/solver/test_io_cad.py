@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pyiges
 import pytest
+from OCP.BRep import BRep_Tool
 from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeFace
 from OCP.BRepPrimAPI import (
     BRepPrimAPI_MakeBox,
@@ -16,6 +17,11 @@ from OCP.BRepPrimAPI import (
 )
 from OCP.BRepTools import BRepTools
 from OCP.Geom import Geom_OffsetSurface
+from OCP.IGESControl import IGESControl_Reader
+from OCP.STEPControl import STEPControl_Reader
+from OCP.TopAbs import TopAbs_ShapeEnum
+from OCP.TopExp import TopExp_Explorer
+from OCP.TopoDS import TopoDS
 
 from solver import BSplineCurve, BSplineSurface, FileError, InputError, SemiStructuredSurface
 from solver.de_boor import surface_points
@@ -110,8 +116,37 @@ def test_coordinates_stay_in_the_unit_of_the_file(tmp_path, suffix, unit):
         model = read_occ(path)
         found, found_unit = model.faces[0].surface(), model.unit
     assert found_unit == unit
-    # The IGES translator multiplies and divides by the unit.
+    # The translators multiply by the unit and divide by it.
     assert_same(found, surface, 4e-16)
+
+
+@pytest.mark.parametrize("unit", ["in", "mm", "m"])
+@pytest.mark.parametrize("suffix", [".step", ".igs"])
+def test_the_size_that_others_read_is_right(tmp_path, suffix, unit):
+    """The kernel's own reader, left alone, converts to millimetres."""
+    path = tmp_path / f"s{suffix}"
+    write_surface(path, patch(), unit)
+    reader = STEPControl_Reader() if suffix == ".step" else IGESControl_Reader()
+    reader.ReadFile(str(path))
+    reader.TransferRoots()
+    explorer = TopExp_Explorer(reader.OneShape(), TopAbs_ShapeEnum.TopAbs_FACE)
+    pole = BRep_Tool.Surface_s(TopoDS.Face(explorer.Current())).Pole(2, 3)
+    expected = patch().control_points[1, 2] * {"in": 25.4, "mm": 1.0, "m": 1000.0}[unit]
+    np.testing.assert_allclose([pole.X(), pole.Y(), pole.Z()], expected, rtol=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("suffix", "declared", "instead", "unit"),
+    [(".igs", b",2,2HMM,", b",1,2HIN,", "in"), (".step", b"SI_UNIT(.MILLI.,.METRE.)", b"SI_UNIT($,.METRE.)", "m")],
+)
+def test_the_unit_is_read_off_the_header(tmp_path, suffix, declared, instead, unit):
+    data = occ_bytes(patch(), suffix, "mm")
+    assert data.count(declared) == 1
+    path = tmp_path / f"s{suffix}"
+    path.write_bytes(data.replace(declared, instead))
+    model = read_occ(path)
+    assert model.unit == unit
+    assert_same(model.faces[0].surface(), patch())
 
 
 def test_surfaces_in_different_units_come_in_that_of_the_first(tmp_path):
@@ -279,7 +314,7 @@ def test_half_a_file_does_not_take_us_down(tmp_path):
     )
     data = path.read_bytes()
     path.write_bytes(data[: len(data) // 2])
-    with pytest.raises(FileError, match=r"half\.igs"):
+    with pytest.raises(FileError, match=r"half\.igs: Open CASCADE broke down .*export it anew"):
         read_surface(path)
 
 

@@ -91,12 +91,15 @@ def test_inputs_that_cannot_be(tmp_path):
 
 def test_silence_stops_what_c_has_buffered(capfd):
     c = ctypes.CDLL(None)
-    os.write(1, b"before\n")
+    # Full buffering, as into a pipe.
+    c.setvbuf(ctypes.c_void_p.in_dll(c, "stdout"), None, 0, 4096)
+    c.printf(b"before\n")
     with silenced():
         os.write(1, b"system call\n")
         c.printf(b"C library, not flushed\n")
         subprocess.run([sys.executable, "-c", "import sys; sys.stdout.write('child')"], check=True)
-    os.write(1, b"after\n")
+    c.printf(b"after\n")
+    c.fflush(None)
     assert capfd.readouterr().out == "before\nafter\n"
 
 
