@@ -5,8 +5,9 @@ import pytest
 from helpers.bases import facing_pair, moved
 from helpers.occ import analyse, edge_point
 
-from solver import Base, BSplineSurface, EdgeError, measure_contact, measure_regularity
+from solver import Base, BSplineSurface, EdgeError, blend, measure_contact, measure_regularity
 from solver.operations import reverse_u, reverse_v, swap_directions
+from solver.regularity import area_bound
 
 BEZIER_1, BEZIER_2 = [0, 0, 1, 1], [0, 0, 0, 1, 1, 1]
 
@@ -99,5 +100,25 @@ def test_edge_that_is_a_point():
 def test_regularity_sees_a_fold():
     flat = parabola(0.0)
     assert measure_regularity(flat).largest_turn_degrees == 0
-    folded = BSplineSurface(2, 1, BEZIER_2, BEZIER_1, [[[u, v, 0.0] for v in (0, 1)] for u in (0, 1, 0.2)])
-    assert measure_regularity(folded).largest_turn_degrees > 90
+    assert measure_regularity(flat).proved_area_ratio == pytest.approx(1)
+    net = [[[u, v, 0.0] for v in (0, 1)] for u in (0, 1, 0.2)]
+    folded = measure_regularity(BSplineSurface(2, 1, BEZIER_2, BEZIER_1, net))
+    assert folded.largest_turn_degrees > 90
+    assert folded.proved_area_ratio is None
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_a_proved_bound_is_below_every_sample(seed):
+    surface = blend(*facing_pair(np.random.default_rng(seed), planar=seed == 0), alpha="natural").surface
+    bound = area_bound(surface)
+    u, v = (np.linspace(*ends, 41) for ends in surface.domain)
+    cross = np.cross(surface.evaluate_grid(u, v, 1, 0), surface.evaluate_grid(u, v, 0, 1))
+    assert bound <= np.linalg.norm(cross, axis=2).min() * (1 + 1e-12)
+    if seed == 0:
+        assert bound > 0
+
+
+def test_the_bound_is_exact_for_a_bilinear_patch():
+    # X = (u (1 + v), v, 0): P_u x P_v = (0, 0, 1 + v), least 1 and linear.
+    net = [[[0, 0, 0], [0, 1, 0]], [[1, 0, 0], [2, 1, 0]]]
+    assert area_bound(BSplineSurface(1, 1, BEZIER_1, BEZIER_1, net)) == pytest.approx(1, rel=1e-14)
