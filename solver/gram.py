@@ -161,29 +161,28 @@ def gram_matrix(a: Basis, b: Basis, order: int = 0) -> SparseMatrix:
            [-1.,  1.]])
     """
     breaks = merge_breakpoints(breakpoints(a.knots), breakpoints(b.knots))
-    left, right = (sample(basis, breaks, a.degree + b.degree) for basis in (a, b))
-    return _products(left, right)[order]
+    line, column, values = _products(*(sample(basis, breaks, a.degree + b.degree) for basis in (a, b)))
+    return sp.coo_array((values[order], (line, column)), shape=(a.size, b.size)).tocsr()
 
 
-def _products(a: Samples, b: Samples) -> list[SparseMatrix]:
-    """Gram matrices of orders 0, 1, 2, all of one sparsity pattern.
+def _products(a: Samples, b: Samples) -> tuple[IndexArray, IndexArray, list[FloatArray]]:
+    """Gram matrices of orders 0, 1, 2, all of one sparsity pattern: lines, columns and, for each order, entries.
 
-    Supports are intervals, so each function of a meets neighbouring functions of b: `start` .. in one run.
+    Supports are intervals, so each function of a meets neighbouring functions of b, from `start` on.
     """
     every = np.arange(a.basis.size)
     spans = np.searchsorted(a.first + a.basis.degree, every), np.searchsorted(a.first, every, side="right") - 1
     start = b.first[spans[0]]
-    width = b.first[spans[1]] + b.basis.degree + 1 - start
-    row_starts = np.concatenate([[0], np.cumsum(width)])
-    shift = row_starts[:-1] - start
-    columns = np.arange(row_starts[-1]) - np.repeat(shift, width)
+    count = b.first[spans[1]] + b.basis.degree + 1 - start
+    ends = np.cumsum(count)
+    # Entry (i, j) has the place j + shift[i] in the list.
+    shift = ends - count - start
     place = (shift[a.local()][:, None] + b.local()).ravel()
-    grams = []
+    values = []
     for order in range(3):
         entries = np.einsum("kgs,lgs->kls", a.derivative(order) * a.weights, b.derivative(order))
-        data = np.bincount(place, entries.ravel(), minlength=row_starts[-1])
-        grams.append(sp.csr_array((data, columns, row_starts), shape=(a.basis.size, b.basis.size)))
-    return grams
+        values.append(np.bincount(place, entries.ravel(), minlength=ends[-1]).astype(np.float64, copy=False))
+    return np.repeat(every, count), np.arange(ends[-1]) - np.repeat(shift, count), values
 
 
 # Spans that are worked on at once where an energy is summed: enough for speed, few enough to stay in fast memory.
@@ -235,26 +234,33 @@ class EnergyForm:
         return [sample(basis, breaks, degree) for basis in distinct]
 
     @cached_property
-    def _grams(self) -> dict[tuple[int, int], list[SparseMatrix]]:
+    def _across_grams(self) -> FloatArray:
+        """Gram matrices of the u-basis, shape (3, m + 1, m + 1)."""
+        grams = np.zeros((3, self.u.size, self.u.size))
+        line, column, values = _products(self.across, self.across)
+        grams[:, line, column] = values
+        return grams
+
+    @cached_property
+    def _along_grams(self) -> dict[tuple[int, int], tuple[IndexArray, IndexArray, list[FloatArray]]]:
         return {}
 
     def matrix(self, rows: Iterable[int]) -> SparseMatrix:
         """Return the lines of H that belong to the given rows, shape (their control points, N)."""
-        across = [gram.toarray() for gram in _products(self.across, self.across)]
         kind = self._kinds[1]
-        data, line, column = [], [], []
+        data, lines, columns = [], [], []
         start = 0
         for i in rows:
             for j in range(max(0, i - self.u.degree), min(len(self.rows), i + self.u.degree + 1)):
                 pair = kind[i], kind[j]
-                if pair not in self._grams:
-                    self._grams[pair] = [gram.tocoo() for gram in _products(*(self._along[k] for k in pair))]
-                grams = self._grams[pair]
-                data.append(gram_block(*(a[i, j] for a in across), *(gram.data for gram in grams)))
-                line.append(grams[0].coords[0] + start)
-                column.append(grams[0].coords[1] + self.offsets[j])
+                if pair not in self._along_grams:
+                    self._along_grams[pair] = _products(*(self._along[k] for k in pair))
+                line, column, along = self._along_grams[pair]
+                data.append(gram_block(*self._across_grams[:, i, j], *along))
+                lines.append(line + start)
+                columns.append(column + self.offsets[j])
             start += self.rows[i].size
-        coordinates = (np.concatenate(line), np.concatenate(column))
+        coordinates = (np.concatenate(lines), np.concatenate(columns))
         return sp.coo_array((np.concatenate(data), coordinates), shape=(start, self.offsets[-1])).tocsr()
 
     def products(self, points: FloatArray) -> FloatArray:

@@ -136,8 +136,8 @@ def _descend(c: FloatArray, box: Box, start: tuple[float, float]) -> tuple[float
         inverse = np.divide(1.0, np.abs(values), out=np.zeros_like(values), where=np.abs(values) > 1e-14 * scale)
         step = np.zeros(2)
         step[free] = -(vectors * inverse) @ (vectors.T @ gradient[free])
-        # What the step may gain is less than the rounding of a value: this is the minimum.
-        if -float(gradient @ step) <= 1e-17 * magnitude:
+        # What the step may gain is less than the rounding of a value, which could not confirm it: this is the minimum.
+        if -float(gradient @ step) <= 1e-15 * magnitude:
             z = np.clip(z + step, low, high)
             break
         for _halving in range(30):
