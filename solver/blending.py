@@ -261,7 +261,7 @@ def _checked_contacts(
     matched: Correspondence,
 ) -> tuple[Contact, Contact]:
     """Let the referee measure both contacts, and refuse a result that misses its limits."""
-    contact_a = measure_contact(a, Base(surface, "u0"), flip="no")
+    contact_a = measure_contact(a, Base(surface, "u0"), correspondence=Correspondence(flipped=False))
     contact_b = measure_contact(Base(surface, "u1"), b, correspondence=matched)
     for name, contact, wanted in (("a", contact_a, continuity[0]), ("b", contact_b, continuity[1])):
         for measure, value, limit in required_limits(contact, wanted):

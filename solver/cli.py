@@ -50,6 +50,18 @@ def blend_command(
     method: Annotated[
         str, typer.Option(metavar="METHOD", help="How alpha and beta are found: reduced, casadi or bfgs.")
     ] = "reduced",
+    alpha: Annotated[
+        str, typer.Option(metavar="ALPHA", help="At A, for G1 and G2: free (searched), natural, or a number.")
+    ] = "free",
+    alpha_b: Annotated[str | None, typer.Option(metavar="BETA", help="The same at B, where it differs.")] = None,
+    box: Annotated[
+        tuple[float, float],
+        typer.Option(metavar="LOW HIGH", help="Range of a free alpha² and beta², times their natural sizes."),
+    ] = (1 / 8, 8.0),
+    v_scale: Annotated[
+        str, typer.Option(metavar="SCALE", help="Length of v in the energy: paper (as it is), unit or length.")
+    ] = "paper",
+    strict: Annotated[bool, typer.Option("--strict", help="Refuse a blend that folds or may be creased.")] = False,
     report: Annotated[str | None, typer.Option(metavar="FILE", help="JSON with energy, alpha, beta, contact.")] = None,
 ) -> None:
     """Join an edge of A and an edge of B by a semi-structured surface of least energy."""
@@ -73,6 +85,10 @@ def blend_command(
             middle_curves=middle_curves,
             method=cast(Any, method),
             flip=cast(Any, flip),
+            alpha=(_shape(alpha), _shape(alpha if alpha_b is None else alpha_b)),
+            box=box,
+            v_scale=cast(Any, v_scale),
+            strict=strict,
         )
     with ExitStack() as stack:
         # The report first, into its temporary file: neither file is touched unless both can be written.
@@ -217,6 +233,9 @@ def report_record(result: BlendResult) -> dict[str, Any]:
     return record | {
         "active_bounds": list(result.active_bounds),
         "flipped": result.flipped,
+        "seam_shift": result.seam_shift,
+        "seam": None if result.seam is None else contact_record(result.seam),
+        "warnings": list(result.warnings),
         "control_points": result.surface.n_control_points,
         "iterations": result.iterations,
         "kkt_residual": result.kkt_residual,
@@ -226,6 +245,14 @@ def report_record(result: BlendResult) -> dict[str, Any]:
         "contact_a": contact_record(result.contact_a),
         "contact_b": contact_record(result.contact_b),
     }
+
+
+def _shape(text: str) -> Any:
+    """Return free, natural, or the number that the text holds; `blend` refuses any other."""
+    try:
+        return float(text)
+    except ValueError:
+        return text
 
 
 def _check_edges(edge_a: str, edge_b: str) -> None:
@@ -303,10 +330,19 @@ def _print_result(result: BlendResult) -> None:
         ("control points", str(result.surface.n_control_points)),
         ("seconds", f"{result.seconds:.3f}"),
     ]
-    for name, contact in (("A", result.contact_a), ("B", result.contact_b)):
+    if result.proven_gap is not None:
+        rows.insert(3, ("least energy", f"proved to {result.proven_gap:.1e} of itself"))
+    if result.seam_shift:
+        rows.append(("seam of B moved by", f"{result.seam_shift:.6g} in B's parameter"))
+    contacts = [("contact A", result.contact_a), ("contact B", result.contact_b), ("seam", result.seam)]
+    for name, contact in contacts:
+        if contact is None:
+            continue
         figures = f"gap {contact.gap:.2g}, angle {contact.angle_degrees:.2g} degrees, "
-        rows.append((f"contact {name}", figures + f"relative curvature jump {contact.curvature_jump_relative:.2g}"))
+        rows.append((name, figures + f"relative curvature jump {contact.curvature_jump_relative:.2g}"))
     _print_table(rows)
+    for warning in result.warnings:
+        typer.echo(f"warning: {warning}", err=True)
 
 
 def _print_entries(entries: Sequence[SurfaceEntry]) -> None:
