@@ -53,6 +53,7 @@ if TYPE_CHECKING:
         SemisplineError,
     )
     from solver.gram import thin_plate_energy
+    from solver.io.surface_files import list_surfaces, read_surface, write_surface
     from solver.operations import (
         bounding_box,
         clamped_surface,
@@ -109,6 +110,7 @@ _EXPORTS = {
     "interpolate_curve": "solver.construction",
     "interpolate_grid": "solver.construction",
     "isophote_angle": "solver.curvature",
+    "list_surfaces": "solver.io.surface_files",
     "local_geometry": "solver.curvature",
     "local_geometry_grid": "solver.curvature",
     "map_domain": "solver.operations",
@@ -119,6 +121,7 @@ _EXPORTS = {
     "normals": "solver.curvature",
     "plane": "solver.construction",
     "principal_curvatures": "solver.curvature",
+    "read_surface": "solver.io.surface_files",
     "reverse_curve": "solver.curves",
     "reverse_u": "solver.operations",
     "reverse_v": "solver.operations",
@@ -134,6 +137,7 @@ _EXPORTS = {
     "thin_plate_energy": "solver.gram",
     "transform": "solver.operations",
     "trim_bezier": "solver.bezier",
+    "write_surface": "solver.io.surface_files",
     "zebra": "solver.curvature",
 }
 
@@ -176,6 +180,7 @@ __all__ = [
     "interpolate_curve",
     "interpolate_grid",
     "isophote_angle",
+    "list_surfaces",
     "local_geometry",
     "local_geometry_grid",
     "map_domain",
@@ -186,6 +191,7 @@ __all__ = [
     "normals",
     "plane",
     "principal_curvatures",
+    "read_surface",
     "reverse_curve",
     "reverse_u",
     "reverse_v",
@@ -201,6 +207,7 @@ __all__ = [
     "thin_plate_energy",
     "transform",
     "trim_bezier",
+    "write_surface",
     "zebra",
 ]
 

@@ -172,7 +172,7 @@ def show_command(
         typer.Option("--control-points", help="Of semi-structured surfaces; of all where there is none."),
     ] = False,
 ) -> None:
-    """Draw surfaces into a PNG file; needs no display."""
+    """Draw surfaces into a PNG file, whole, without the trimming of their faces; needs no display."""
     from solver.io.disk import check_output
     from solver.io.surface_files import in_one_unit, read_all
     from solver.plotting import check_picture, render
