@@ -109,17 +109,23 @@ def blend(
     (12, 1.6875, 1.6875)
     """
     started = time.perf_counter()
-    pair: tuple[Continuity, Continuity] = (continuity, continuity) if isinstance(continuity, str) else continuity
-    _check_choices(pair, method, box)
-    options = ProblemOptions(
-        middle_curves, degree_u, _checked_shape(alpha), box, v_scale, u_knots=u_knots, middle_knots=middle_knots
+    if method not in get_args(Method):
+        raise OptionError(f"method: found {method!r}, expected one of {', '.join(get_args(Method))}")
+    stated = state_problem(
+        a,
+        b,
+        continuity=continuity,
+        middle_curves=middle_curves,
+        degree_u=degree_u,
+        flip=flip,
+        alpha=alpha,
+        box=box,
+        v_scale=v_scale,
+        u_knots=u_knots,
+        middle_knots=middle_knots,
     )
-    # The bases as the blend sees them: contact at w = 0, one parameter v, coordinates of size 1.
-    sides = make_side(a, pair[0]), make_side(b, pair[1])
-    matched = _matched(a, b, flip, sides[1])
-    sides = matched_sides(*sides, matched)
-    frame = _frame(*sides)
-    problem = make_problem(sides[0].moved(*frame), sides[1].moved(*frame), options)
+    problem, sides, frame, matched = stated.problem, stated.sides, stated.frame, stated.matched
+    pair = sides[0].continuity, sides[1].continuity
     # The one or two numbers that are not linear, then everything that is.
     found = _shape_parameters(problem, method)
     surface = _surface(problem, found, sides, frame)
@@ -159,6 +165,59 @@ def blend(
     )
 
 
+@dataclass(frozen=True, eq=False)
+class StatedProblem:
+    """A blend to be found, and the way back to the bases.
+
+    Attributes
+    ----------
+    problem : BlendProblem
+    sides : (Side, Side)
+        Both contacts in one parameter v, in model units.
+    frame : (ndarray of shape (3,), float)
+        Centre and size: the problem has coordinates (x - centre) / size.
+    matched : Correspondence
+        How edge b runs along edge a.
+    """
+
+    problem: BlendProblem
+    sides: tuple[Side, Side]
+    frame: tuple[FloatArray, float]
+    matched: Correspondence
+
+
+def state_problem(
+    a: Base,
+    b: Base,
+    *,
+    continuity: Continuity | tuple[Continuity, Continuity] = "G2",
+    middle_curves: int = 1,
+    degree_u: int = 3,
+    flip: Flip = "auto",
+    alpha: Shape | tuple[Shape, Shape] = "free",
+    box: tuple[float, float] = (1 / 8, 8.0),
+    v_scale: VScale = "paper",
+    u_knots: Sequence[float] | None = None,
+    middle_knots: Sequence[Sequence[float]] | None = None,
+) -> StatedProblem:
+    """State the problem that `blend` solves; arguments and errors are those of `blend`."""
+    pair: tuple[Continuity, Continuity] = (continuity, continuity) if isinstance(continuity, str) else continuity
+    if len(pair) != 2:
+        raise OptionError(f"continuity: found {pair!r}, expected one of C0..G2 or a pair of them")
+    if len(box) != 2 or not 0 < box[0] <= box[1] < np.inf:
+        raise OptionError(f"box: found {box!r}, expected (low, high) with 0 < low <= high")
+    options = ProblemOptions(
+        middle_curves, degree_u, _checked_shape(alpha), box, v_scale, u_knots=u_knots, middle_knots=middle_knots
+    )
+    # The bases as the blend sees them: contact at w = 0, one parameter v, coordinates of size 1.
+    sides = make_side(a, pair[0]), make_side(b, pair[1])
+    matched = _matched(a, b, flip, sides[1])
+    sides = matched_sides(*sides, matched)
+    frame = _frame(*sides)
+    problem = make_problem(sides[0].moved(*frame), sides[1].moved(*frame), options)
+    return StatedProblem(problem, sides, frame, matched)
+
+
 @dataclass(frozen=True)
 class _Found:
     """Shape parameters, and how they were found."""
@@ -170,15 +229,6 @@ class _Found:
     kkt_residual: float | None = None
     certificate: Certificate | None = None
     proven_gap: float | None = None
-
-
-def _check_choices(continuity: tuple[Continuity, Continuity], method: Method, box: tuple[float, float]) -> None:
-    if len(continuity) != 2:
-        raise OptionError(f"continuity: found {continuity!r}, expected one of C0..G2 or a pair of them")
-    if method not in get_args(Method):
-        raise OptionError(f"method: found {method!r}, expected one of {', '.join(get_args(Method))}")
-    if len(box) != 2 or not 0 < box[0] <= box[1] < np.inf:
-        raise OptionError(f"box: found {box!r}, expected (low, high) with 0 < low <= high")
 
 
 def _checked_shape(alpha: Shape | tuple[Shape, Shape]) -> tuple[Shape, Shape]:
