@@ -11,8 +11,7 @@ import numpy as np
 from solver.arrays import FloatArray
 from solver.errors import FileError, InputError
 from solver.knots import MERGE_TOLERANCE
-from solver.operations import from_homogeneous
-from solver.refinement import clamp_knots
+from solver.operations import clamped_surface
 from solver.surfaces import BSplineSurface, SemiStructuredSurface, Surface
 
 # Weights that agree to this relative tolerance (rounding of a product and a quotient) are one weight.
@@ -185,16 +184,9 @@ def surface_from_net(
         Values that make no surface.
     """
     knots_u, knots_v = _snapped_ends(knots_u, degree_u), _snapped_ends(knots_v, degree_v)
-    clamped_u, clamped_v = _is_clamped(knots_u, degree_u), _is_clamped(knots_v, degree_v)
-    if clamped_u and clamped_v:
+    if _is_clamped(knots_u, degree_u) and _is_clamped(knots_v, degree_v):
         return BSplineSurface(degree_u, degree_v, knots_u, knots_v, points, weights)
-    net = points if weights is None else np.concatenate([points * weights[..., None], weights[..., None]], axis=2)
-    if not clamped_u:
-        knots_u, net = clamp_knots(degree_u, knots_u, net)
-    if not clamped_v:
-        knots_v, net = clamp_knots(degree_v, knots_v, net.transpose(1, 0, 2))
-        net = net.transpose(1, 0, 2)
-    return from_homogeneous(degree_u, degree_v, knots_u, knots_v, net)
+    return clamped_surface(degree_u, degree_v, knots_u, knots_v, points, weights)
 
 
 def _snapped_ends(knots: FloatArray, degree: int) -> FloatArray:

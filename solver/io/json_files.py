@@ -67,6 +67,10 @@ class _OptionsRecord(_Record):
     flip: _Text = "auto"
     alpha: _Shape | tuple[_Shape, _Shape] = "free"
     box: tuple[_Number, _Number] = (0.125, 8.0)
+    v_scale: _Text = "paper"
+    u_knots: list[_Number] | None = None
+    middle_knots: list[list[_Number]] | None = None
+    strict: Annotated[bool, Strict()] = False
 
 
 class _ProblemRecord(_Record):

@@ -1,3 +1,4 @@
+import inspect
 import json
 import math
 
@@ -7,9 +8,10 @@ from helpers.splines import surfaces
 from hypothesis import given
 from hypothesis import strategies as st
 
-from solver import BSplineCurve, BSplineSurface, EdgeError, FileError, InputError, SemiStructuredSurface
+from solver import BSplineCurve, BSplineSurface, EdgeError, FileError, InputError, SemiStructuredSurface, blend
 from solver.io.json_files import (
     StoredProblem,
+    _OptionsRecord,
     read_json_surface,
     read_problem,
     surface_from_record,
@@ -59,7 +61,7 @@ def test_record_and_text_lose_no_bit(surface):
     assert same(surface_from_record(json.loads(text)), surface)
 
 
-@given(st.lists(st.floats(allow_nan=False, allow_infinity=False), min_size=12, max_size=12))
+@given(st.lists(st.floats(-1e75, 1e75), min_size=12, max_size=12))
 def test_every_double_survives(values):
     surface = BSplineSurface(1, 1, K, K, np.reshape(values, (2, 2, 3)))
     assert same(surface_from_record(json.loads(to_text(surface_record(surface)))), surface)
@@ -230,6 +232,17 @@ def test_bad_problem_is_refused(tmp_path, change, words):
         read_problem(path)
     for word in words:
         assert word in str(caught.value)
+
+
+def test_a_problem_can_hold_every_option_of_blend():
+    keywords = {name for name, p in inspect.signature(blend).parameters.items() if p.kind is p.KEYWORD_ONLY}
+    assert set(_OptionsRecord.model_fields) == keywords
+
+
+def test_options_come_back_as_they_were(tmp_path):
+    options = {"alpha": ("natural", 0.5), "box": (0.5, 2.0), "strict": True, "u_knots": [0.25, 0.5], "v_scale": "unit"}
+    write_problem(tmp_path / "p.json", StoredProblem(SQUARE, "u1", SQUARE, "v0", options))
+    assert read_problem(tmp_path / "p.json").options == options
 
 
 def test_bad_problem_is_not_written(tmp_path):
