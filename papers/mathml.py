@@ -9,7 +9,7 @@ from sympy.printing.latex import LatexPrinter
 from sympy.printing.mathml import MathMLPresentationPrinter
 
 # A letter with its own index, a number, or an operator, inside an index such as k_r+1 or m-k+1.
-_TOKEN = re.compile(r"([A-Za-z]+)(?:_([A-Za-z0-9]+))?|(\d+)|([-+,])")
+_TOKEN = re.compile(r"([A-Za-z]+)(?:_([A-Za-z0-9]+))?|(\d+)|([-+,'])")
 _GREEK = {"alpha": "α", "beta": "β", "delta": "δ", "kappa": "κ"}
 
 
@@ -21,8 +21,30 @@ class _PositiveFirst:
         return sorted(terms, key=lambda term: bool(term.could_extract_minus_sign()))
 
 
+def _basis_parts(e: Any) -> tuple[list[Any], list[Any], list[Any]] | None:
+    """Return lower indices, upper indices and arguments of a basis function; None for other functions.
+
+    B(i, n, x) is a Bernstein polynomial, B(i, k, x, knots) a B-spline, a fifth argument the order of a derivative.
+    """
+    arguments = list(e.args)
+    if e.func.__name__ != "B" or len(arguments) < 3:
+        return None
+    if len(arguments) == 3:
+        return arguments[:1], arguments[1:2], arguments[2:]
+    derivative = [f"({arguments[4]})"] if len(arguments) > 4 and arguments[4] != 0 else []
+    return arguments[:2], derivative, arguments[2:4]
+
+
 class _Latex(_PositiveFirst, LatexPrinter):  # type: ignore[misc]
-    pass
+    """SymPy's LaTeX printer, but for basis functions."""
+
+    def _print_Function(self, expr: Any, exp: Any = None) -> str:  # noqa: N802
+        parts = _basis_parts(expr)
+        if parts is None:
+            return str(super()._print_Function(expr, exp))
+        lower, upper, arguments = ([x if isinstance(x, str) else self._print(x) for x in part] for part in parts)
+        raised = f"^{{{','.join(upper)}}}" if upper else ""
+        return f"B_{{{','.join(lower)}}}{raised}({'; '.join(arguments)})"
 
 
 class _Printer(_PositiveFirst, MathMLPresentationPrinter):  # type: ignore[misc]  # SymPy is untyped
@@ -35,13 +57,18 @@ class _Printer(_PositiveFirst, MathMLPresentationPrinter):  # type: ignore[misc]
         return self._with_index(self._leaf("mi", str(e.base)), ",".join(map(str, e.indices)))
 
     def _print_AppliedUndef(self, e: Any) -> Any:  # noqa: N802
-        """Set a basis function B(i, k, u, U) as B_{i,k}(u; U), other functions as f(x)."""
-        arguments = list(e.args)
-        head = self._leaf("mi", e.func.__name__)
-        if e.func.__name__ in ("B", "N") and len(arguments) > 2:
-            head = self._with_index(head, ",".join(map(str, arguments[:2])))
-            arguments = arguments[2:]
+        """Set a basis function with its indices, other functions as f(x; y)."""
         row = self.dom.createElement("mrow")
+        parts = _basis_parts(e)
+        head, arguments = self._leaf("mi", e.func.__name__), list(e.args)
+        if parts is not None:
+            lower, upper, arguments = parts
+            head = self._with_index(head, ",".join(map(str, lower)))
+            if upper:
+                raised = self.dom.createElement("msubsup")
+                for child in (*head.childNodes, self._list(upper)):
+                    raised.appendChild(child.cloneNode(True))
+                head = raised
         row.appendChild(head)
         row.appendChild(self._leaf("mo", "("))
         for n, argument in enumerate(arguments):
@@ -49,6 +76,12 @@ class _Printer(_PositiveFirst, MathMLPresentationPrinter):  # type: ignore[misc]
                 row.appendChild(self._leaf("mo", ";"))
             row.appendChild(self._print(argument))
         row.appendChild(self._leaf("mo", ")"))
+        return row
+
+    def _list(self, parts: list[Any]) -> Any:
+        row = self.dom.createElement("mrow")
+        for part in parts:
+            row.appendChild(self._leaf("mi", part) if isinstance(part, str) else self._print(part))
         return row
 
     _print_Function = _print_AppliedUndef  # noqa: N815

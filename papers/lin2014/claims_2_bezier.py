@@ -1,0 +1,116 @@
+"""Section 2, the Bezier example: (4) to (6), Q_j^s, blossoms, counts, Figs. 2 and 3."""
+
+from __future__ import annotations
+
+from papers.ledger import Case, Claim, Correction, Counterexample, Formula, Part, Reading, Strength
+from papers.lin2014 import bezier_checks as bezier
+from papers.lin2014 import printed as pr
+from papers.lin2014.bezier_checks import check
+from papers.lin2014.consequences_2 import missing_first_row, top_last_row
+from papers.lin2014.property_checks import question
+from papers.lin2014.records import ambiguous, fails, holds, not_checkable, part
+
+_WHERE = "Section 2, Bezier example"
+_TRIANGLE = "de Casteljau's triangle, for all control points, degrees 1 to 5 at rational parameters"
+_EXPANSION = "rows found by substituting v(u) and changing the basis, degrees up to (3, 3, 2), all P_ij and v_i"
+_LEMMAS = "the identities behind the closed form, for every m, n, k"
+_COUNTING = "degrees of the rows found by substitution"
+
+TRUE_TOP_LAST = Formula(pr.Eq(pr.F(pr.n, 0), pr.m + 1), (pr.m, pr.n))
+_LEMMA_PART = part(check(bezier.lemma_cases, _LEMMAS, proof=True, strength=Strength.SYMBOLIC_ORDER))
+
+
+def _top_last_counterexample() -> Counterexample:
+    m, n, k = min(bezier.DEGREES, key=sum)
+    case = next(c for c in bezier.last_row_cases(pr.COUNT_TOP_LAST) if not c.true)
+    values = (("m", str(m)), ("n", str(n)), ("k", str(k)))
+    return Counterexample(values, f"{m + 1} control points for Q_0^{n}", f"{m + 1 - int(case.residual)}")
+
+
+def _range_cases():  # type: ignore[no-untyped-def]
+    """Yield each row that (6) uses, and whether the range s = 1 .. n under it defines the row."""
+    for n in (1, 2, 3):
+        for s in range(n + 1):
+            yield Case(f"n = {n}, Q_0^{s}", s in range(1, n + 1))
+            yield Case(f"n = {n}, Q_{s}^{n - s}", n - s in range(1, n + 1))
+
+
+def _full_range_cases():  # type: ignore[no-untyped-def]
+    """Yield the formula at s = 0 with P_ij^0 = P_ij: the row of the patch itself, the row that (6) needs."""
+    yield from bezier.row_formula_cases(0)(ROW_0)
+
+
+ROW_0 = Formula(
+    pr.Eq(pr.Q(pr.j, 0, pr.u), pr.Sum(pr.F(pr.i, pr.j) * pr.B(pr.i, pr.m, pr.u), (pr.i, 0, pr.m))),
+    (pr.j, pr.u, pr.m),
+)
+
+
+def _range_counterexample() -> Counterexample:
+    case = next(c for c in _range_cases() if not c.true)
+    return Counterexample((("row", case.label),), "undefined", "Q_0^0 = sum of P_i0 B_i^m")
+
+
+CLAIMS: tuple[Claim, ...] = (
+    holds("eq-4", _WHERE, "A Bezier patch as a double sum over Bernstein polynomials.",
+          part(check(bezier.patch_cases, _TRIANGLE), pr.EQ_4)),
+    holds("eq-5", _WHERE,
+          "A Bezier function v(t) with control points (i/k, v_i); with v_i in [0, 1] it stays in [0, 1].",
+          part(check(bezier.function_cases, _TRIANGLE), pr.EQ_5),
+          part(check(bezier.function_cases, _TRIANGLE), pr.EQ_5_ABSCISSA),
+          part(check(bezier.range_cases, "signs and sum of Bernstein polynomials of degree 1 to 8"))),
+    holds("eq-6", _WHERE,
+          "The sub-patches below and above v(u) are P_1 = sum of Q_0^s B_s^n and P_2 = sum of Q_s^{n-s} B_s^n.",
+          part(check(bezier.division_cases("bottom"), _EXPANSION), pr.EQ_6_BOTTOM),
+          part(check(bezier.division_cases("top"), _EXPANSION), pr.EQ_6_TOP), _LEMMA_PART,
+          remark="v runs over [0, 1] across each sub-patch: P_1(u, v) = P(u, v v(u)), P_2(u, v) = P(u, v(u) + (1 - "
+          "v(u)) v); the text does not say so. The letters k and l stand for an order elsewhere."),
+    holds("sec-2.q-formula", _WHERE,
+          "Q_j^s has the Bezier points that the formula under (6) gives: products of binomials and blossoms.",
+          *(part(check(bezier.row_formula_cases(depth), "Q_j^s(u) from the blossom at v(u), all P_ij and v_i"), formula)
+            for depth, formula in enumerate(pr.Q_ROWS, start=1)), _LEMMA_PART,
+          remark="Several (i, j_1, .., j_s) share one Bernstein polynomial; the sum over l only groups them."),
+    fails("sec-2.q-range", _WHERE,
+          "The formula for Q_j^s with s = 1, .., n and j = 0, .., n-s defines every row that (6) uses.",
+          part(question(_range_cases, "each row of (6) against the printed range")),
+          correction=Correction("s = 0, .., n with P_ij^0 = P_ij.",
+                                (Part(check(bezier.row_formula_cases(0), "the row of the patch itself"), ROW_0),)),
+          counterexample=_range_counterexample, consequence=missing_first_row,
+          remark="The counts in the text do include Q_0^0 with its m + 1 points."),
+    holds("sec-2.blossom-1", _WHERE, "First step of the blossom recursion.",
+          part(check(bezier.blossom_cases(True), "the symmetric multi-affine form by subsets"), pr.BLOSSOM_1)),
+    holds("sec-2.blossom-2", _WHERE, "Further steps of the blossom recursion, s = 2, .., n.",
+          part(check(bezier.blossom_cases(False), "the symmetric multi-affine form by subsets"), pr.BLOSSOM_2),
+          remark="The order of the arguments does not matter, so that the order of the printed steps does not either."),
+    holds("sec-2.bottom-counts", _WHERE,
+          "The rows of the bottom sub-patch have m+1, m+k+1, .., m+nk+1 control points; there are n+1 of them.",
+          part(check(bezier.count_cases("bottom"), _COUNTING), pr.COUNT_BOTTOM)),
+    holds("sec-2.top-counts", _WHERE,
+          "The rows of the top sub-patch have m+nk+1, m+(n-1)k+1, .., m+1 control points; there are n+1 of them.",
+          part(check(bezier.count_cases("top"), _COUNTING), pr.COUNT_TOP)),
+    fails("sec-2.top-last-row", _WHERE, "The last row of the top sub-patch, with m+1 control points, is Q_0^n.",
+          part(check(bezier.last_row_cases, _COUNTING), pr.COUNT_TOP_LAST),
+          correction=Correction("The last row is Q_n^0, the edge v = 1 of the patch.",
+                                (Part(check(bezier.last_row_cases, _COUNTING), TRUE_TOP_LAST),)),
+          counterexample=_top_last_counterexample, consequence=top_last_row,
+          remark="Indices exchanged, or misread by the scan: with Q_n^0 it is right. Q_0^n is the row on the dividing "
+          "curve, which the same sentence names first, with m+nk+1 points."),
+    ambiguous("sec-2.subpatch-kind", _WHERE, "Therefore both sub-patches are semi-structured patches.",
+              Reading((part(question(lambda: bezier.same_order_cases(None), "orders of the rows")),),
+                      label="surfaces by Definition 1, whose control curves all have one order"),
+              Reading((part(question(lambda: bezier.curve_based_cases(None), _COUNTING)),),
+                      label="skins of curves of any order"),
+              remark="Definition 1 gives all curves one order and lets knots differ; here there are no inner knots and "
+              "the orders differ. Raising all rows to the highest degree would give an ordinary Bezier patch."),
+    not_checkable("fig-2.rows", "Fig. 2", "Numbers of control points in each row, as the figure shows them.",
+                  "the figure is not part of the text that we have; the counts in the text are decided on their own"),
+    holds("fig-3.curves", "Fig. 3", "c1, .., c4 enclose a region inside the unit square.",
+          part(question(lambda: bezier.loop_cases(None), "exact corners and exact roots of all common points"))),
+    holds("fig-3.parameters", "Fig. 3", "The arguments of the Bernstein polynomials run over [0, 1] on the intervals.",
+          part(question(lambda: bezier.parameter_cases(None), "the printed decimals"))),
+    holds("fig-3.pieces", "Fig. 3",
+          "The trimmed patch is made of four semi-structured patches and four ordinary Bezier patches, exactly.",
+          part(question(lambda: bezier.tiling_cases(None), "sum of oriented boundaries, areas")), _LEMMA_PART),
+    holds("fig-3.first-split", "Fig. 3", "The strip between v = 0.4 and v = 0.6 contains c1, which then divides it.",
+          part(question(lambda: bezier.first_split_cases(None), "the printed decimals"))),
+)  # fmt: skip

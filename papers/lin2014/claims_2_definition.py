@@ -1,0 +1,230 @@
+"""Section 2, definition: (1) to (3), knot vectors, Fig. 1, properties, evaluation, conversion, derivatives."""
+
+from __future__ import annotations
+
+from papers.ledger import Case, Check, Claim, Correction, Counterexample, Part, Reading, Strength, Verdict
+from papers.lin2014 import printed as pr
+from papers.lin2014 import property_checks as properties
+from papers.lin2014.consequences_2 import one_function_for_all
+from papers.lin2014.property_checks import proof_check, proved, question
+from papers.lin2014.spline_checks import CURVE_CHECK, SURFACE_CHECK, count_check, knot_count_instances
+
+_WHERE = "Section 2, definition"
+_PROPERTIES = "Section 2, properties"
+_COUNT = "counting knots and basis functions, orders 1 to 6, by running the recurrence on distinct knots"
+
+
+def _figure_1_cases():  # type: ignore[no-untyped-def]
+    counts = pr.FIGURE_1_COUNTS
+    yield Case("seven curves, m = 6", len(counts) == 7)
+    yield Case("the first three agree, as (13) asks", len(set(counts[:3])) == 1)
+    yield Case("the last three agree, as (13) asks", len(set(counts[-3:])) == 1)
+    yield Case("each carries a cubic curve, order 4", min(counts) >= 4)
+
+
+def _wrong_basis_counterexample() -> Counterexample:
+    """Search orders, curves and control points for the smallest at which the family B_{i,l} gives another curve."""
+    for case in CURVE_CHECK.cases(pr.BASIS_OF_CURVE):
+        if not case.true:
+            return Counterexample((("instance", case.label),), f"off by {case.residual}", "0")
+    raise ValueError("the search found no counterexample")
+
+
+CLAIMS = (
+    Claim(
+        "def-1",
+        _WHERE,
+        "A semi-structured surface: v-control curves, each with a knot vector V_i of its own, skinned over U; defined "
+        "for u in [u_s, u_e] and v in [v_s, v_e].",
+        Verdict.HOLDS_IF,
+        (
+            Reading(
+                (Part(question(properties.common_domain_cases, "partition of unity of every curve at rational v")),),
+                condition="the domain [v^i_{l-1}, v^i_{n_i+1}] of every curve contains [v_s, v_e]",
+            ),
+        ),
+        remark="Definition 1 lets V_i be any knot vectors; (13) and the text on contact curves do ask for one domain.",
+    ),
+    Claim(
+        "eq-1",
+        _WHERE,
+        "The double sum over control points and the skin of the v-control curves are one surface.",
+        Verdict.HOLDS,
+        (Reading((Part(SURFACE_CHECK, pr.EQ_1), Part(proof_check("partition of unity")))),),
+    ),
+    Claim(
+        "sec-2.u-knots",
+        _WHERE,
+        "m + 1 basis functions of order k in u need the knots u_0, ..., u_{m+k}.",
+        Verdict.HOLDS,
+        (Reading((Part(count_check(knot_count_instances(pr.m, pr.k), _COUNT), pr.U_LAST),)),),
+    ),
+    Claim(
+        "sec-2.v-knots",
+        _WHERE,
+        "n_i + 1 basis functions of order l of curve i need the knots v^i_0, ..., v^i_{n_i+l}.",
+        Verdict.HOLDS,
+        (Reading((Part(count_check(knot_count_instances(pr.n_i, pr.ell), _COUNT), pr.V_LAST),)),),
+    ),
+    Claim(
+        "sec-2.basis-index",
+        _WHERE,
+        "The basis of curve i is the family B_{i,l}(v; V_i), j = 0, ..., n_i.",
+        Verdict.FAILS,
+        (Reading((Part(CURVE_CHECK, pr.BASIS_OF_CURVE),)),),
+        Correction("The family is B_{j,l}(v; V_i), as in (1).", (Part(CURVE_CHECK, pr.EQ_2),)),
+        _wrong_basis_counterexample,
+        one_function_for_all,
+        remark="One index misprinted, or misread by the scan: with j for i it is right, as in (1) and (2).",
+    ),
+    Claim(
+        "eq-2",
+        _WHERE,
+        "Each v-control curve is a B-spline curve over its own knots.",
+        Verdict.HOLDS,
+        (Reading((Part(CURVE_CHECK, pr.EQ_2),)),),
+    ),
+    Claim(
+        "eq-3",
+        _WHERE,
+        "The surface (1) is the skin of the curves (2).",
+        Verdict.HOLDS,
+        (Reading((Part(SURFACE_CHECK, pr.EQ_3),)),),
+    ),
+    Claim(
+        "fig-1.counts",
+        "Fig. 1",
+        "Seven v-control curves with 5, 5, 5, 7, 6, 6, 6 control points.",
+        Verdict.HOLDS,
+        (Reading((Part(question(_figure_1_cases, "counts against Definition 1 and (13) for a bicubic surface")),)),),
+        remark="Laid out like (13) with one middle curve. With single inner knots, 1 and 2 of them, the rule of section "
+        "3 gives that curve 5 or 6 points, never 7, which is what the union of the knots gives. The caption does not "
+        "say that the rule was used.",
+    ),
+    Claim(
+        "sec-1.generalisation",
+        "Section 1.1",
+        "The semi-structured surface generalises the classical one: with equal knot vectors it is that.",
+        Verdict.HOLDS,
+        (Reading((Part(question(properties.same_knots_cases, "triangles in either order, all control points")),)),),
+    ),
+    Claim(
+        "sec-2.evaluation",
+        "Section 2, evaluation",
+        "The surface is evaluated by de Boor's algorithm first along v on each curve, then along u.",
+        Verdict.HOLDS,
+        (Reading((Part(SURFACE_CHECK, pr.EQ_1),)),),
+    ),
+    Claim(
+        "sec-2.evaluation-classical",
+        "Section 2, evaluation",
+        "A classical surface may be evaluated in either order.",
+        Verdict.HOLDS,
+        (Reading((Part(question(properties.same_knots_cases, "triangles in either order, all control points")),)),),
+    ),
+    Claim(
+        "sec-2.convex-hull",
+        _PROPERTIES,
+        "The surface lies in the convex hull of its control points.",
+        Verdict.HOLDS,
+        (Reading((Part(proof_check("convex hull", "partition of unity", "non-negative")),)),),
+    ),
+    Claim(
+        "sec-2.affine-invariance",
+        _PROPERTIES,
+        "An affine map of the control points maps the surface.",
+        Verdict.HOLDS,
+        (Reading((Part(proof_check("affine invariance", "partition of unity")),)),),
+    ),
+    Claim(
+        "sec-2.localness",
+        _PROPERTIES,
+        "A control point moves only a part of the surface.",
+        Verdict.HOLDS,
+        (Reading((Part(proof_check("locality")),)),),
+        remark="P_ij acts on [u_i, u_{i+k}] x [v^i_j, v^i_{j+l}].",
+    ),
+    Claim(
+        "sec-2.continuity-control",
+        _PROPERTIES,
+        "The continuity at each knot of a v-control curve can be set independently of the other curves.",
+        Verdict.HOLDS,
+        (
+            Reading(
+                (
+                    Part(proof_check("continuity")),
+                    Part(
+                        question(properties.continuity_control_cases, "order of contact at knots of each multiplicity")
+                    ),
+                    Part(question(properties.independent_control_cases, "jump of each curve, reach of its u-function")),
+                )
+            ),
+        ),
+        remark="So a knot line of one curve ends inside the domain, where the u-function of that curve ends: what "
+        "section 1.1 says of T-splines and semi-regular splines.",
+    ),
+    Claim(
+        "sec-2.transformation",
+        _PROPERTIES,
+        "Knot insertion turns a semi-structured surface exactly into a classical one.",
+        Verdict.HOLDS,
+        (
+            Reading(
+                (
+                    Part(
+                        proved(
+                            properties.conversion_cases,
+                            "each spline space lies in that of the union of knots, by rank",
+                            Strength.RATIONAL,
+                        )
+                    ),
+                )
+            ),
+        ),
+    ),
+    Claim(
+        "sec-2.derivatives-classical",
+        _PROPERTIES,
+        "Partial derivatives of a classical surface are spline surfaces of lower degree.",
+        Verdict.HOLDS,
+        (
+            Reading(
+                (
+                    Part(proof_check("derivative")),
+                    Part(
+                        question(
+                            properties.classical_derivative_cases, "differenced control points against derivatives"
+                        )
+                    ),
+                )
+            ),
+        ),
+        remark="The text points at (1) for the classical surface; (1) is the semi-structured one.",
+    ),
+    Claim(
+        "sec-2.derivatives-hard",
+        _PROPERTIES,
+        "u-derivatives of a semi-structured surface are hard to represent as spline forms.",
+        Verdict.AMBIGUOUS,
+        (
+            Reading(
+                (
+                    Part(
+                        Check(
+                            lambda _: properties.row_difference_cases(),
+                            Strength.RATIONAL,
+                            "whether a difference of two rows lies in the spline space of either, by rank",
+                        )
+                    ),
+                ),
+                label="their rows do not fit on the knot vectors V_i",
+            ),
+            Reading(
+                (Part(question(properties.no_spline_form_cases, "differenced rows over merged knots, exactly")),),
+                label="they have no spline form",
+            ),
+        ),
+        remark="P_u is a semi-structured surface again: row i is (k-1)(P_{i+1}(v) - P_i(v))/(u_{i+k} - u_{i+1}), a "
+        "curve over the merged knots of V_i and V_{i+1} (proved for every order in derivations.properties).",
+    ),
+)

@@ -1,0 +1,208 @@
+"""Deciding what section 2 says of the representation: properties, evaluation, conversion, derivatives."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from fractions import Fraction
+from itertools import pairwise
+
+import sympy as sp
+from sympy.polys.domains import QQ
+from sympy.polys.matrices import DomainMatrix
+
+from derivations.properties import contact_orders, proofs
+from derivations.splines import X, basis_pieces
+from papers.ledger import Case, Check, Formula, Strength
+from papers.lin2014.exact import clamped, de_boor, net_ring, rational_points, spline_basis
+from papers.lin2014.spline_checks import CUBIC, samples
+
+HALF, THIRD = Fraction(1, 2), Fraction(1, 3)
+
+
+def proof_check(*names: str) -> Check:
+    """Return the check that the identities behind some properties are zero, for every degree and knot vector."""
+
+    def cases(_: Formula | None) -> Iterator[Case]:
+        for proof in proofs():
+            if proof.name in names:
+                for name, residual in proof.identities.items():
+                    yield Case(f"{proof.name}: {name}", residual == 0, residual=residual)
+
+    method = f"identities for symbolic degree and knots ({', '.join(names)}; argument in derivations.properties)"
+    return Check(cases, Strength.SYMBOLIC_ORDER, method, proof=True)
+
+
+def question(cases: Callable[[], Iterator[Case]], method: str, strength: Strength = Strength.RATIONAL) -> Check:
+    """Return a check of a question without a formula."""
+    return Check(lambda _: cases(), strength, method)
+
+
+def proved(cases: Callable[[], Iterator[Case]], method: str, strength: Strength = Strength.SYMBOLIC_ORDER) -> Check:
+    """Return a check of a question whose cases prove the answer."""
+    return Check(lambda _: cases(), strength, method, proof=True)
+
+
+def common_domain_cases() -> Iterator[Case]:
+    """Yield control curves over several domains: a surface is defined where the functions of every curve sum to 1."""
+    first = clamped(CUBIC, HALF)
+    for label, second, meets in (
+        ("V_1 over [0, 1]", clamped(CUBIC, THIRD), True),
+        ("V_1 over [-1, 2], which contains [0, 1]", clamped(CUBIC, HALF, start=-1, end=2), True),
+        ("V_1 over [0, 3/4]", clamped(CUBIC, THIRD, end=Fraction(3, 4)), False),
+        ("V_1 over [1/4, 1]", clamped(CUBIC, HALF, start=Fraction(1, 4)), False),
+    ):
+        defined = all(_sums_to_one(vector, v) for vector in (first, second) for v in rational_points(0, 1, 9))
+        yield Case(label, defined, own=meets, meets=meets)
+
+
+def _sums_to_one(vector: Sequence[Fraction], v: Fraction) -> bool:
+    inside = vector[0] <= v <= vector[-1]
+    basis = spline_basis({"V": vector})
+    return inside and sum(basis(i, CUBIC, v, "V") for i in range(len(vector) - CUBIC)) == 1
+
+
+def same_knots_cases() -> Iterator[Case]:
+    """Yield surfaces whose curves all have one knot vector: the classical surface, evaluated in either order."""
+    for k, length in ((2, 3), (3, 3), (4, 4)):
+        across, along = clamped(k, Fraction(2, 5)), clamped(length, THIRD)
+        rows, columns = len(across) - k, len(along) - length
+        net = net_ring(*[columns] * rows)
+        for u, v in zip(rational_points(0, 1, 4), reversed(list(rational_points(0, 1, 4))), strict=True):
+            by_rows = [de_boor(length, along, [net[i, j] for j in range(columns)], v) for i in range(rows)]
+            by_columns = [de_boor(k, across, [net[i, j] for i in range(rows)], u) for j in range(columns)]
+            same = de_boor(k, across, by_rows, u) == de_boor(length, along, by_columns, v)
+            yield Case(f"orders {k}, {length} at {u}, {v}", bool(same), own=k == length == CUBIC)
+
+
+def contained(order: int, inner: Sequence[Fraction], outer: Sequence[Fraction]) -> bool:
+    """Tell whether every spline over one knot vector is one over another, by exact linear algebra.
+
+    Splines of one order over the same domain that agree at more points in every span than a polynomial of that order
+    has coefficients are the same.
+    """
+    spans = sorted(set(inner) | set(outer))
+    points = [a + (b - a) * Fraction(r, order + 1) for a, b in pairwise(spans) for r in range(order + 1)]
+    values = [_collocation(order, vector, points) for vector in (outer, inner)]
+    return bool(values[0].rank() == values[0].hstack(values[1]).rank())
+
+
+def _collocation(order: int, vector: Sequence[Fraction], points: Sequence[Fraction]) -> DomainMatrix:
+    basis = spline_basis({"V": vector})
+    count = len(vector) - order
+    rows = [[QQ(*basis(i, order, x, "V").as_integer_ratio()) for i in range(count)] for x in points]
+    return DomainMatrix(rows, (len(points), count), QQ)
+
+
+def union(order: int, *vectors: Sequence[Fraction]) -> tuple[Fraction, ...]:
+    """Return the smallest knot vector that holds the inner knots of all, each with its largest multiplicity."""
+    inner: list[Fraction] = []
+    for knot in sorted({x for vector in vectors for x in vector[order:-order]}):
+        inner += [knot] * max(list(vector).count(knot) for vector in vectors)
+    return clamped(order, *inner, start=vectors[0][0], end=vectors[0][-1])
+
+
+def conversion_cases() -> Iterator[Case]:
+    """Yield surfaces whose curves all fit exactly on the union of their knots."""
+    for sample in samples():
+        common = union(sample.l, *sample.V)
+        fits = all(contained(sample.l, vector, common) for vector in set(sample.V))
+        own = sample.k == sample.l == CUBIC
+        yield Case(f"orders {sample.k}, {sample.l}, {len(common) - sample.l} points a row after", fits, own=own)
+
+
+def row_difference_cases() -> Iterator[Case]:
+    """Yield pairs of neighbouring rows: their difference lies in the spline space of neither."""
+    for order, a, b in (
+        (3, clamped(3), clamped(3, HALF)),
+        (4, clamped(4, HALF), clamped(4, THIRD)),
+        (4, clamped(4, HALF), clamped(4, THIRD, 2 * THIRD)),
+    ):
+        lost = not (contained(order, a, b) and contained(order, b, a))
+        yield Case(f"order {order}, inner knots {_inner(order, a)} and {_inner(order, b)}", lost, own=order == CUBIC)
+
+
+def _inner(order: int, vector: Sequence[Fraction]) -> str:
+    return "{" + ", ".join(map(str, vector[order:-order])) + "}"
+
+
+def no_spline_form_cases() -> Iterator[Case]:
+    """Yield surfaces, true where the u-derivative is *no* spline surface of order k - 1 over the rows' merged knots.
+
+    With D_i(v) = (k-1)(P_i+1(v) - P_i(v))/(u_i+k - u_i+1) on the union of V_i and V_i+1, the sum of D_i B_i,k-1 is
+    compared with the derivative of the printed sum, differentiated function by function.
+    """
+    for sample in samples():
+        net = net_ring(*sample.sizes)
+        basis = spline_basis({"U": sample.U, "lower": sample.U[1:-1]})
+        u, v = Fraction(2, 7), Fraction(3, 7)
+        rows = [sample.curve(net, i, v) for i in range(sample.m + 1)]
+        k, U = sample.k, sample.U
+        derivative = sum(rows[i] * basis(i, k, u, "U", 1) for i in range(sample.m + 1))
+        spline = sum(
+            (rows[i + 1] - rows[i]) * Fraction(k - 1) / (U[i + k] - U[i + 1]) * basis(i, k - 1, u, "lower")
+            for i in range(sample.m)
+        )
+        merged = all(
+            contained(sample.l, vector, union(sample.l, *sample.V[i : i + 2]))
+            for i in range(sample.m)
+            for vector in sample.V[i : i + 2]
+        )
+        exists = bool(derivative - spline == 0) and merged
+        yield Case(f"orders {k}, {sample.l}: a spline form exists", not exists, own=k == sample.l == CUBIC)
+
+
+def classical_derivative_cases() -> Iterator[Case]:
+    """Yield classical surfaces: both partial derivatives are spline surfaces with one order less."""
+    for k in range(2, 6):
+        knots = clamped(k, Fraction(2, 5), Fraction(3, 5))
+        basis = spline_basis({"U": knots, "lower": knots[1:-1]})
+        row = [net_ring(len(knots) - k)[0, i] for i in range(len(knots) - k)]
+        for u in (Fraction(2, 7), Fraction(4, 7)):
+            derivative = sum(p * basis(i, k, u, "U", 1) for i, p in enumerate(row))
+            spline = sum(
+                (row[i + 1] - row[i]) * Fraction(k - 1) / (knots[i + k] - knots[i + 1]) * basis(i, k - 1, u, "lower")
+                for i in range(len(row) - 1)
+            )
+            yield Case(f"order {k} at {u}", bool(derivative - spline == 0), own=k == CUBIC)
+
+
+def continuity_control_cases() -> Iterator[Case]:
+    """Yield orders and multiplicities: a knot of multiplicity r in one curve leaves it C^(order-1-r) there.
+
+    The other curves, which lack the knot, stay polynomial across it.
+    """
+    for order in range(2, 6):
+        for r in range(1, order):
+            knots = [0] * order + [sp.Rational(1, 2)] * r + [1] * order
+            found = contact_orders(order - 1, knots, sp.Rational(1, 2))
+            least = min(x for x in found if x is not None)
+            yield Case(f"order {order}, multiplicity {r}: C^{least}", least == order - 1 - r, own=order == CUBIC)
+
+
+def independent_control_cases() -> Iterator[Case]:
+    """Yield surfaces: the jump of a v-derivative across a knot of curve i is N_i(u) times that of the curve."""
+    for position in (0, 3, 6):
+        vectors = [clamped(CUBIC)] * 7
+        vectors[position] = clamped(CUBIC, HALF, HALF, HALF)
+        basis = spline_basis({"U": clamped(CUBIC, Fraction(1, 4), HALF, Fraction(3, 4))})
+        felt = [basis(position, CUBIC, u, "U") != 0 for u in rational_points(0, 1, 9)]
+        # The jump of the first derivative of each curve across 1/2, by its pieces on both sides.
+        jumps = [_jump(vector) for vector in vectors]
+        only = all((jump != 0) == (i == position) for i, jump in enumerate(jumps))
+        yield Case(f"a triple knot in curve {position}", only and any(felt) and not all(felt))
+
+
+def _jump(vector: Sequence[Fraction]) -> sp.Expr:
+    """Return the jump of the first derivative of the middle basis function across 1/2."""
+    spans = basis_pieces(CUBIC - 1, [sp.Rational(*x.as_integer_ratio()) for x in vector])
+    half = sp.Rational(1, 2)
+    left = [s for s in spans if s.start < half]
+    right = [s for s in spans if s.end > half]
+    if left[-1] is right[0]:
+        return sp.Integer(0)
+    i = left[-1].first + CUBIC - 1
+    slopes = []
+    for span in (left[-1], right[0]):
+        inside = span.first <= i < span.first + CUBIC
+        slopes.append(span.pieces[i - span.first].diff(X).eval(half) if inside else sp.Integer(0))
+    return slopes[1] - slopes[0]

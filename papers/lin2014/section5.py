@@ -1,0 +1,180 @@
+"""Section 5 of the paper as data: what it prints of each example, and what of it can be used.
+
+The paper prints knot vectors of contact curves, sizes of control nets and a table of results, but no control points.
+The bases in `examples/` are our own (`stand_ins`): they match the description, the printed knots and the printed
+sizes. So energies, times and curvatures cannot be compared digit by digit. What can be compared: sizes, knots, numbers
+of control points of the blends, the continuity that is reached, and in which order methods stand.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Literal
+
+from papers.baselines.interface import BlendTask
+from solver import Base
+from solver.io.json_files import read_problem
+from solver.surfaces import BSplineSurface
+
+FOLDER = Path(__file__).parent / "examples"
+DEGREE = 3
+
+
+@dataclass(frozen=True)
+class Printed:
+    """What the paper prints of one example.
+
+    Attributes
+    ----------
+    figure : int
+    description : str
+        In our own words.
+    sizes : pair of (int, int)
+        Table 1, Model 1 and Model 2: the second number counts control points along the contact.
+    knots : pair of tuples or None
+        Knots of the two contact curves, digit by digit; None where the text has none.
+    continuity : {"C2", "G2"}
+    middle_curves : int
+    iterations : int or None
+        Of fminunc, where the text tells.
+    seconds, energy : float
+        Table 1; the energy is (11) on the paper's own geometry and in its own units.
+    mean_curvature : (float, float)
+        Table 1.
+    """
+
+    figure: int
+    description: str
+    sizes: tuple[tuple[int, int], tuple[int, int]]
+    knots: tuple[tuple[float, ...], tuple[float, ...]] | None
+    continuity: Literal["C2", "G2"]
+    middle_curves: int
+    iterations: int | None
+    seconds: float
+    energy: float
+    mean_curvature: tuple[float, float]
+
+
+@dataclass(frozen=True)
+class Departure:
+    """Something that cannot be used as printed, or is not printed at all: what is used instead, and why."""
+
+    figure: int
+    printed: str
+    used: str
+    why: str
+
+
+_LARGE_ARC = (0, 0, 0, 0, 0.3, 0.7, 1, 1, 1, 1)
+_SMALL_ARC = (0, 0, 0, 0, 0.5, 1, 1, 1, 1)
+
+PRINTED = {
+    p.figure: p
+    for p in (
+        Printed(
+            5, "two planar patches", ((6, 5), (6, 6)),
+            ((0, 0, 0, 0, 1 / 2, 1, 1, 1, 1), (0, 0, 0, 0, 1 / 3, 2 / 3, 1, 1, 1, 1)),
+            "C2", 1, None, 0.4515, 3.09e6, (0.0, 0.0817),
+        ),
+        Printed(
+            6, "a planar patch and a curved one", ((5, 10), (5, 8)),
+            (
+                (0, 0, 0, 0, 0.15, 0.28, 0.48, 0.55, 0.70, 0.86, 1, 1, 1, 1),
+                (0, 0, 0, 0, 0.22, 0.39, 0.61, 0.76, 1, 1, 1, 1),
+            ),
+            "G2", 1, 5, 1.4599, 3.15e6, (0.0, 0.2581),
+        ),
+        Printed(
+            8, "two part cylinders of different radius", ((6, 6), (6, 5)), (_LARGE_ARC, _SMALL_ARC),
+            "C2", 1, None, 0.4520, 2.44e6, (0.0, 0.3822),
+        ),
+        Printed(
+            9, "the part cylinders of Fig. 8 in another posture", ((6, 6), (6, 5)), (_LARGE_ARC, _SMALL_ARC),
+            "C2", 1, None, 0.4331, 3.62e6, (0.0, 0.2834),
+        ),
+        Printed(
+            10, "two complete cylinders", ((10, 10), (8, 8)),
+            (
+                (0, 0, 0, 0.142857, 0.285714, 0.428571, 0.571429, 0.714286, 0.857143, 1, 1, 1, 1),
+                (0, 0, 0, 0, 0.2, 0.4, 0.6, 0.8, 1, 1, 1, 1),
+            ),
+            "G2", 0, 6, 1.6294, 2.99e6, (0.0, 0.1645),
+        ),
+        Printed(
+            11, "a cone and a free-form surface", ((4, 10), (5, 64)), None,
+            "G2", 0, None, 5.5418, 6.78e6, (0.0, 1.0613),
+        ),
+    )
+}  # fmt: skip
+
+# What Fig. 5 (d) to (f) takes for both bases, so that the method with equal knots can be used at all.
+FIGURE_5_COMMON_KNOTS = (0, 0, 0, 0, 1 / 2, 1, 1, 1, 1)
+
+DEPARTURES = (
+    Departure(
+        5, "both bases are given the v-knots [0,0,0,0,1/2,1,1,1,1] for (d) to (f)",
+        "our second base is a cubic in v over all of [0, 1], so it has that form exactly",
+        "a base with a free knot at 1/3 or 2/3 is not a spline over the common vector; it would be changed",
+    ),
+    Departure(
+        10, "first contact curve: 13 knots, three zeros in front",
+        "four zeros in front, 14 knots",
+        "a clamped cubic with the 10 control points of Table 1 has 14 knots and four equal ones at each end; every "
+        "other vector in the paper is printed that way",
+    ),
+    Departure(
+        10, "inner knots 0.142857, 0.285714, ...",
+        "the six printed digits, not i/7",
+        "the vector is used as printed; the spans then differ by 1e-6",
+    ),
+    Departure(
+        11, "no knots; 10 and 64 control points along the contact",
+        "our own non-uniform vectors with 10 and 64 control points",
+        "the text gives numbers only; they agree with Table 1, whose second number counts along the contact",
+    ),
+    Departure(
+        11, "a conical surface", "part of a cone, open along v",
+        "the text does not tell whether the cone is complete",
+    ),
+)  # fmt: skip
+"""Departures that concern one figure. For all of them: control points, and knots across the contact, are not printed;
+all of them are ours."""
+
+FIGURES = tuple(PRINTED)
+
+
+def usable_knots(figure: int) -> tuple[tuple[float, ...], tuple[float, ...]] | None:
+    """Return the clamped knots of both contact curves: as printed, with the missing zero of Fig. 10."""
+    printed = PRINTED[figure].knots
+    if printed is None or figure != 10:
+        return printed
+    first, second = printed
+    return (0, *first), second
+
+
+def example_path(figure: int) -> Path:
+    """Return the file of an example: a `blend_problem`."""
+    return FOLDER / f"figure-{figure}.json"
+
+
+def example(figure: int) -> BlendTask:
+    """Return the example of Fig. 5, 6, 8, 9, 10 or 11; Fig. 7 has the pair of Fig. 6.
+
+    Examples
+    --------
+    >>> task = example(10)
+    >>> task.name, task.continuity, task.middle_curves, task.closed
+    ('figure-10', 'G2', 0, True)
+    """
+    problem = read_problem(example_path(figure))
+    if not (isinstance(problem.a, BSplineSurface) and isinstance(problem.b, BSplineSurface)):
+        raise TypeError(f"{example_path(figure).name}: expected two B-spline surfaces")
+    return BlendTask(
+        name=f"figure-{figure}",
+        title=f"Fig. {figure}: {PRINTED[figure].description}",
+        a=Base(problem.a, problem.edge_a),  # type: ignore[arg-type]  # checked when the problem was read
+        b=Base(problem.b, problem.edge_b),  # type: ignore[arg-type]
+        continuity=PRINTED[figure].continuity,
+        middle_curves=PRINTED[figure].middle_curves,
+    )

@@ -1,0 +1,229 @@
+"""Deciding definitions and counts of sections 2 and 3: printed sums against de Boor's triangle, counts by counting.
+
+The triangle knows no basis functions, so that it judges sums over them; basis functions come from Cox-de Boor.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import cache
+from typing import Any
+
+from derivations.properties import basis_table
+from papers.ledger import Case, Check, Formula, Strength
+from papers.lin2014 import printed as pr
+from papers.lin2014.exact import (
+    Meaning,
+    UndefinedError,
+    clamped,
+    de_boor,
+    difference_case,
+    indexed,
+    net_ring,
+    rational_points,
+    spline_basis,
+)
+
+CUBIC = 4
+THIRD = Fraction(1, 3)
+
+
+@dataclass(frozen=True)
+class Sample:
+    """A small semi-structured surface with generators for control points: orders k, l, knots U and V_i."""
+
+    k: int
+    l: int  # noqa: E741  # the paper's letter
+    U: tuple[Fraction, ...]
+    V: tuple[tuple[Fraction, ...], ...]
+
+    @property
+    def m(self) -> int:
+        """Index of the last v-control curve."""
+        return len(self.V) - 1
+
+    @property
+    def sizes(self) -> tuple[int, ...]:
+        """Number of control points of each curve."""
+        return tuple(len(v) - self.l for v in self.V)
+
+    def curve(self, net: dict[tuple[int, int], Any], i: int, v: Fraction) -> Any:
+        """Return P_i(v) by the triangle."""
+        return de_boor(self.l, self.V[i], [net[i, j] for j in range(self.sizes[i])], v)
+
+    def value(self, net: dict[tuple[int, int], Any], u: Fraction, v: Fraction) -> Any:
+        """Return P(u, v): first along v, then along u."""
+        return de_boor(self.k, self.U, [self.curve(net, i, v) for i in range(self.m + 1)], u)
+
+
+def samples() -> Iterator[Sample]:
+    """Yield surfaces of several orders; the last one is bicubic, laid out like (13) with one middle curve."""
+    for k, order in ((2, 2), (2, 3), (3, 2), (3, 4), (4, 3)):
+        U = clamped(k, Fraction(2, 5))
+        vectors = (clamped(order), clamped(order, THIRD), clamped(order, Fraction(1, 4), Fraction(3, 5)))
+        yield Sample(k, order, U, tuple(vectors[i % 3] for i in range(len(U) - k)))
+    a, b, middle = clamped(4, Fraction(1, 2)), clamped(4, THIRD, 2 * THIRD), clamped(4, Fraction(5, 12))
+    yield Sample(4, 4, clamped(4, *(Fraction(n, 4) for n in (1, 2, 3))), (a, a, a, middle, b, b, b))
+
+
+@cache
+def _all_samples() -> tuple[tuple[Sample, dict[tuple[int, int], Any]], ...]:
+    return tuple((sample, net_ring(*sample.sizes)) for sample in samples())
+
+
+def surface_cases(formula: Formula | None) -> Iterator[Case]:
+    """Decide (1), (3) or (13): the printed sum against the triangle, for all control points at once."""
+    for sample, net in _all_samples():
+        knots: dict[Any, Any] = {"U": sample.U} | dict(enumerate(sample.V))
+        for u, v in zip(rational_points(0, 1, 4), reversed(list(rational_points(0, 1, 4))), strict=True):
+            meaning = Meaning(
+                {pr.u: u, pr.v: v, pr.U: "U", pr.k: sample.k, pr.ell: sample.l, pr.m: sample.m},
+                {
+                    "P": indexed("P", net),
+                    "B": spline_basis(knots),
+                    "V": indexed("V", {(i,): i for i in range(sample.m + 1)}),
+                    "n": lambda i, s=sample: s.sizes[int(i)] - 1,
+                    "C": lambda i, v, s=sample, net=net: s.curve(net, _within(i, s.m), v),
+                    "Y": lambda u, v, s=sample, net=net: s.value(net, u, v),
+                },
+            )
+            label = f"orders {sample.k}, {sample.l} at u = {u}, v = {v}"
+            yield difference_case(_formula(formula), label, meaning, own=sample.k == sample.l == CUBIC)
+
+
+def curve_cases(formula: Formula | None) -> Iterator[Case]:
+    """Decide (2), a v-control curve, against the triangle."""
+    for sample, net in _all_samples():
+        for i, v in zip((0, sample.m, 1), rational_points(0, 1, 3), strict=True):
+            meaning = Meaning(
+                {pr.v: v, pr.i: i, pr.ell: sample.l},
+                {
+                    "P": indexed("P", net),
+                    "B": spline_basis(dict(enumerate(sample.V))),
+                    "V": indexed("V", {(i,): i for i in range(sample.m + 1)}),
+                    "n": lambda i, s=sample: s.sizes[_within(i, s.m)] - 1,
+                    "C": lambda i, v, s=sample, net=net: s.curve(net, int(i), v),
+                },
+            )
+            label = f"curve {i}, order {sample.l}, {sample.sizes[i]} points, at v = {v}"
+            yield difference_case(_formula(formula), label, meaning, own=sample.l == CUBIC)
+
+
+def base_cases(letter: str) -> Callable[[Formula | None], Iterator[Case]]:
+    """Return the check of (7) for letter R, of (9) for letter S: a tensor product against the triangle."""
+    x, knots_x, knots_v, order, last_x, last_v = (
+        (pr.w, pr.W, pr.V_r, pr.k_r, pr.m_r, pr.n_r) if letter == "R" else (pr.t, pr.T, pr.V_s, pr.k_s, pr.m_s, pr.n_s)
+    )
+
+    def cases(formula: Formula | None) -> Iterator[Case]:
+        for k, length in ((2, 3), (3, 2), (4, 4)):
+            across = clamped(k, THIRD, start=-1, end=2)
+            along = clamped(length, Fraction(1, 4), Fraction(3, 5))
+            rows, columns = len(across) - k, len(along) - length
+            net = net_ring(*[columns] * rows, letter=letter)
+            for at, v in zip(rational_points(-1, 2, 3), (Fraction(2, 7), Fraction(0), Fraction(4, 5)), strict=True):
+                value = _tensor(net, (k, across), (length, along), at, v)
+                meaning = Meaning(
+                    {
+                        **{x: at, pr.v: v, knots_x: "across", knots_v: "along"},
+                        **{order: k, pr.ell: length, last_x: rows - 1, last_v: columns - 1},
+                    },
+                    {
+                        letter: indexed(letter, net),
+                        "B": spline_basis({"across": across, "along": along}),
+                        "Y": lambda *_, value=value: value,
+                    },
+                )
+                yield difference_case(_formula(formula), f"orders {k}, {length} at {at}, {v}", meaning)
+
+    return cases
+
+
+def _tensor(net: dict[tuple[int, int], Any], across: Any, along: Any, x: Fraction, v: Fraction) -> Any:
+    (k, knots), (length, knots_v) = across, along
+    rows = max(i for i, _ in net) + 1
+    columns = max(j for _, j in net) + 1
+    curves = [de_boor(length, knots_v, [net[i, j] for j in range(columns)], v) for i in range(rows)]
+    return de_boor(k, knots, curves, x)
+
+
+def _within(i: Any, m: int) -> int:
+    if not 0 <= i <= m:
+        raise UndefinedError(f"curve {i} of 0..{m}")
+    return int(i)
+
+
+def _formula(formula: Formula | None) -> Formula:
+    if formula is None:
+        raise ValueError("formula: found None, expected a relation")
+    return formula
+
+
+def counted(instances: Callable[[], Iterable[tuple[str, dict[Any, Any], bool]]]) -> Callable[..., Iterator[Case]]:
+    """Return a check of a relation between counts: each instance gives a label, the counted letters, and own."""
+
+    def cases(formula: Formula | None) -> Iterator[Case]:
+        for label, values, own in instances():
+            functions = {str(name): value for name, value in values.items() if callable(value)}
+            numbers = {letter: value for letter, value in values.items() if not callable(value)}
+            yield difference_case(_formula(formula), label, Meaning(numbers, functions), own=own)
+
+    return cases
+
+
+def knot_count_instances(count: Any, order: Any) -> Callable[[], Iterator[tuple[str, dict[Any, Any], bool]]]:
+    """Count: how many knots carry `count` + 1 basis functions of an order; the last index is one less."""
+
+    def instances() -> Iterator[tuple[str, dict[Any, Any], bool]]:
+        for k in range(1, 7):
+            for m in range(k - 1, k + 4):
+                if m >= 1:
+                    length = next(x for x in range(1, 40) if functions_on(x, k) == m + 1)
+                    yield f"order {k}, {m + 1} functions", {pr.last: length - 1, count: m, order: k}, k == CUBIC
+
+    return instances
+
+
+@cache
+def functions_on(n_knots: int, order: int) -> int:
+    """Return how many basis functions of an order live on n distinct knots, by running Cox-de Boor."""
+    table = basis_table(order - 1, list(range(n_knots))) if n_knots >= 2 * order else {}
+    return len(next(iter(table.values()))) if table else max(n_knots - order, 0)
+
+
+def domain_instances(count: Any, order: Any) -> Callable[[], Iterator[tuple[str, dict[Any, Any], bool]]]:
+    """Count: the indices of the first and the last knot of the domain, where the basis functions sum to 1."""
+
+    def instances() -> Iterator[tuple[str, dict[Any, Any], bool]]:
+        for k in range(2, 6):
+            for m in range(k - 1, k + 3):
+                spans = sorted(basis_table(k - 1, list(range(m + k + 1))))
+                values = {pr.last: spans[0], pr.first: spans[-1] + 1, count: m, order: k}
+                yield f"order {k}, {m + 1} functions", values, k == CUBIC
+
+    return instances
+
+
+def inner_instances() -> Iterator[tuple[str, dict[Any, Any], bool]]:
+    """Count: the indices of the first and the last knot strictly inside the domain of a clamped vector."""
+    for order in range(2, 6):
+        for n in range(order, order + 4):
+            knots = clamped(order, *(Fraction(r, 10) for r in range(1, n - order + 2)))
+            inside = [index for index, knot in enumerate(knots) if 0 < knot < 1]
+            values = {pr.first: inside[0], pr.last: inside[-1], pr.ell: order, pr.n_r: n}
+            yield f"order {order}, {n + 1} points", values, order == CUBIC
+
+
+def count_check(instances: Callable[[], Iterable[tuple[str, dict[Any, Any], bool]]], method: str) -> Check:
+    """Return a check of a relation between counts."""
+    return Check(counted(instances), Strength.RATIONAL, method)
+
+
+SUM_METHOD = (
+    "the printed sum over Cox-de Boor functions against de Boor's triangle, an identity in all control points, at "
+    "rational parameters and knots of orders 2 to 4"
+)
+SURFACE_CHECK = Check(surface_cases, Strength.RATIONAL, SUM_METHOD)
+CURVE_CHECK = Check(curve_cases, Strength.RATIONAL, SUM_METHOD)
