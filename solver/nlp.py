@@ -8,7 +8,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from solver.arrays import FloatArray
+from solver.arrays import FloatArray, SparseMatrix
 from solver.closing import end_conditions
 from solver.errors import ComputationError
 from solver.generated import contact_casadi
@@ -32,6 +32,8 @@ class ConstrainedProblem:
         Thin-plate energy over `f_scale`.
     g : MX
         Rows of the blend minus rows that the contact prescribes.
+    hessian : Function
+        Upper triangle of the Hessian of lam_f f + lam_g'g, of (x, (), lam_f, lam_g).
     start, lower, upper : ndarray
     f_scale : float
     parameters : tuple of str
@@ -41,6 +43,7 @@ class ConstrainedProblem:
     x: Any
     f: Any
     g: Any
+    hessian: Any
     start: FloatArray
     lower: FloatArray
     upper: FloatArray
@@ -75,25 +78,17 @@ def constrained_problem(problem: BlendProblem) -> ConstrainedProblem:
     free = [name for name, is_free in zip(("alpha", "beta"), problem.free, strict=True) if is_free]
     x = ca.MX.sym("x", 3 * n + len(free))
     p = ca.reshape(x[: 3 * n], n, 3)
-    parameter = {name: x[3 * n + k] for k, name in enumerate(free)}
 
     first = problem.control_points(*problem.start)
-    matrix = problem.form.matrix(range(len(problem.form.rows)))
-    energy = ca.DM(matrix.tocsc())
+    matrix = problem.form.matrix(range(len(problem.form.rows))).tocsc()
+    energy = _casadi_matrix(matrix)
     magnitude = float(np.sum(np.abs(first) * (abs(matrix) @ np.abs(first))))
     # Two bases that continue each other have energy 0 at the start: then the scale must stay clear of rounding.
     f_scale = max(float(np.sum(first * (matrix @ first))), 1e-4 * magnitude)
-    f = ca.dot(p, ca.mtimes(energy, p)) / f_scale
 
-    g = []
-    for name, (side, rows, spans), natural, fixed in zip(
-        ("alpha", "beta"), problem.contacts, problem.natural, problem.start, strict=True
-    ):
-        a = parameter[name] ** 2 * natural if name in parameter else fixed
-        for row, prescribed in zip(rows, contact_rows(side, a, problem.form.u.degree, spans), strict=False):
-            g.append(ca.vec(p[problem.form.offsets[row] : problem.form.offsets[row + 1], :] - prescribed))
-
-    g += [ca.vec(seam) for seam in _seam_conditions(problem, p)]
+    owned, prescribed = _prescribed(problem, p)
+    seams = [ca.vec(seam) for seam in _seam_conditions(problem, p)]
+    g = ca.vertcat(owned - prescribed(x[3 * n :]), *seams)
 
     # alpha is measured in units of its natural size, so that the solver does not care about parameter speeds.
     box = [
@@ -104,13 +99,50 @@ def constrained_problem(problem: BlendProblem) -> ConstrainedProblem:
     infinite = np.full(3 * n, np.inf)
     return ConstrainedProblem(
         x=x,
-        f=f,
-        g=ca.vertcat(*g),
+        f=ca.dot(p, ca.mtimes(energy, p)) / f_scale,
+        g=g,
+        hessian=_hessian(energy / f_scale, prescribed, g.shape[0]),
         start=np.concatenate([first.T.ravel(), *([min(max(1.0, low), high)] for low, high in box)]),
         lower=np.concatenate([-infinite, *([low] for low, _ in box)]),
         upper=np.concatenate([infinite, *([high] for _, high in box)]),
         f_scale=f_scale,
         parameters=tuple(free),
+    )
+
+
+def _prescribed(problem: BlendProblem, p: Any) -> tuple[Any, ca.Function]:
+    """Return the rows of p that contact prescribes, and what it prescribes as a function of the shape parameters."""
+    shape = ca.MX.sym("shape", sum(problem.free))
+    parameters = iter(ca.vertsplit(shape))
+    offsets = problem.form.offsets
+    owned, rows = [], []
+    for (side, order, spans), natural, is_free, fixed in zip(
+        problem.contacts, problem.natural, problem.free, problem.start, strict=True
+    ):
+        a = next(parameters) ** 2 * natural if is_free else fixed
+        for i, row in zip(order, contact_rows(side, a, problem.form.u.degree, spans), strict=False):
+            owned.append(ca.vec(p[offsets[i] : offsets[i + 1], :]))
+            rows.append(ca.vec(row))
+    return ca.vertcat(*owned), ca.Function("prescribed", [shape], [ca.vertcat(*rows)])
+
+
+def _hessian(energy: ca.DM, prescribed: ca.Function, n_conditions: int) -> ca.Function:
+    """Return the Hessian of the Lagrangian: constant in the control points, which differentiation would not notice."""
+    size, n_shape = 3 * energy.shape[0], prescribed.size1_in(0)
+    x, lam_f, lam_g = ca.MX.sym("x", size + n_shape), ca.MX.sym("lam_f"), ca.MX.sym("lam_g", n_conditions)
+    blocks = [lam_f * ca.triu(energy + energy.T)] * 3
+    if n_shape:
+        shape, weights = ca.MX.sym("shape", n_shape), ca.MX.sym("weights", prescribed.size1_out(0))
+        bend = ca.triu(ca.hessian(-ca.dot(weights, prescribed(shape)), shape)[0])
+        blocks.append(ca.Function("bend", [shape, weights], [bend])(x[size:], lam_g[: weights.shape[0]]))
+    names = ["x", "p", "lam_f", "lam_g"], ["triu_hess_gamma_x_x"]
+    return ca.Function("hessian", [x, ca.MX.sym("p", 0, 0), lam_f, lam_g], [ca.diagcat(*blocks)], *names)
+
+
+def _casadi_matrix(matrix: SparseMatrix) -> ca.DM:
+    """Return a CSC matrix for CasADi."""
+    return ca.DM(
+        ca.Sparsity(matrix.shape[0], matrix.shape[1], matrix.indptr.tolist(), matrix.indices.tolist()), matrix.data
     )
 
 
@@ -152,7 +184,16 @@ def solve_constrained(problem: BlendProblem) -> ConstrainedSolution:
     nlp = constrained_problem(problem)
     options: Any = {
         "print_time": False,
-        "ipopt": {"print_level": 0, "sb": "yes", "tol": 1e-11, "constr_viol_tol": 1e-11, "max_iter": 200},
+        "hess_lag": nlp.hessian,
+        "ipopt": {
+            "print_level": 0,
+            "sb": "yes",
+            "tol": 1e-11,
+            "constr_viol_tol": 1e-11,
+            "max_iter": 200,
+            # Approximate minimum degree: systems are small, and finding a better order costs more than it saves.
+            "mumps_pivot_order": 0,
+        },
     }
     solver = ca.nlpsol("blend", "ipopt", {"x": nlp.x, "f": nlp.f, "g": nlp.g}, options)
     result = solver(x0=nlp.start, lbx=nlp.lower, ubx=nlp.upper, lbg=0, ubg=0)

@@ -76,8 +76,7 @@ def compared():
     x = np.concatenate([points.T.ravel(), shape / unit])
     symbol = ca.MX.sym("l", len(multipliers))
     lagrange = nlp.f * nlp.f_scale + ca.dot(symbol, nlp.g)
-    hessian, gradient = ca.hessian(lagrange, nlp.x)
-    function = ca.Function("L", [nlp.x, symbol], [lagrange, gradient, hessian])
+    function = ca.Function("L", [nlp.x, symbol], [lagrange, ca.gradient(lagrange, nlp.x)])
 
     # Theirs: x, y, z of each point in turn; constraints likewise. Rows of ours are blocks of x, y, z.
     sizes = [problem.form.rows[i].size for i in (0, 1, 2, -1, -2, -3)]
@@ -91,6 +90,8 @@ def compared():
     expected_gradient = np.array(exact_gradient, dtype=float)[to_ours] * scale
     expected_hessian = np.array(exact_hessian, dtype=float)[np.ix_(to_ours, to_ours)] * np.outer(scale, scale)
     found = [np.asarray(part) for part in function(x, multipliers)]
+    upper = np.asarray(nlp.hessian(x, [], nlp.f_scale, multipliers))
+    found.append(upper + np.triu(upper, 1).T)
     return found, (float(value), expected_gradient, expected_hessian)
 
 
@@ -109,6 +110,18 @@ def test_hessian_agrees_with_sympy(compared):
     np.testing.assert_allclose(found[2], expected[2], rtol=0, atol=1e-12 * np.abs(expected[2]).max())
     # The curvature in alpha and beta is there, so that this is no test of the quadratic part alone.
     assert np.abs(expected[2][-2:, -2:]).max() > 1
+
+
+def test_hessian_is_that_of_the_lagrangian():
+    # By CasADi's own differentiation of the whole expression, with a middle curve.
+    nlp = constrained_problem(small_problem(1))
+    rng = np.random.default_rng(3)
+    weight, symbol = ca.MX.sym("w"), ca.MX.sym("l", nlp.g.shape[0])
+    plain = ca.hessian(weight * nlp.f + ca.dot(symbol, nlp.g), nlp.x)[0]
+    x, multipliers = rng.standard_normal(nlp.x.shape[0]), rng.standard_normal(nlp.g.shape[0])
+    expected = np.asarray(ca.Function("H", [nlp.x, weight, symbol], [plain])(x, 0.7, multipliers))
+    found = np.asarray(nlp.hessian(x, [], 0.7, multipliers))
+    np.testing.assert_allclose(found, np.triu(expected), rtol=0, atol=1e-12 * np.abs(expected).max())
 
 
 @pytest.mark.parametrize("which", ["f", "g"])
