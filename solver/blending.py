@@ -14,9 +14,9 @@ from solver.base import Base
 from solver.blend_result import BlendResult
 from solver.certificate import check_certificate
 from solver.closing import snapped_seam
-from solver.continuity import Contact, measure_contact
+from solver.continuity import Contact, check_regular_edge, measure_contact
 from solver.correspondence import Correspondence, Flip, correspond
-from solver.errors import ContactError, FoldError, OptionError
+from solver.errors import ContactError, EdgeError, FoldError, OptionError
 from solver.gram import thin_plate_energy
 from solver.knots import inner_knots
 from solver.limits import required_limits
@@ -132,7 +132,7 @@ def blend(
     energy = thin_plate_energy(surface)
     seconds = time.perf_counter() - started
     # What came out, judged by code that knows nothing of the above.
-    contact_a, contact_b = _checked_contacts(a, b, surface, pair, matched)
+    contact_a, contact_b = _checked_contacts(a, b, surface, pair, matched, found)
     if found.certificate is not None:
         check_certificate(found.certificate)
     seam = _seam(surface, problem)
@@ -309,10 +309,19 @@ def _checked_contacts(
     surface: SemiStructuredSurface,
     continuity: tuple[Continuity, Continuity],
     matched: Correspondence,
+    found: _Found,
 ) -> tuple[Contact, Contact]:
     """Let the referee measure both contacts, and refuse a result that misses its limits."""
-    contact_a = measure_contact(a, Base(surface, "u0"), correspondence=Correspondence(flipped=False))
-    contact_b = measure_contact(Base(surface, "u1"), b, correspondence=matched)
+    try:
+        contact_a = measure_contact(a, Base(surface, "u0"), correspondence=Correspondence(flipped=False))
+        contact_b = measure_contact(Base(surface, "u1"), b, correspondence=matched)
+    except EdgeError as error:
+        for base in (a, b):
+            check_regular_edge(base)
+        raise ContactError(
+            f"the blend is degenerate where it meets a base, alpha2 = {found.a:.1e}, beta2 = {found.b:.1e} ({error}); "
+            "try method reduced, which keeps them admissible"
+        ) from None
     for name, contact, wanted in (("a", contact_a, continuity[0]), ("b", contact_b, continuity[1])):
         for measure, value, limit in required_limits(contact, wanted):
             if not value <= limit:

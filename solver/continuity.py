@@ -135,6 +135,18 @@ def measure_contact(a: Base, b: Base, flip: Flip = "auto", correspondence: Corre
     )
 
 
+def check_regular_edge(base: Base) -> None:
+    """Refuse an edge along which a surface has no normal.
+
+    Raises
+    ------
+    EdgeError
+        Naming the first place.
+    """
+    start, end = base.range_along
+    _Side(base, start + (end - start) * (np.arange(64) + 0.5) / 64)
+
+
 class _Side:
     """Referee's values along one edge: w runs across, s along."""
 

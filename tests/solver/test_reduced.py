@@ -4,12 +4,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from helpers.bases import facing_pair, moved
+from helpers.bases import facing_pair, moved, patch
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.optimize import brute, minimize
+from scipy.stats import special_ortho_group
 
-from solver import Base, BSplineSurface, blend
+from solver import Base, BSplineSurface, ContactError, blend
 from solver.certificate import CertificateError, check_certificate
 from solver.correspondence import Correspondence
 from solver.problem import ProblemOptions, make_problem
@@ -234,3 +235,31 @@ def test_bfgs_is_reported_and_never_better():
     assert rough.iterations > 0
     wide = blend(a, b, box=(1e-3, 1e3))
     assert wide.energy <= rough.energy * (1 + 1e-10)
+
+
+def crooked_pair(seed):
+    """Two strongly curved patches in random position: what makes the energy have several minima."""
+    rng = np.random.default_rng(seed)
+    surfaces = [patch(rng, degrees=(3, 3), counts=(4, 6), height=rng.uniform(0.1, 2)) for _ in range(2)]
+    turn = special_ortho_group.rvs(3, random_state=rng)
+    return Base(surfaces[0], "u0"), Base(moved(surfaces[1], turn, rng.uniform(-1.5, 1.5, 3)), "u0")
+
+
+# Found among 3000 random pairs: from the natural shape parameters a local method ends in a worse minimum.
+@pytest.mark.parametrize(("seed", "excess"), [(770, 1.003), (1328, 1.015)])
+def test_a_local_method_stops_at_a_worse_minimum(seed, excess):
+    a, b = crooked_pair(seed)
+    proved, local = (blend(a, b, flip="no", method=m) for m in ("reduced", "casadi"))
+    assert local.energy > excess * proved.energy
+    check_certificate(proved.certificate)
+
+
+# Unbounded BFGS runs to alpha = 0, where the blend no longer leaves its contact curve.
+@pytest.mark.parametrize("seed", [0, 2, 4, 13])
+def test_bfgs_runs_to_zero(seed):
+    a, b = crooked_pair(seed)
+    with pytest.raises(ContactError, match="degenerate where it meets a base"):
+        blend(a, b, flip="no", method="bfgs", middle_curves=0)
+    proved = blend(a, b, flip="no", middle_curves=0)
+    assert proved.active_bounds
+    assert proved.proven_gap <= 1e-10
