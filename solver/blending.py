@@ -210,7 +210,7 @@ def state_problem(
         middle_curves, degree_u, _checked_shape(alpha), box, v_scale, u_knots=u_knots, middle_knots=middle_knots
     )
     # The bases as the blend sees them: contact at w = 0, one parameter v, coordinates of size 1.
-    sides = make_side(a, pair[0]), make_side(b, pair[1])
+    sides = make_side(a, pair[0], "base a"), make_side(b, pair[1], "base b")
     matched = _matched(a, b, flip, sides[1])
     sides = matched_sides(*sides, matched)
     frame = _frame(*sides)

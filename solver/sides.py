@@ -94,8 +94,8 @@ class Side:
         return replace(self, rows=(self.rows - centre) / size)
 
 
-def make_side(base: Base, continuity: Continuity) -> Side:
-    """Read the contact of `base`, in the base's own parameter along its edge.
+def make_side(base: Base, continuity: Continuity, name: str = "base") -> Side:
+    """Read the contact of `base`, in the base's own parameter along its edge; messages call it `name`.
 
     Raises
     ------
@@ -108,10 +108,10 @@ def make_side(base: Base, continuity: Continuity) -> Side:
         raise OptionError(f"continuity: found {continuity!r}, expected one of {', '.join(get_args(Continuity))}")
     surface = base.surface
     if not isinstance(surface, BSplineSurface):
-        raise EdgeError("base: a semi-structured surface, expected a B-spline surface; convert it with to_bspline()")
+        raise EdgeError(f"{name}: a semi-structured surface, expected a B-spline surface; convert it with to_bspline()")
     if surface.weights is not None:
         raise EdgeError(
-            "base: rational, but only polynomial B-spline surfaces are blended; approximate it without weights"
+            f"{name}: rational, but only polynomial B-spline surfaces are blended; approximate it without weights"
         )
     net = surface.control_points
     across, along = (surface.degree_u, surface.knots_u), (surface.degree_v, surface.knots_v)
