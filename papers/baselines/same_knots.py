@@ -1,0 +1,49 @@
+"""One knot vector for all rows: both bases refined to the union of their knots, and an ordinary B-spline blend.
+
+With G1 rows it stands for the paper's [13], of which only its properties are known: equal knots and tangent contact.
+With G2 rows it is the honest rival of the semi-structured blend: the same contact and energy, more control points.
+"""
+
+from __future__ import annotations
+
+import time
+from functools import partial
+
+from papers.baselines.contacts import contact_sides, on_common_knots
+from papers.baselines.interface import BlendTask, Method, Outcome
+from papers.baselines.layout import tensor_product, u_basis
+from papers.baselines.least_energy import contact_rule, least_energy
+from solver.gram import EnergyForm
+
+
+def blend_same_knots(order: int, task: BlendTask) -> Outcome:
+    """Blend with G1 or G2 rows over the union of all knots, as many rows as the semi-structured blend has."""
+    sides = contact_sides(task)
+    started = time.perf_counter()
+    a, b = on_common_knots(*sides)
+    u, v = u_basis(6 + task.middle_curves), a.along
+    bases = (v,) * u.size
+    matrix = EnergyForm(u, bases).matrix(range(u.size))
+    rules = contact_rule(a, order, u), contact_rule(b, order, u)
+    found = least_energy(matrix, bases, rules, (a.bounds, b.bounds), task.closed)
+    surface = tensor_product(u, v, found.rows)
+    seconds = time.perf_counter() - started
+    return Outcome(surface, surface.n_control_points, None, seconds, found.a, found.b)
+
+
+METHODS = (
+    Method(
+        "same-knots-g1",
+        "same knots, G1",
+        "stands for reference [13] of the paper: tensor product over the union of knots, tangent contact",
+        20,
+        partial(blend_same_knots, 1),
+    ),
+    Method(
+        "same-knots-g2",
+        "same knots, G2",
+        "tensor product over the union of knots, curvature rows too",
+        21,
+        partial(blend_same_knots, 2),
+    ),
+)

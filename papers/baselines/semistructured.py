@@ -1,0 +1,53 @@
+"""Our own solver: G2 with as many middle curves as the paper has, by three ways of finding alpha and beta."""
+
+from __future__ import annotations
+
+from functools import partial
+
+from papers.baselines.interface import BlendTask, Method, Outcome
+from solver import BlendResult, blend
+from solver.blending import Method as Search
+
+
+def blend_semistructured(search: Search, task: BlendTask) -> Outcome:
+    """Blend with G2 contact."""
+    return outcome_of(blend(task.a, task.b, continuity="G2", middle_curves=task.middle_curves, method=search))
+
+
+def outcome_of(result: BlendResult) -> Outcome:
+    """Return what the measures need of a result."""
+    note = f"stopped by the bound {', '.join(result.active_bounds)}" if result.active_bounds else ""
+    return Outcome(
+        result.surface,
+        result.surface.n_control_points,
+        result.iterations or None,
+        result.seconds,
+        result.alpha2,
+        result.beta2,
+        note=note,
+    )
+
+
+METHODS = (
+    Method(
+        "semistructured-reduced",
+        "G2, least energy proved",
+        "`solver.blend`, method reduced",
+        10,
+        partial(blend_semistructured, "reduced"),
+    ),
+    Method(
+        "semistructured-casadi",
+        "G2, CasADi and IPOPT",
+        "`solver.blend`, method casadi",
+        11,
+        partial(blend_semistructured, "casadi"),
+    ),
+    Method(
+        "semistructured-bfgs",
+        "G2, the paper's search",
+        "`solver.blend`, method bfgs",
+        12,
+        partial(blend_semistructured, "bfgs"),
+    ),
+)
