@@ -13,7 +13,7 @@ from derivations.splines import span_symbols
 from papers.ledger import Case, Formula
 from papers.lin2014 import printed as pr
 from papers.lin2014.exact import Meaning, UndefinedError, clamped, de_boor, difference_case, net_ring
-from papers.lin2014.property_checks import contained
+from papers.lin2014.property_checks import contained, union
 from papers.lin2014.spline_checks import functions_on
 
 CUBIC = 4
@@ -59,6 +59,14 @@ def mismatch_cases() -> Iterator[Case]:
         nested = set(a) <= set(b) or set(b) <= set(a)
         carried = contained(CUBIC, a, b) or contained(CUBIC, b, a)
         yield Case(name, not carried, own=name in PRINTED_PAIRS, meets=not nested)
+
+
+def nested_space_cases() -> Iterator[Case]:
+    """Yield printed pairs: the spline space of either vector lies in that of the union of knots."""
+    for name in PRINTED_PAIRS:
+        a, b = printed_pair(name)
+        both = union(CUBIC, a, b)
+        yield Case(name, contained(CUBIC, a, both) and contained(CUBIC, b, both))
 
 
 def layout_cases(formula: Formula | None) -> Iterator[Case]:

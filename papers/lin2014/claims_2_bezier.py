@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from sympy import Eq, Sum
+
 from papers.ledger import Case, Claim, Correction, Counterexample, Formula, Part, Reading, Strength
 from papers.lin2014 import bezier_checks as bezier
 from papers.lin2014 import printed as pr
@@ -16,7 +18,7 @@ _EXPANSION = "rows found by substituting v(u) and changing the basis, degrees up
 _LEMMAS = "the identities behind the closed form, for every m, n, k"
 _COUNTING = "degrees of the rows found by substitution"
 
-TRUE_TOP_LAST = Formula(pr.Eq(pr.F(pr.n, 0), pr.m + 1), (pr.m, pr.n))
+TRUE_TOP_LAST = Formula(Eq(pr.F(pr.n, 0), pr.m + 1), (pr.m, pr.n))
 _LEMMA_PART = part(check(bezier.lemma_cases, _LEMMAS, proof=True, strength=Strength.SYMBOLIC_ORDER))
 
 
@@ -41,7 +43,7 @@ def _full_range_cases():  # type: ignore[no-untyped-def]
 
 
 ROW_0 = Formula(
-    pr.Eq(pr.Q(pr.j, 0, pr.u), pr.Sum(pr.F(pr.i, pr.j) * pr.B(pr.i, pr.m, pr.u), (pr.i, 0, pr.m))),
+    Eq(pr.Q(pr.j, 0, pr.u), Sum(pr.F(pr.i, pr.j) * pr.B(pr.i, pr.m, pr.u), (pr.i, 0, pr.m))),
     (pr.j, pr.u, pr.m),
 )
 

@@ -97,8 +97,8 @@ CLAIMS = (
         "Seven v-control curves with 5, 5, 5, 7, 6, 6, 6 control points.",
         Verdict.HOLDS,
         (Reading((Part(question(_figure_1_cases, "counts against Definition 1 and (13) for a bicubic surface")),)),),
-        remark="Laid out like (13) with one middle curve. With single inner knots, 1 and 2 of them, the rule of section "
-        "3 gives that curve 5 or 6 points, never 7, which is what the union of the knots gives. The caption does not "
+        remark="Laid out like (13) with one middle curve. With single inner knots, 1 and 2 of them, the rule of "
+        "section 3 gives that curve 5 or 6 points, never 7, which the union of the knots gives. The caption does not "
         "say that the rule was used.",
     ),
     Claim(

@@ -19,9 +19,8 @@ from papers.ledger import Consequence, Formula
 from papers.lin2014 import printed as pr
 from papers.lin2014.contact_checks import Side, t_ks1, u_before, u_last, w_kr1
 from solver import Base, BlendResult, BSplineCurve, BSplineSurface, SemiStructuredSurface, blend, measure_contact
-from solver.de_boor import surface_points
 from solver.io.json_files import read_problem
-from solver.sides import make_side
+from solver.sides import Continuity, make_side
 
 EXAMPLES = Path(__file__).parent / "examples"
 ROWS_BY_SIDE = {"start": (pr.P_0, pr.P_1, pr.P_2), "end": (pr.P_m, pr.P_m1, pr.P_m2)}
@@ -37,9 +36,9 @@ def made_pair() -> tuple[Base, Base]:
 
 
 @cache
-def made_blend(degree_u: int = 3) -> BlendResult:
-    """Return the G2 blend of the made pair, whose contact the referee has confirmed."""
-    return blend(*made_pair(), continuity="G2", middle_curves=1, degree_u=degree_u)
+def made_blend(continuity: Continuity = "G2") -> BlendResult:
+    """Return the blend of the made pair with one middle curve, whose contact the referee has confirmed."""
+    return blend(*made_pair(), continuity=continuity, middle_curves=1)
 
 
 def with_printed_rows(result: BlendResult, side: Side, formulas: Mapping[int, Formula]) -> SemiStructuredSurface:
@@ -87,9 +86,9 @@ def _numbers(result: BlendResult, side: Side, base_degree: int, spans: tuple[flo
     return common | {pr.k_s: base_degree + 1, pr.beta: b**0.5, pr.t_s: 0.0, pr.t_ks: spans[0], t_ks1: spans[1]}
 
 
-def measured_rows(side: Side, formulas: Mapping[int, Formula], what: str, degree_u: int = 3) -> Consequence:
-    """Set rows of the made G2 blend by formulas and measure what contact is left."""
-    result = made_blend(degree_u)
+def measured_rows(side: Side, formulas: Mapping[int, Formula], what: str, continuity: Continuity = "G2") -> Consequence:
+    """Set rows of the made blend by formulas and measure what contact is left; for C2 the parametric residuals too."""
+    result = made_blend(continuity)
     surface = with_printed_rows(result, side, formulas)
     base_a, base_b = made_pair()
     if side == "start":
@@ -99,15 +98,18 @@ def measured_rows(side: Side, formulas: Mapping[int, Formula], what: str, degree
         ends, flipped = (Base(surface, "u1"), base_b), result.flipped
         kept = result.contact_b
     contact = measure_contact(*ends, flip="yes" if flipped else "no")
-    turn = _oriented_turn(*ends, flipped=flipped)
     measured = {
         "gap": contact.gap,
         "angle between tangent planes [degrees]": contact.angle_degrees,
-        "turn of the normal across the contact [degrees]": turn,
+        "turn of the normal across the contact [degrees]": _oriented_turn(*ends, flipped=flipped),
         "curvature jump [1/length]": contact.curvature_jump,
         "relative curvature jump": contact.curvature_jump_relative,
         "relative curvature jump with the corrected formula": kept.curvature_jump_relative,
     }
+    if continuity == "C2":
+        measured["relative C1 residual"] = contact.c1_residual
+        measured["relative C2 residual"] = contact.c2_residual
+        measured["relative C2 residual with the corrected formula"] = kept.c2_residual
     return Consequence(what, measured, {"Open CASCADE": cad_verdict(*ends, flipped=flipped)})
 
 
@@ -129,10 +131,3 @@ def _oriented_turn(a: Base, b: Base, *, flipped: bool) -> float:
     n1, n2 = vectors
     sine, cosine = np.linalg.norm(np.cross(n1, n2), axis=1), np.sum(n1 * n2, axis=1)
     return float(np.degrees(np.arctan2(sine, cosine)).max())
-
-
-def largest_change(result: BlendResult, surface: SemiStructuredSurface) -> float:
-    """Return the largest distance between a blend and its altered version on a grid, by the referee."""
-    u, v = (x.ravel() for x in np.meshgrid(np.linspace(0, 1, 41), np.linspace(*result.surface.domain[1], 41)))
-    difference = surface_points(surface, u, v) - surface_points(result.surface, u, v)
-    return float(np.linalg.norm(difference, axis=1).max())

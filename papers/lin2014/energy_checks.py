@@ -16,6 +16,7 @@ from sympy.polys.domains import QQ
 from sympy.polys.matrices import DomainMatrix
 
 from derivations.energy import Basis, ExactSurface, energy_matrix, gram_matrix, thin_plate_density
+from derivations.problem import ExactBase, blend_problem, exact_minimum
 from derivations.splines import X, end_derivatives
 from papers.ledger import Case, Formula
 from papers.lin2014 import printed as pr
@@ -266,6 +267,26 @@ def shape_cases() -> Iterator[Case]:
         energy = end_energy(4, 6, (0, a, 0, gap, into_b * b, 0))
         best = sp.solve([sp.diff(energy, a), sp.diff(energy, b)], [a, b], dict=True)[0]
         yield Case(label, bool(best[a] > 0 and best[b] > 0), own=meets, meets=meets)
+
+
+@cache
+def middle_knot_energies() -> tuple[Any, Any]:
+    """Return least energies of a C2 blend with the rule's middle knot 5/12, and with the union {1/3, 1/2} there.
+
+    Cubic across, linear along, so that it stays small; a base with a ridge and a flat one.
+    """
+    a, b = basis(2, Fraction(1, 2)), basis(2, Fraction(1, 3))
+    found = []
+    for middle in (basis(2, Fraction(5, 12)), basis(2, Fraction(1, 3), Fraction(1, 2))):
+        surface = ExactSurface(u_basis(4, 6), (a, a, a, middle, b, b, b))
+        across = Basis(3, (0, 0, 0, 0, 1, 1, 1, 1))
+        sides = [
+            ExactBase(across, tuple(tuple((x + dx * i, j, z) for j, z in enumerate(heights)) for i in range(3)))
+            for x, dx, heights in ((0, -1, (0, 1, 0)), (2, 1, (0, 0, 0)))
+        ]
+        least, _ = exact_minimum(blend_problem(2, surface, *sides), 1, 1)
+        found.append(sp.Rational(least.numerator, least.denominator))
+    return found[0], found[1]
 
 
 def strain_cases(formula: Formula | None) -> Iterator[Case]:
