@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from sympy import Eq
 
-from papers.ledger import Check, Claim, Correction, Counterexample, Formula, Part, Reading, Strength
+from papers.ledger import Case, Check, Claim, Correction, Counterexample, Formula, Part, Reading, Strength
 from papers.lin2014 import blending_checks as blending
 from papers.lin2014 import energy_checks as energy
 from papers.lin2014 import printed as pr
@@ -71,8 +71,6 @@ def _fewer_counterexample() -> Counterexample | None:
 
 def _fewer_cases():  # type: ignore[no-untyped-def]
     """Yield end data: true where fewer rows have less energy or the same; strips with C2 contact at both ends."""
-    from papers.ledger import Case
-
     for label, data in (
         ("a step at rest", (0, 0, 0, 1, 0, 0)),
         ("a slope that stops", (0, 1, 0, 0, 0, 0)),
@@ -83,9 +81,7 @@ def _fewer_cases():  # type: ignore[no-untyped-def]
 
 
 def _more_rows_cases():  # type: ignore[no-untyped-def]
-    """Yield that no middle curve never costs less than one: the difference of energies is a positive semidefinite form."""
-    from papers.ledger import Case
-
+    """Yield that fewer rows never cost less: the difference of the energies is a positive semidefinite form."""
     data = pr.symbols("d0 d1 d2 e0 e1 e2", real=True)
     for few, more in ((5, 6), (6, 7), (5, 8)):
         difference = energy.end_energy(4, few, data) - energy.end_energy(4, more, data)
@@ -94,9 +90,7 @@ def _more_rows_cases():  # type: ignore[no-untyped-def]
 
 
 def _fairness_cases():  # type: ignore[no-untyped-def]
-    """Yield blends, least energy with the rule's middle knots and with all knots: true where refinement costs energy."""
-    from papers.ledger import Case
-
+    """Yield blends with the rule's middle knots and with all knots: true where the latter have more energy."""
     own, refined = energy.middle_knot_energies()
     yield Case("orders 4, 2, inner knots 1/2 and 1/3", bool(refined > own), residual=refined - own)
 
@@ -107,6 +101,7 @@ def _fairness_counterexample() -> Counterexample:
     return Counterexample(values, f"energy above {own} on the refined knots", f"{refined}, less")
 
 
+_INSIDE = "knots strictly inside a clamped vector"
 _AVERAGED = "the rule on the printed knot vectors, indices against v_1 .. v_n"
 
 CLAIMS: tuple[Claim, ...] = (
@@ -133,7 +128,7 @@ CLAIMS: tuple[Claim, ...] = (
           part(Check(counted(domain_instances(pr.n_r, pr.ell)), Strength.RATIONAL, _DOMAIN), pr.RUN_STARTS[1]),
           part(Check(counted(domain_instances(pr.n_s, pr.ell)), Strength.RATIONAL, _DOMAIN), pr.RUN_STARTS[3])),
     holds("sec-3.contact-knots", _BASES, "The knot vector of R(w_s, v) is V^r, that of S(t_s, v) is V^s.",
-          part(question(blending.contact_curve_cases, "the surface at its clamped end against the curve of its first row"))),
+          part(question(blending.contact_curve_cases, "the surface at its clamped end and its first row"))),
     holds_if("sec-3.not-classical", _BASES,
              "Knot vectors that differ cannot both be carried by one classical surface, without inserting knots.",
              "neither knot vector contains the other",
@@ -141,7 +136,7 @@ CLAIMS: tuple[Claim, ...] = (
              remark="Where V^r is part of V^s, a classical surface over V^s carries both contact curves as they are."),
     fails("sec-3.strain-energy", _ENERGY,
           "The quality of a surface is the integral of its squared principal curvatures over the parameter space.",
-          part(Check(energy.strain_cases, Strength.SYMBOLIC_ORDER, "scaling a parameter, which leaves the surface alone",
+          part(Check(energy.strain_cases, Strength.SYMBOLIC_ORDER, "scaling a parameter",
                      proof=True), pr.STRAIN),
           correction=Correction("The integral is over the surface: the area element |P_u x P_v| belongs to it.",
                                 (Part(Check(energy.strain_cases, Strength.SYMBOLIC_ORDER, "scaling a parameter",
@@ -149,17 +144,17 @@ CLAIMS: tuple[Claim, ...] = (
           counterexample=_strain_counterexample, consequence=parameter_dependence,
           remark="(11) itself does depend on the parametrisation, and so does the blend of least energy."),
     ambiguous("sec-3.thin-plate", _ENERGY, "The thin-plate energy (11) approximates the strain energy.",
-              Reading((part(proved(energy.isometric_cases, "first and second fundamental form", Strength.SYMBOLIC_ORDER)),),
+              Reading((part(proved(energy.isometric_cases, "first and second fundamental form")),),
                       label="for a parametrisation that keeps lengths and angles"),
               Reading((part(question(energy.planar_cases, "(11) of plane pieces, whose strain energy is zero")),),
                       label="for any parametrisation"),
-              remark="No bound holds in general: for plane pieces, such as the bases of Fig. 5, the ratio is infinite."),
+              remark="No bound holds in general: for plane pieces, like the bases of Fig. 5, the ratio is infinite."),
     holds_if("eq-11", _ENERGY, "The thin-plate energy as the integral of |P_uu|^2 + 2|P_uv|^2 + |P_vv|^2.",
              "the surface is C1, that is, no inner knot has the full multiplicity of its degree",
              part(Check(energy.density_cases, Strength.SYMBOLIC_ORDER, "the thin-plate density; rotation of (u, v)",
                         proof=True), pr.EQ_11),
              part(question(energy.crease_cases, "null space of the exact Gram matrix of second derivatives")),
-             remark="Across a knot of full multiplicity a crease costs nothing when the integral is taken span by span."),
+             remark="Across a knot of full multiplicity a crease costs nothing, taken span by span."),
     ambiguous("eq-12", _ENERGY, "Minimise E over the control points under the continuity condition.",
               Reading((part(Check(lambda _: energy.positive_definite_cases(2), Strength.RATIONAL,
                                   "pivots of the exact energy matrix of the free rows")),),
@@ -178,14 +173,14 @@ CLAIMS: tuple[Claim, ...] = (
                       label="the second knot, as Definition 1 numbers them, which is 0"),
               remark="One letter, two numberings: Definition 1 counts all knots from u_0, (13) only the inner ones."),
     holds_if("sec-3.m-bound", _BLEND, "With m >= k + 1 the layout of (13) is possible.", "k >= 4",
-             part(Check(blending.layout_cases, Strength.RATIONAL, "rows of the first and last three curves, k = 2 to 7"),
+             part(Check(blending.layout_cases, Strength.RATIONAL, "rows of the first and last curves, k = 2 to 7"),
                   pr.M_BOUND),
              remark="Six different rows need m >= 5, whatever k is. For k = 3 the bound admits m = 4, where curve 2 "
              "would need both knot vectors; for k > 4 it asks for more than is needed."),
     holds("sec-3.uniform-knots", _BLEND, "u_i = i / (m - k + 2) spaces the inner knots uniformly.",
           part(Check(blending.uniform_knot_cases, Strength.RATIONAL, "equal division of [0, 1] by as many knots"),
                pr.UNIFORM_KNOT)),
-    holds("sec-3.three-curves", _BLEND, "The first three curves have the knots of R's contact curve, the last three S's.",
+    holds("sec-3.three-curves", _BLEND, "The first three curves have the knots of R's contact curve, the last those of S.",
           part(proved(blending.three_row_cases, "the derived rows: combinations of R_0 .. R_2, with R_2 in row 2",
                       Strength.EACH_ORDER))),
     fails("sec-3.fewer-better", _BLEND, "In general, the fewer control points the blend has, the better its quality.",
@@ -206,8 +201,8 @@ CLAIMS: tuple[Claim, ...] = (
     holds("sec-3.two-kinds", _BLEND, "With k = 4 the blend has no middle curve (m = 5), or just P_3 (m = 6).",
           part(question(blending.middle_curve_cases, "rows between the first and the last three"))),
     holds("sec-3.inner-knots", _MIDDLE, "The inner knots of V^r are v_l, .., v_{n_r}.",
-          part(Check(counted(inner_instances), Strength.RATIONAL, "knots strictly inside a clamped vector"), pr.INNER_FIRST),
-          part(Check(counted(inner_instances), Strength.RATIONAL, "knots strictly inside a clamped vector"), pr.INNER_LAST)),
+          part(Check(counted(inner_instances), Strength.RATIONAL, _INSIDE), pr.INNER_FIRST),
+          part(Check(counted(inner_instances), Strength.RATIONAL, _INSIDE), pr.INNER_LAST)),
     ambiguous("sec-3.averaging", _MIDDLE,
               "The inner knots of P_3 are the averages (v_{2i-1} + v_{2i})/2 of adjacent knots of V_n.",
               Reading((part(Check(blending.paired_cases(lambda n: (n + 1) // 2), Strength.RATIONAL, _AVERAGED),
