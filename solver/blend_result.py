@@ -51,6 +51,8 @@ class BlendResult:
         Proof that no admissible alpha and beta have less energy, in coordinates of size 1; only for method reduced.
     proven_gap : float or None
         What the proof leaves open, as a fraction of the energy.
+    constraint_rank : (int, int) or None
+        Rank of the constraint Jacobian at the solution, and its number of rows; only for method casadi.
     seconds : float
         For the solve, without the final checks.
     """
@@ -75,4 +77,5 @@ class BlendResult:
     kkt_residual: float | None
     certificate: Certificate | None
     proven_gap: float | None
+    constraint_rank: tuple[int, int] | None
     seconds: float

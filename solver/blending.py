@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal, TypeAlias, get_args
 
@@ -161,6 +161,7 @@ def blend(
         kkt_residual=found.kkt_residual,
         certificate=found.certificate,
         proven_gap=found.proven_gap,
+        constraint_rank=None if found.constraint_rank is None else found.constraint_rank(),
         seconds=seconds,
     )
 
@@ -229,6 +230,7 @@ class _Found:
     kkt_residual: float | None = None
     certificate: Certificate | None = None
     proven_gap: float | None = None
+    constraint_rank: Callable[[], tuple[int, int]] | None = None
 
 
 def _checked_shape(alpha: Shape | tuple[Shape, Shape]) -> tuple[Shape, Shape]:
@@ -269,7 +271,7 @@ def _shape_parameters(problem: BlendProblem, method: Method) -> _Found:
         from solver.nlp import solve_constrained
 
         local = solve_constrained(problem)
-        return _Found(local.a, local.b, method, local.iterations, local.kkt_residual)
+        return _Found(local.a, local.b, method, local.iterations, local.kkt_residual, constraint_rank=local.rank)
     from solver.quasi_newton import solve_quasi_newton
 
     rough = solve_quasi_newton(problem)

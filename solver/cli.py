@@ -240,6 +240,7 @@ def report_record(result: BlendResult) -> dict[str, Any]:
         "iterations": result.iterations,
         "kkt_residual": result.kkt_residual,
         "proven_gap": result.proven_gap,
+        "constraint_rank": result.constraint_rank,
         "regularity": asdict(result.regularity),
         "seconds": result.seconds,
         "contact_a": contact_record(result.contact_a),

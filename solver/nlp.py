@@ -7,6 +7,7 @@ from typing import Any
 
 import casadi as ca
 import numpy as np
+import scipy.sparse as sp
 
 from solver.arrays import FloatArray, SparseMatrix
 from solver.closing import end_conditions
@@ -51,7 +52,7 @@ class ConstrainedProblem:
     parameters: tuple[str, ...]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class ConstrainedSolution:
     """What IPOPT found.
 
@@ -63,6 +64,8 @@ class ConstrainedSolution:
     status : str
     kkt_residual : float
         Largest entry of the gradient of the Lagrangian, scaled problem.
+    jacobian : sparse array
+        Of the constraints at the solution.
     """
 
     a: float
@@ -70,6 +73,14 @@ class ConstrainedSolution:
     iterations: int
     status: str
     kkt_residual: float
+    jacobian: SparseMatrix
+
+    def rank(self) -> tuple[int, int]:
+        """Return the rank of the constraint Jacobian and its number of rows; full rank makes multipliers unique."""
+        squared = (self.jacobian @ self.jacobian.T).toarray()
+        values = np.linalg.eigvalsh(squared)
+        # Squared singular values: what is below eps of the largest cannot be told from zero.
+        return int(np.count_nonzero(values > len(values) * np.finfo(float).eps * values[-1])), len(values)
 
 
 def constrained_problem(problem: BlendProblem) -> ConstrainedProblem:
@@ -213,4 +224,7 @@ def solve_constrained(problem: BlendProblem) -> ConstrainedSolution:
         float(shape[name] ** 2 * natural) if name in shape else fixed
         for name, natural, fixed in zip(("alpha", "beta"), problem.natural, problem.start, strict=True)
     )
-    return ConstrainedSolution(a, b, int(stats["iter_count"]), str(stats["return_status"]), kkt)
+    jacobian = ca.Function("jacobian", [nlp.x], [ca.jacobian(nlp.g, nlp.x)])(result["x"])
+    return ConstrainedSolution(
+        a, b, int(stats["iter_count"]), str(stats["return_status"]), kkt, sp.csr_array(jacobian.sparse())
+    )

@@ -1,10 +1,12 @@
 """The constrained problem: its derivatives against SymPy's, a Taylor test, and its solution against a plain search."""
 
+from dataclasses import replace
 from fractions import Fraction
 
 import casadi as ca
 import numpy as np
 import pytest
+import scipy.sparse as sp
 from helpers.bases import facing_pair
 from scipy.optimize import minimize
 
@@ -153,6 +155,14 @@ def test_constraints_have_full_rank():
     nlp = constrained_problem(small_problem(1))
     jacobian = np.asarray(ca.Function("J", [nlp.x], [ca.jacobian(nlp.g, nlp.x)])(nlp.start))
     assert np.linalg.matrix_rank(jacobian) == jacobian.shape[0]
+    a, b = small_pair()
+    assert blend(Base(a, "u0"), Base(b, "u0"), method="casadi").constraint_rank == (len(jacobian), len(jacobian))
+
+
+def test_a_redundant_constraint_would_be_seen():
+    solution = solve_constrained(small_problem(1))
+    doubled = replace(solution, jacobian=sp.vstack([solution.jacobian, solution.jacobian[[0]]], format="csr"))
+    assert doubled.rank() == (solution.rank()[0], solution.rank()[1] + 1)
 
 
 @pytest.mark.parametrize("seed", range(5))
