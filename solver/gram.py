@@ -6,7 +6,7 @@ exactly up to rounding. Time and memory are linear in the number of knots.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache, cached_property
 from typing import TypeAlias
@@ -85,11 +85,6 @@ class Samples:
             values[:-1] -= scaled
         return values
 
-    def part(self, spans: slice) -> Samples:
-        """Return the same samples on some of the spans."""
-        lower = tuple(values[..., spans] for values in self.lower)
-        return Samples(self.basis, self.weights[:, spans], self.first[spans], lower)
-
     def curves(self, points: FloatArray, order: int) -> FloatArray:
         """Return values from control points of the derivative, shape (C, degree - order + n): shape (C, G, S)."""
         return np.asarray(np.einsum("kgs,cks->cgs", self.lower[order], points[:, self.local(order)]))
@@ -123,8 +118,8 @@ def sample(basis: Basis, breaks: FloatArray, degree: int) -> Samples:
     """Sample a basis at the Gauss points that integrate polynomials of `degree` on every span of `breaks`."""
     x, weights = gauss_rule(breaks, degree)
     p, t = basis.degree, basis.knots
-    # The span of the basis that holds each span of `breaks`, so that t[span] < t[span + 1].
-    span = np.searchsorted(t, (breaks[:-1] + breaks[1:]) / 2, side="right") - 1
+    first = _first_on_spans(basis, breaks)
+    span = first + p
     values = np.ones((1, *x.shape))
     lower = [values]
     for d in range(1, p + 1):
@@ -136,7 +131,12 @@ def sample(basis: Basis, breaks: FloatArray, degree: int) -> Samples:
         values[1:] = (x - left[:, None]) * scaled
         values[:-1] += (right[:, None] - x) * scaled
         lower = [values, *lower[:2]]
-    return Samples(basis, weights, span - p, tuple(lower))
+    return Samples(basis, weights, first, tuple(lower))
+
+
+def _first_on_spans(basis: Basis, breaks: FloatArray) -> IndexArray:
+    """Return the index of the first basis function that lives on each span of `breaks`."""
+    return np.searchsorted(basis.knots, (breaks[:-1] + breaks[1:]) / 2, side="right") - 1 - basis.degree
 
 
 def gram_matrix(a: Basis, b: Basis, order: int = 0) -> SparseMatrix:
@@ -161,32 +161,64 @@ def gram_matrix(a: Basis, b: Basis, order: int = 0) -> SparseMatrix:
            [-1.,  1.]])
     """
     breaks = merge_breakpoints(breakpoints(a.knots), breakpoints(b.knots))
-    line, column, values = _products(*(sample(basis, breaks, a.degree + b.degree) for basis in (a, b)))
-    return sp.coo_array((values[order], (line, column)), shape=(a.size, b.size)).tocsr()
+    gram = _grams([(0, 1)], (a, b), breaks, _parts((a, b), breaks))[0, 1]
+    return sp.coo_array((gram.values[order], (gram.lines, gram.columns)), shape=(a.size, b.size)).tocsr()
 
 
-def _products(a: Samples, b: Samples) -> tuple[IndexArray, IndexArray, list[FloatArray]]:
-    """Gram matrices of orders 0, 1, 2, all of one sparsity pattern: lines, columns and, for each order, entries.
+# Spans that are worked on at once: enough for speed, few enough to stay in fast memory.
+_SPANS_AT_ONCE = 1024
+
+
+def _parts(bases: Sequence[Basis], breaks: FloatArray) -> Iterator[list[Samples]]:
+    """Sample bases at the same points, some spans at a time: for each part of the domain, the samples of each basis."""
+    degree = 2 * max(basis.degree for basis in bases)
+    for at in range(0, len(breaks) - 1, _SPANS_AT_ONCE):
+        yield [sample(basis, breaks[at : at + _SPANS_AT_ONCE + 1], degree) for basis in bases]
+
+
+class _Gram:
+    """Gram matrices of two bases, of orders 0, 1, 2 and one sparsity pattern, filled part by part.
 
     Supports are intervals, so each function of a meets neighbouring functions of b, from `start` on.
+
+    Attributes
+    ----------
+    lines, columns : ndarray of int, shape (E,)
+    values : ndarray, shape (3, E)
     """
-    every = np.arange(a.basis.size)
-    spans = np.searchsorted(a.first + a.basis.degree, every), np.searchsorted(a.first, every, side="right") - 1
-    start = b.first[spans[0]]
-    count = b.first[spans[1]] + b.basis.degree + 1 - start
-    ends = np.cumsum(count)
-    # Entry (i, j) has the place j + shift[i] in the list.
-    shift = ends - count - start
-    place = (shift[a.local()][:, None] + b.local()).ravel()
-    values = []
-    for order in range(3):
-        entries = np.einsum("kgs,lgs->kls", a.derivative(order) * a.weights, b.derivative(order))
-        values.append(np.bincount(place, entries.ravel(), minlength=ends[-1]).astype(np.float64, copy=False))
-    return np.repeat(every, count), np.arange(ends[-1]) - np.repeat(shift, count), values
+
+    def __init__(self, a: Basis, b: Basis, breaks: FloatArray) -> None:
+        first_a, first_b = (_first_on_spans(basis, breaks) for basis in (a, b))
+        every = np.arange(a.size)
+        spans = np.searchsorted(first_a + a.degree, every), np.searchsorted(first_a, every, side="right") - 1
+        start = first_b[spans[0]]
+        count = first_b[spans[1]] + b.degree + 1 - start
+        ends = np.cumsum(count)
+        # Entry (i, j) has the place j + shift[i] in the list.
+        self._shift = ends - count - start
+        self.lines = np.repeat(every, count)
+        self.columns = np.arange(ends[-1]) - np.repeat(self._shift, count)
+        self.values = np.zeros((3, ends[-1]))
+
+    def add(self, a: Samples, b: Samples, derivatives_a: list[FloatArray], derivatives_b: list[FloatArray]) -> None:
+        """Add the integrals over one part of the domain."""
+        place = self._shift[a.local()][:, None] + b.local()
+        low, high = place.min(), place.max() + 1
+        for total, left, right in zip(self.values, derivatives_a, derivatives_b, strict=True):
+            entries = np.einsum("kgs,lgs->kls", left * a.weights, right)
+            total[low:high] += np.bincount((place - low).ravel(), entries.ravel(), minlength=high - low)
 
 
-# Spans that are worked on at once where an energy is summed: enough for speed, few enough to stay in fast memory.
-_SPANS_AT_ONCE = 1024
+def _grams(
+    pairs: Iterable[tuple[int, int]], bases: Sequence[Basis], breaks: FloatArray, parts: Iterable[list[Samples]]
+) -> dict[tuple[int, int], _Gram]:
+    """Return the Gram matrices of pairs of bases, in one run over the parts of the domain."""
+    grams = {pair: _Gram(bases[pair[0]], bases[pair[1]], breaks) for pair in pairs}
+    for samples in parts:
+        derivatives = [[one.derivative(order) for order in range(3)] for one in samples]
+        for (i, j), gram in grams.items():
+            gram.add(samples[i], samples[j], derivatives[i], derivatives[j])
+    return grams
 
 
 @dataclass(frozen=True, eq=False)
@@ -221,47 +253,50 @@ class EnergyForm:
         return distinct, kind
 
     @cached_property
-    def across(self) -> Samples:
+    def _across(self) -> Samples:
         """Samples of the u-basis."""
         return sample(self.u, breakpoints(self.u.knots), 2 * self.u.degree)
 
     @cached_property
-    def _along(self) -> list[Samples]:
-        """Samples of each distinct space, all at the same points."""
-        distinct = self._kinds[0]
-        breaks = merge_breakpoints(*(breakpoints(basis.knots) for basis in distinct))
-        degree = 2 * max(basis.degree for basis in distinct)
-        return [sample(basis, breaks, degree) for basis in distinct]
+    def _breaks(self) -> FloatArray:
+        """Ends of the merged spans of all rows."""
+        return merge_breakpoints(*(breakpoints(basis.knots) for basis in self._kinds[0]))
+
+    @cached_property
+    def _only_part(self) -> list[Samples]:
+        return next(_parts(self._kinds[0], self._breaks))
+
+    def _along(self) -> Iterable[list[Samples]]:
+        """Samples of each distinct space, part by part; where there is but one part, it is kept."""
+        if len(self._breaks) <= _SPANS_AT_ONCE + 1:
+            return [self._only_part]
+        return _parts(self._kinds[0], self._breaks)
 
     @cached_property
     def _across_grams(self) -> FloatArray:
         """Gram matrices of the u-basis, shape (3, m + 1, m + 1)."""
         grams = np.zeros((3, self.u.size, self.u.size))
-        line, column, values = _products(self.across, self.across)
-        grams[:, line, column] = values
+        gram = _grams([(0, 0)], [self.u], breakpoints(self.u.knots), [[self._across]])[0, 0]
+        grams[:, gram.lines, gram.columns] = gram.values
         return grams
-
-    @cached_property
-    def _along_grams(self) -> dict[tuple[int, int], tuple[IndexArray, IndexArray, list[FloatArray]]]:
-        return {}
 
     def matrix(self, rows: Iterable[int]) -> SparseMatrix:
         """Return the lines of H that belong to the given rows, shape (their control points, N)."""
-        kind = self._kinds[1]
+        distinct, kind = self._kinds
+        p, m = self.u.degree, len(self.rows) - 1
+        blocks = [(i, j) for i in rows for j in range(max(0, i - p), min(m, i + p) + 1)]
+        grams = _grams({(kind[i], kind[j]) for i, j in blocks}, distinct, self._breaks, self._along())
         data, lines, columns = [], [], []
-        start = 0
-        for i in rows:
-            for j in range(max(0, i - self.u.degree), min(len(self.rows), i + self.u.degree + 1)):
-                pair = kind[i], kind[j]
-                if pair not in self._along_grams:
-                    self._along_grams[pair] = _products(*(self._along[k] for k in pair))
-                line, column, along = self._along_grams[pair]
-                data.append(gram_block(*self._across_grams[:, i, j], *along))
-                lines.append(line + start)
-                columns.append(column + self.offsets[j])
-            start += self.rows[i].size
-        coordinates = (np.concatenate(lines), np.concatenate(columns))
-        return sp.coo_array((np.concatenate(data), coordinates), shape=(start, self.offsets[-1])).tocsr()
+        start, last = 0, blocks[0][0]
+        for i, j in blocks:
+            if i != last:
+                start, last = start + self.rows[last].size, i
+            gram = grams[kind[i], kind[j]]
+            data.append(gram_block(*self._across_grams[:, i, j], *gram.values))
+            lines.append(gram.lines + start)
+            columns.append(gram.columns + self.offsets[j])
+        shape = (start + self.rows[last].size, self.offsets[-1])
+        return sp.coo_array((np.concatenate(data), (np.concatenate(lines), np.concatenate(columns))), shape).tocsr()
 
     def products(self, points: FloatArray) -> FloatArray:
         """Return the energy products of surfaces over these knots, shape (K, K); energies are on the diagonal.
@@ -278,8 +313,7 @@ class EnergyForm:
         rows = np.split(points.transpose(1, 0, 2).reshape(-1, 3 * k), self.offsets[1:-1])
         nets = [[self._nets(members, rows, dv) for members in self._members] for dv in range(3)]
         total = np.zeros((k, k))
-        for start in range(0, len(self._along[0].first), _SPANS_AT_ONCE):
-            along = [samples.part(slice(start, start + _SPANS_AT_ONCE)) for samples in self._along]
+        for along in self._along():
             weights = along[0].weights
             for du in range(min(2, p) + 1):
                 curves = np.zeros((m + 1, 3 * k, *weights.shape))
@@ -310,7 +344,7 @@ class EnergyForm:
     @cached_property
     def _roots(self) -> list[FloatArray]:
         """Triangular L' of the Gram matrices L L' of the derivatives' bases in u, without forming these."""
-        s = self.across
+        s = self._across
         roots = []
         for order, values in enumerate(s.lower):
             dense = np.zeros((*s.weights.shape, self.u.size - order))

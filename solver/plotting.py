@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any, Literal, TypeAlias, get_args
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from solver.arrays import FloatArray
 from solver.curvature import LocalGeometry, isophote_angle
@@ -33,6 +34,8 @@ _FINEST, _COARSEST, _TOTAL = 240, 24, 600_000
 # Bands over 180 and over 90 degrees; even numbers.
 _STRIPES, _ISOPHOTES = 40, 18
 _MARGIN = 1.06
+# A direction whose horizontal part is smaller than this counts as vertical.
+_STEEP = 1e-6
 _BAR = {
     "vertical": False,
     "color": "black",
@@ -69,6 +72,7 @@ def render(
     colors: Sequence[str] | None = None,
     control_points: Sequence[bool] | None = None,
     field: Field | None = None,
+    towards_eye: ArrayLike | None = None,
     size: tuple[int, int] = (1600, 1200),
 ) -> None:
     """Draw surfaces into a PNG file.
@@ -79,7 +83,8 @@ def render(
     path : str or Path
         Written whole or not at all.
     colors : sequence of str, optional
-        One for each surface; not used with a `field`.
+        One for each surface; with stripes or bands the colour of the dark ones, black unless given; not used with
+        curvatures.
     control_points : sequence of bool, optional
         For which surfaces the control points are drawn, those of each v-control curve (or row of the net) in a colour
         of its own and joined by a polygon.
@@ -87,13 +92,15 @@ def render(
         Mean or Gaussian curvature with a scale in 1/length or 1/length^2 (the mean one positive where the surface
         bulges towards the eye); stripes mirrored in the surface; bands of equal angle to the light, 5 degrees each.
         Without, the surfaces are shaded.
+    towards_eye : array_like, shape (3,), optional
+        Direction from the model to the eye, z upwards; chosen from the surfaces unless given.
     size : (int, int)
         Width and height in pixels.
 
     Raises
     ------
     OptionError
-        No surface, another field, or lists of different lengths.
+        No surface, another field, lists of different lengths, or a direction of length zero.
     FileError
         pyvista is not installed, or the file cannot be written.
     """
@@ -108,7 +115,7 @@ def render(
     samples = [_Sampled(*sampled(surface, count)) for surface in surfaces]
     if _extent(samples) == 0:
         raise OptionError("surfaces: all points coincide, so there is nothing to draw; give a surface with an extent")
-    view = _view(samples)
+    view = _view(samples) if towards_eye is None else _view_from(np.asarray(towards_eye, dtype=np.float64))
     shown = control_points or [False] * len(surfaces)
     polygons = [_polygons(surface) if show else [] for surface, show in zip(surfaces, shown, strict=True)]
     with atomic_path(path) as temporary, _quiet_vtk():
@@ -120,7 +127,7 @@ def render(
                 for item, color in zip(samples, palette, strict=True):
                     _add_shaded(plotter, item, color)
             else:
-                _add_field(plotter, samples, field, view)
+                _add_field(plotter, samples, field, view, colors)
             _add_outlines(plotter, pyvista, samples)
             points = _all_points(samples)
             # In parallel projection a shift towards the eye changes nothing but what hides what: no control point is
@@ -187,6 +194,16 @@ def _view(samples: Sequence[_Sampled]) -> _View:
     return _View(towards_eye, right, np.cross(towards_eye, right))
 
 
+def _view_from(direction: FloatArray) -> _View:
+    """Look from a direction, with z upwards, or y where the direction is that of z."""
+    if direction.shape != (3,) or not 0 < np.linalg.norm(direction) < np.inf:
+        raise OptionError(f"towards_eye: found {direction.tolist()}, expected three numbers that are not all zero")
+    towards_eye = _unit(direction)
+    upwards = np.eye(3)[2 if np.hypot(*towards_eye[:2]) > _STEEP else 1]
+    right = _unit(np.cross(upwards, towards_eye))
+    return _View(towards_eye, right, np.cross(towards_eye, right))
+
+
 def _signed(vector: FloatArray) -> FloatArray:
     """Of the two directions of an eigenvector, the one whose largest component is positive."""
     return vector if vector[np.argmax(np.abs(vector))] > 0 else -vector
@@ -239,7 +256,9 @@ def _add_outlines(plotter: Any, pyvista: Any, samples: Sequence[_Sampled]) -> No
     plotter.add_mesh(outline, color="#202020", line_width=2, lighting=False)
 
 
-def _add_field(plotter: Any, samples: Sequence[_Sampled], field: Field, view: _View) -> None:
+def _add_field(
+    plotter: Any, samples: Sequence[_Sampled], field: Field, view: _View, dark: Sequence[str] | None
+) -> None:
     values = [_field_values(item, field, view) for item in samples]
     options: dict[str, Any] = {"interpolate_before_map": True, "ambient": 0.6, "diffuse": 0.4}
     if field in ("curvature", "gaussian"):
@@ -249,10 +268,12 @@ def _add_field(plotter: Any, samples: Sequence[_Sampled], field: Field, view: _V
         options |= {"cmap": "coolwarm", "clim": (-limit, limit), "scalar_bar_args": {"title": title, **_BAR}}
     else:
         bands = _STRIPES if field == "zebra" else _ISOPHOTES
-        colors = ["#101010", "#ffffff"] if field == "zebra" else ["#1f4e79", "#f2f2f2"]
+        usual, light = ("#101010", "#ffffff") if field == "zebra" else ("#1f4e79", "#f2f2f2")
         end = 180 if field == "zebra" else 90
-        options |= {"cmap": colors * (bands // 2), "n_colors": bands, "clim": (0, end), "show_scalar_bar": False}
-    for item, value in zip(samples, values, strict=True):
+        options |= {"n_colors": bands, "clim": (0, end), "show_scalar_bar": False}
+    for i, (item, value) in enumerate(zip(samples, values, strict=True)):
+        if field in ("zebra", "isophotes"):
+            options["cmap"] = [dark[i] if dark else usual, light] * (bands // 2)
         mesh = triangle_mesh(item.geometry, item.normal)
         mesh.point_data["field"] = np.nan_to_num(value).ravel()
         actor = plotter.add_mesh(mesh, scalars="field", **options)

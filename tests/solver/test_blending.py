@@ -2,11 +2,11 @@
 
 import numpy as np
 import pytest
-from helpers.bases import FACING, facing_pair, moved, patch, turned
-from helpers.occ import analyse, edge_point
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from helpers.bases import FACING, facing_pair, moved, patch, turned
+from helpers.occ import analyse, edge_point
 from solver import (
     Base,
     BSplineSurface,

@@ -7,10 +7,10 @@ from pathlib import Path
 import numpy as np
 import pyiges
 import pytest
-from helpers.bases import facing_pair
 from typer.testing import CliRunner
 
 import solver.blending
+from helpers.bases import facing_pair
 from solver import BSplineSurface, ComputationError, SemiStructuredSurface
 from solver.cli import app
 from solver.io.surface_files import read_surface, write_surface

@@ -4,9 +4,9 @@ import json
 
 import numpy as np
 import pytest
-from helpers.bases import facing_pair
 from typer.testing import CliRunner
 
+from helpers.bases import facing_pair
 from papers.cli import app
 from solver.io.surface_files import write_surface
 

@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
+
 from helpers.bases import facing_pair, moved
 from helpers.occ import analyse, edge_point
-
 from solver import Base, BSplineSurface, EdgeError, blend, measure_contact, measure_regularity
 from solver.operations import reverse_u, reverse_v, swap_directions
 from solver.regularity import area_bound

@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
-from helpers.splines import semistructured_surfaces
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from helpers.splines import semistructured_surfaces
 from solver.curvature import (
     gaussian_curvature,
     isophote_angle,

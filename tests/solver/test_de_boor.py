@@ -2,6 +2,9 @@
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
 from helpers.splines import (
     bspline_surfaces,
     curves,
@@ -11,9 +14,6 @@ from helpers.splines import (
     scale,
     semistructured_surfaces,
 )
-from hypothesis import given, settings
-from hypothesis import strategies as st
-
 from solver.de_boor import curve_points, surface_points
 
 # A value is a convex combination of control points: a few roundings for each of at most 12 levels, of both directions.

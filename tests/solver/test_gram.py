@@ -5,12 +5,12 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from helpers.bases import facing_pair, random_knots
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.integrate import quad
 from scipy.interpolate import BSpline
 
+from helpers.bases import facing_pair, random_knots
 from solver import BSplineCurve, BSplineSurface, InputError, SemiStructuredSurface, blend, thin_plate_energy
 from solver.de_boor import surface_points
 from solver.gram import Basis, EnergyForm, gauss_rule, gram_matrix

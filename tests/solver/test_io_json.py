@@ -4,10 +4,10 @@ import math
 
 import numpy as np
 import pytest
-from helpers.splines import surfaces
 from hypothesis import given
 from hypothesis import strategies as st
 
+from helpers.splines import surfaces
 from solver import BSplineCurve, BSplineSurface, EdgeError, FileError, InputError, SemiStructuredSurface, blend
 from solver.io.json_files import (
     StoredProblem,

@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
-from helpers.splines import knot_vectors
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from helpers.splines import knot_vectors
 from solver.errors import KnotError
 from solver.knots import (
     affine_knots,

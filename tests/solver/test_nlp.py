@@ -7,12 +7,12 @@ import casadi as ca
 import numpy as np
 import pytest
 import scipy.sparse as sp
-from helpers.bases import facing_pair
 from scipy.optimize import minimize
 
 from derivations.energy import Basis as ExactBasis
 from derivations.energy import ExactSurface
 from derivations.problem import ExactBase, blend_problem, derivatives_at, lagrangian
+from helpers.bases import facing_pair
 from solver import Base, BSplineSurface, blend
 from solver.correspondence import Correspondence
 from solver.nlp import constrained_problem, solve_constrained

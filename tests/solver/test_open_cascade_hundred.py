@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+
 from helpers.bases import facing_pair
 from helpers.occ import analyse, edge_point
 from solver import blend

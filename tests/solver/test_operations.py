@@ -4,10 +4,10 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from helpers.splines import basis, knot_vectors
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from helpers.splines import basis, knot_vectors
 from solver.curves import elevate_curve, insert_curve_knots, reverse_curve, split_curve
 from solver.errors import InputError, KnotError
 from solver.knots import basis_matrix, derivative_matrix, greville, reversed_knots

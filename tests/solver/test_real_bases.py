@@ -2,11 +2,11 @@
 
 import numpy as np
 import pytest
-from helpers.bases import facing_pair, patch, turned
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.interpolate import make_interp_spline
 
+from helpers.bases import facing_pair, patch, turned
 from solver import Base, BSplineSurface, FoldError, OptionError, SemiStructuredSurface, blend
 from solver.closing import periodic_points, reseamed, seam_order
 from solver.de_boor import curve_points, surface_points

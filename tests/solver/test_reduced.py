@@ -4,12 +4,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from helpers.bases import facing_pair, moved, patch
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.optimize import brute, minimize
 from scipy.stats import special_ortho_group
 
+from helpers.bases import facing_pair, moved, patch
 from solver import Base, BSplineSurface, ContactError, blend
 from solver.certificate import CertificateError, check_certificate
 from solver.correspondence import Correspondence

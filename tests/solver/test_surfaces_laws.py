@@ -1,6 +1,9 @@
 """Evaluation against the referee and the definition, and what every exact operation must leave as it is."""
 
 import numpy as np
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
 from helpers.splines import (
     bspline_surfaces,
     exact_point,
@@ -10,9 +13,6 @@ from helpers.splines import (
     semistructured_surfaces,
     surfaces,
 )
-from hypothesis import given, settings
-from hypothesis import strategies as st
-
 from solver.curves import insert_curve_knots, reverse_curve, split_curve
 from solver.de_boor import curve_points, surface_points
 from solver.operations import (

@@ -7,11 +7,11 @@ the right there) and at the ends. One disagreement, near knots, is splipy's; see
 import numpy as np
 import pytest
 from geomdl import NURBS, BSpline
-from helpers.occ import to_geom
-from helpers.splines import scale
 from scipy.interpolate import NdBSpline
 from splipy import BSplineBasis, Surface
 
+from helpers.occ import to_geom
+from helpers.splines import scale
 from solver import BSplineCurve, BSplineSurface, SemiStructuredSurface
 
 ORDERS = [(0, 0), (1, 0), (0, 1), (2, 0), (1, 1), (0, 2)]

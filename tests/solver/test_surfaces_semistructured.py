@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
-from helpers.splines import parameters, scale, semistructured_surfaces
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from helpers.splines import parameters, scale, semistructured_surfaces
 from solver.compatible import compatible_curves, convert_to_bspline
 from solver.curves import set_curve_continuity
 from solver.de_boor import curve_points, surface_points
