@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Literal, TypeAlias, get_args
 
@@ -52,11 +52,12 @@ _BAR = {
 
 @dataclass(frozen=True, eq=False)
 class _View:
-    """Where the camera looks from; unit vectors."""
+    """Where the camera looks from; unit vectors, and the eye that sees stripes, at infinity unless given."""
 
     towards_eye: FloatArray
     right: FloatArray
     up: FloatArray
+    eye: FloatArray | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,6 +74,7 @@ def render(
     control_points: Sequence[bool] | None = None,
     field: Field | None = None,
     towards_eye: ArrayLike | None = None,
+    eye_distance: float = np.inf,
     size: tuple[int, int] = (1600, 1200),
 ) -> None:
     """Draw surfaces into a PNG file.
@@ -94,6 +96,9 @@ def render(
         Without, the surfaces are shaded.
     towards_eye : array_like, shape (3,), optional
         Direction from the model to the eye, z upwards; chosen from the surfaces unless given.
+    eye_distance : float
+        From where the stripes are seen, in extents of the model: from far away a plane shows one stripe, from near by
+        several. The projection is parallel in any case.
     size : (int, int)
         Width and height in pixels.
 
@@ -116,6 +121,9 @@ def render(
     if _extent(samples) == 0:
         raise OptionError("surfaces: all points coincide, so there is nothing to draw; give a surface with an extent")
     view = _view(samples) if towards_eye is None else _view_from(np.asarray(towards_eye, dtype=np.float64))
+    if np.isfinite(eye_distance):
+        middle = _all_points(samples).mean(axis=0)
+        view = replace(view, eye=middle + eye_distance * _extent(samples) * view.towards_eye)
     shown = control_points or [False] * len(surfaces)
     polygons = [_polygons(surface) if show else [] for surface, show in zip(surfaces, shown, strict=True)]
     with atomic_path(path) as temporary, _quiet_vtk():
@@ -293,7 +301,8 @@ def _field_values(item: _Sampled, field: Field, view: _View) -> FloatArray:
         return np.minimum(angle, 180 - angle)
     # The angle of the eye's mirrored ray to an axis that lies across the picture, so that stripes cross edges of
     # either direction; light strips form rings about that axis.
-    mirrored = -view.towards_eye + 2 * (item.normal @ view.towards_eye)[..., None] * item.normal
+    seen_from = view.towards_eye if view.eye is None else view.eye - item.geometry.point
+    mirrored = -seen_from + 2 * np.sum(item.normal * seen_from, axis=-1)[..., None] * item.normal
     return isophote_angle(mirrored, view.right + view.up)
 
 
