@@ -162,7 +162,7 @@ def gram_matrix(a: Basis, b: Basis, order: int = 0) -> SparseMatrix:
     """
     breaks = merge_breakpoints(breakpoints(a.knots), breakpoints(b.knots))
     gram = _grams([(0, 1)], (a, b), breaks, _parts((a, b), breaks))[0, 1]
-    return sp.coo_array((gram.values[order], (gram.lines, gram.columns)), shape=(a.size, b.size)).tocsr()
+    return gram.matrix(gram.values[order])
 
 
 # Spans that are worked on at once: enough for speed, few enough to stay in fast memory.
@@ -183,8 +183,7 @@ class _Gram:
 
     Attributes
     ----------
-    lines, columns : ndarray of int, shape (E,)
-    values : ndarray, shape (3, E)
+    values : ndarray, shape (3, number of entries)
     """
 
     def __init__(self, a: Basis, b: Basis, breaks: FloatArray) -> None:
@@ -193,12 +192,16 @@ class _Gram:
         spans = np.searchsorted(first_a + a.degree, every), np.searchsorted(first_a, every, side="right") - 1
         start = first_b[spans[0]]
         count = first_b[spans[1]] + b.degree + 1 - start
-        ends = np.cumsum(count)
-        # Entry (i, j) has the place j + shift[i] in the list.
-        self._shift = ends - count - start
-        self.lines = np.repeat(every, count)
-        self.columns = np.arange(ends[-1]) - np.repeat(self._shift, count)
-        self.values = np.zeros((3, ends[-1]))
+        self._shape = a.size, b.size
+        self._row_starts = np.concatenate([[0], np.cumsum(count)])
+        # Entry (i, j) has the place j + shift[i].
+        self._shift = self._row_starts[:-1] - start
+        self._columns = np.arange(self._row_starts[-1]) - np.repeat(self._shift, count)
+        self.values = np.zeros((3, self._row_starts[-1]))
+
+    def matrix(self, values: FloatArray) -> SparseMatrix:
+        """Return the matrix with these entries, shape (a.size, b.size)."""
+        return sp.csr_array((values, self._columns, self._row_starts), shape=self._shape)
 
     def add(self, a: Samples, b: Samples, derivatives_a: list[FloatArray], derivatives_b: list[FloatArray]) -> None:
         """Add the integrals over one part of the domain."""
@@ -267,36 +270,35 @@ class EnergyForm:
         return next(_parts(self._kinds[0], self._breaks))
 
     def _along(self) -> Iterable[list[Samples]]:
-        """Samples of each distinct space, part by part; where there is but one part, it is kept."""
+        """Return samples of each distinct space, part by part; where there is but one part, it is kept."""
         if len(self._breaks) <= _SPANS_AT_ONCE + 1:
             return [self._only_part]
         return _parts(self._kinds[0], self._breaks)
 
     @cached_property
-    def _across_grams(self) -> FloatArray:
-        """Gram matrices of the u-basis, shape (3, m + 1, m + 1)."""
-        grams = np.zeros((3, self.u.size, self.u.size))
+    def _across_grams(self) -> list[FloatArray]:
+        """Gram matrices of the u-basis."""
         gram = _grams([(0, 0)], [self.u], breakpoints(self.u.knots), [[self._across]])[0, 0]
-        grams[:, gram.lines, gram.columns] = gram.values
-        return grams
+        return [gram.matrix(values).toarray() for values in gram.values]
 
-    def matrix(self, rows: Iterable[int]) -> SparseMatrix:
-        """Return the lines of H that belong to the given rows, shape (their control points, N)."""
+    def blocks(self, rows: Iterable[int]) -> dict[tuple[int, int], SparseMatrix]:
+        """Return the blocks of H that couple the given rows i with any row j, each (size of i, size of j)."""
         distinct, kind = self._kinds
         p, m = self.u.degree, len(self.rows) - 1
-        blocks = [(i, j) for i in rows for j in range(max(0, i - p), min(m, i + p) + 1)]
-        grams = _grams({(kind[i], kind[j]) for i, j in blocks}, distinct, self._breaks, self._along())
-        data, lines, columns = [], [], []
-        start, last = 0, blocks[0][0]
-        for i, j in blocks:
-            if i != last:
-                start, last = start + self.rows[last].size, i
-            gram = grams[kind[i], kind[j]]
-            data.append(gram_block(*self._across_grams[:, i, j], *gram.values))
-            lines.append(gram.lines + start)
-            columns.append(gram.columns + self.offsets[j])
-        shape = (start + self.rows[last].size, self.offsets[-1])
-        return sp.coo_array((np.concatenate(data), (np.concatenate(lines), np.concatenate(columns))), shape).tocsr()
+        pairs = [(i, j) for i in rows for j in range(max(0, i - p), min(m, i + p) + 1)]
+        grams = _grams({(kind[i], kind[j]) for i, j in pairs}, distinct, self._breaks, self._along())
+        return {
+            (i, j): (gram := grams[kind[i], kind[j]]).matrix(
+                gram_block(*(a[i, j] for a in self._across_grams), *gram.values)
+            )
+            for i, j in pairs
+        }
+
+    def matrix(self) -> SparseMatrix:
+        """Return H, shape (N, N)."""
+        every = range(len(self.rows))
+        blocks = self.blocks(every)
+        return sp.block_array([[blocks.get((i, j)) for j in every] for i in every], format="csr")
 
     def products(self, points: FloatArray) -> FloatArray:
         """Return the energy products of surfaces over these knots, shape (K, K); energies are on the diagonal.

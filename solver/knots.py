@@ -75,14 +75,15 @@ def checked_knots(knots: ArrayLike, degree: int, n_control: int, name: str = "kn
                 "(clamped_surface and clamp_knots take other vectors)"
             )
     inner = array[degree + 1 : -degree - 1]
-    ends = (array[0], array[-1])
-    values, first, counts = np.unique(inner, return_index=True, return_counts=True)
-    for value, i, count in zip(values, first, counts, strict=True):
-        at_end = value in ends
-        if at_end or count > degree:
-            found, limit = (count + degree + 1, degree + 1) if at_end else (count, degree)
-            where = f"{name}[{degree + 1 + i}]"
-            raise KnotError(f"{where}: knot {value} has multiplicity {found}, expected at most {limit}")
+    first = np.flatnonzero(np.diff(inner, prepend=np.nan) != 0)
+    counts = np.diff(first, append=len(inner))
+    at_end = (inner[first] == array[0]) | (inner[first] == array[-1])
+    wrong = at_end | (counts > degree)
+    if wrong.any():
+        k = int(np.argmax(wrong))
+        found, limit = (counts[k] + degree + 1, degree + 1) if at_end[k] else (counts[k], degree)
+        where = f"{name}[{degree + 1 + first[k]}]"
+        raise KnotError(f"{where}: knot {inner[first[k]]} has multiplicity {found}, expected at most {limit}")
     return array
 
 

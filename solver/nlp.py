@@ -91,7 +91,7 @@ def constrained_problem(problem: BlendProblem) -> ConstrainedProblem:
     p = ca.reshape(x[: 3 * n], n, 3)
 
     first = problem.control_points(*problem.start)
-    matrix = problem.form.matrix(range(len(problem.form.rows))).tocsc()
+    matrix = problem.form.matrix().tocsc()
     energy = _casadi_matrix(matrix)
     magnitude = float(np.sum(np.abs(first) * (abs(matrix) @ np.abs(first))))
     # Two bases that continue each other have energy 0 at the start: then the scale must stay clear of rounding.

@@ -140,14 +140,16 @@ class _FreeSystem:
     """
 
     def __init__(self, form: EnergyForm, rows: range, seam_orders: list[int]) -> None:
+        self.rows = rows
+        self.offsets = form.offsets
         self.free = slice(form.offsets[rows.start], form.offsets[rows.stop])
         self.size = self.free.stop - self.free.start
         if self.size == 0:
             return
-        self.lines = form.matrix(rows)
+        self.blocks = form.blocks(rows)
+        matrix = sp.block_array([[self.blocks.get((i, j)) for j in rows] for i in rows], format="csr")
         self.z = None
         along = [greville(form.rows[i].knots, form.rows[i].degree) for i in rows]
-        matrix = self.lines[:, self.free]
         if max(seam_orders) >= 0:
             self.z = sp.block_diag(
                 [periodic_points(form.rows[i], order) for i, order in zip(rows, seam_orders, strict=True)], format="csr"
@@ -170,9 +172,12 @@ class _FreeSystem:
         """Fill the free rows of p, shape (N, d), so that the energy is least."""
         if self.size == 0:
             return points
-        filled = points.copy()
-        filled[self.free] = 0.0
-        right = -(self.lines @ filled)
+        # What the prescribed rows do to the gradient of the energy.
+        right = np.zeros((self.offsets[-1], points.shape[1]))
+        for (i, j), block in self.blocks.items():
+            if j not in self.rows:
+                right[self._part(i)] -= block @ points[self._part(j)]
+        right = right[self.free]
         right = (right if self.z is None else self.z.T @ right)[self.order]
         x = self.factor.solve(right)
         correction = self.factor.solve(right - self.matrix @ x)
@@ -185,8 +190,12 @@ class _FreeSystem:
             )
         free = np.empty(x.shape)
         free[self.order] = x
+        filled = points.copy()
         filled[self.free] = free if self.z is None else self.z @ free
         return filled
+
+    def _part(self, row: int) -> slice:
+        return slice(self.offsets[row], self.offsets[row + 1])
 
 
 def make_problem(a: Side, b: Side, options: ProblemOptions) -> BlendProblem:

@@ -86,7 +86,7 @@ def substituted_objective(problem: BlendProblem) -> tuple[ca.Function, np.ndarra
         for row, prescribed in zip(rows, contact_rows(side, a, form.u.degree, spans), strict=False):
             values[row] = prescribed
     p = ca.vertcat(*(values[i] for i in range(len(form.rows))))
-    energy = ca.dot(p, ca.mtimes(ca.DM(form.matrix(range(len(form.rows))).tocsc()), p))
+    energy = ca.dot(p, ca.mtimes(ca.DM(form.matrix().tocsc()), p))
     unit = tuple(1.0 if is_free else fixed for is_free, fixed in zip(problem.free, problem.start, strict=True))
     points = problem.control_points(unit[0], unit[1])
     # y is the first part of each row.

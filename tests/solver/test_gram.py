@@ -96,7 +96,7 @@ def test_energy_agrees_with_the_referee_and_with_the_gram_form(seed):
     p = np.concatenate(points)
     # Sums of squares of random numbers: no cancellation, so only the rounding of some 1e3 operations.
     assert energy == pytest.approx(referee_energy(surface), rel=1e-11)
-    assert energy == pytest.approx(float(np.sum(p * (EnergyForm(u, tuple(rows)).matrix(range(4)) @ p))), rel=1e-10)
+    assert energy == pytest.approx(float(np.sum(p * (EnergyForm(u, tuple(rows)).matrix() @ p))), rel=1e-10)
 
 
 def test_energy_of_a_known_surface():
