@@ -214,9 +214,14 @@ def measured_by_formula(
     across = np.cross(base.normal, base.tangent_v)
     k_base, k_blend = base.normal_curvature(across), sign * blend.normal_curvature(across)
     jump = float(np.abs(k_base - k_blend).max())
-    size = model_size(side.surface)
+    size = max(model_size(side.surface), float(np.ptp(surface.evaluate_grid(*_ends(surface)), axis=(0, 1)).max()))
     largest = max(float(np.abs(k_base).max()), float(np.abs(k_blend).max()), 1e-3 / size)
     return ContactMeasure(gap, float(np.degrees(np.arcsin(np.minimum(sine, 1)).max())), jump, jump / largest, turn)
+
+
+def _ends(surface: ParametricSurface) -> tuple[FloatArray, FloatArray]:
+    (u0, u1), (v0, v1) = surface.domain
+    return np.linspace(u0, u1, 9), np.linspace(v0, v1, 33)
 
 
 def corresponding(

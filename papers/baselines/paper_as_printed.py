@@ -19,10 +19,11 @@ from papers.baselines.contacts import ContactSide, contact_sides
 from papers.baselines.interface import BlendTask, Method, Outcome
 from papers.baselines.layout import semistructured
 from papers.baselines.least_energy import RowRule, least_energy
+from papers.baselines.quadratic_forms import THIN_PLATE, energy_matrix
 from papers.lin2014 import printed as pr
 from solver import blend
 from solver.arrays import FloatArray
-from solver.gram import Basis, EnergyForm
+from solver.gram import Basis
 
 _START = ((pr.P_0, pr.P_1, pr.P_2), (pr.R_0, pr.R_1, pr.R_2), (pr.COND_1_1, pr.COND_2_1, pr.COND_3_1))
 _END = ((pr.P_m, pr.P_m1, pr.P_m2), (pr.S_0, pr.S_1, pr.S_2), (pr.COND_1_2, pr.COND_2_2, pr.COND_3_2))
@@ -68,8 +69,7 @@ def blend_as_printed(task: BlendTask) -> Outcome:
     a, b = contact_sides(task)
     started = time.perf_counter()
     rules = printed_rule(a, u, at_end=False), printed_rule(b, u, at_end=True)
-    form = EnergyForm(u, tuple(bases))
-    matrix = form.matrix(range(len(bases)))
+    matrix = energy_matrix(u, bases, THIN_PLATE)
     parametric = least_energy(matrix, bases, rules, ((1.0, 1.0), (1.0, 1.0)), task.closed)
     if task.continuity == "C2":
         surface = semistructured(u, bases, parametric.rows)
@@ -86,7 +86,7 @@ def blend_as_printed(task: BlendTask) -> Outcome:
     scale = np.concatenate([np.full(len(start) - 2, size), np.ones(2)])
     found = minimize(energy, start / scale, method="BFGS")
     x = found.x * scale
-    rows = np.split(assemble(x), form.offsets[1:-1])
+    rows = np.split(assemble(x), np.cumsum([basis.size for basis in bases])[:-1])
     surface = semistructured(u, bases, rows)
     seconds = time.perf_counter() - started
     a2, b2 = float(x[-2] ** 2), float(x[-1] ** 2)

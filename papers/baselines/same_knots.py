@@ -13,7 +13,7 @@ from papers.baselines.contacts import contact_sides, on_common_knots
 from papers.baselines.interface import BlendTask, Method, Outcome
 from papers.baselines.layout import tensor_product, u_basis
 from papers.baselines.least_energy import contact_rule, least_energy
-from solver.gram import EnergyForm
+from papers.baselines.quadratic_forms import THIN_PLATE, energy_matrix
 
 
 def blend_same_knots(order: int, task: BlendTask) -> Outcome:
@@ -23,7 +23,7 @@ def blend_same_knots(order: int, task: BlendTask) -> Outcome:
     a, b = on_common_knots(*sides)
     u, v = u_basis(6 + task.middle_curves), a.along
     bases = (v,) * u.size
-    matrix = EnergyForm(u, bases).matrix(range(u.size))
+    matrix = energy_matrix(u, bases, THIN_PLATE)
     rules = contact_rule(a, order, u), contact_rule(b, order, u)
     found = least_energy(matrix, bases, rules, (a.bounds, b.bounds), task.closed)
     surface = tensor_product(u, v, found.rows)
