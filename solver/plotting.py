@@ -292,9 +292,9 @@ def _field_values(item: _Sampled, field: Field, view: _View) -> FloatArray:
     if field == "gaussian":
         return item.geometry.gaussian
     if field == "curvature":
-        # Towards the normal is positive in `curvature`; bulging towards the eye is what a reader sees.
-        facing = float(np.sum(_area(item) * (item.normal @ view.towards_eye)))
-        return item.geometry.mean * (-1.0 if facing >= 0 else 1.0)
+        # Towards the normal is positive in `curvature`; bulging towards the eye is what a reader sees, point by point:
+        # of a whole tube the outside of one part is seen, and the inside of another.
+        return item.geometry.mean * np.where(item.normal @ view.towards_eye >= 0, -1.0, 1.0)
     if field == "isophotes":
         angle = isophote_angle(item.normal, _unit(view.towards_eye + view.up))
         # Either side of a surface may be the outer one.

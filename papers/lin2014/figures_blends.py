@@ -1,4 +1,4 @@
-"""Figures 4 to 11 of the paper, remade on our own bases (`stand_ins`): rendering, mean curvature, zebra.
+"""Figures 4 to 11 of the paper, remade on our own bases (`example_bases`): rendering, mean curvature, zebra.
 
 Colours are those of the paper's captions: bases green, blends red.
 """
@@ -22,7 +22,7 @@ from papers.baselines.interface import BlendTask
 from papers.baselines.registry import method
 from papers.baselines.splines import as_spline
 from papers.lin2014.section5 import FIGURES, PRINTED, example
-from papers.lin2014.stand_ins import figure_5_on_common_knots
+from papers.lin2014.example_bases import figure_5_on_common_knots
 from papers.reproduction import Drawing
 from solver import Base, BlendResult, SemiStructuredSurface, blend
 from solver.io.disk import atomic_path, check_output
@@ -34,8 +34,8 @@ _DPI = 200
 _RENDERED = (1200, 900)
 # Near enough for some stripes on a plane.
 _EYE = 1.2
-# Fig. 7: along the contact from in front and from above, and from behind.
-_VIEWS_7 = ((-0.45, -1.0, 0.55), (0.55, 1.0, 0.75))
+# Fig. 7: nearly along the contact, from both ends of it.
+_VIEWS_7 = ((-0.1, -1.0, 0.14), (0.25, 1.0, 0.3))
 _COLORS = (BASE_COLOR, BASE_COLOR, BLEND_COLOR)
 
 
@@ -85,15 +85,26 @@ def draw_figure_5(path: str | Path) -> None:
 
 
 def draw_figure_7(path: str | Path) -> None:
-    """Draw both views of Fig. 7."""
+    """Draw both views of Fig. 7, and one parameter line, which shows the two turns best."""
     check_output(path)
     task = example(6)
     backwards, _ = as_spline(method("hartmann-inside").run(task).surface)
-    figure = Figure(figsize=(11, 4.4), dpi=_DPI)
-    panels = [(0.01, 0.09, 0.48, 0.9), (0.51, 0.09, 0.48, 0.9)]
-    for panel, view in zip(panels, _VIEWS_7, strict=True):
+    figure = Figure(figsize=(11, 6.2), dpi=_DPI)
+    panels = [(0.01, 0.6, 0.48, 0.38), (0.51, 0.6, 0.48, 0.38), (0.06, 0.12, 0.88, 0.37)]
+    for panel, view in zip(panels[:2], _VIEWS_7, strict=True):
         _show(figure.add_axes(panel), _scene(task, backwards), towards_eye=view, colors=_COLORS)
-    _caption(figure, panels, ["one side", "the other side"], 0.03)
+    line = figure.add_axes(panels[2])
+    t = np.linspace(0, 1, 400)
+    for surface, color, width in zip(_scene(task, backwards), _COLORS, (5.0, 5.0, 1.8), strict=True):
+        points = surface.evaluate(surface.domain[0][0] + t * np.diff(surface.domain[0]), np.full_like(t, 0.5))
+        line.plot(points[:, 0], points[:, 2], color=color, lw=width, solid_capstyle="butt")
+    line.set_aspect("equal")
+    line.set_xlabel("$x$", labelpad=0)
+    line.set_ylabel("$z$", rotation=0)
+    line.spines[["top", "right"]].set_visible(False)
+    _caption(figure, panels[:2], ["one side", "the other side"], 0.565)
+    text = "the lines $v = 1/2$ of all three: the blend leaves both contacts backwards, on the bases"
+    _caption(figure, panels[2:], [text], 0.02, first=2)
     _save(figure, path)
 
 
@@ -117,7 +128,7 @@ def _scene(task: BlendTask, surface: Surface) -> list[Surface]:
 def _draw_rows(path: str | Path, rows: Sequence[list[Surface]], names: Sequence[str]) -> None:
     """Draw rendering, mean curvature and zebra of each scene in a row of its own."""
     height = 1 / len(rows)
-    figure = Figure(figsize=(14, 4.2 * len(rows)), dpi=_DPI)
+    figure = Figure(figsize=(14, 3.7 * len(rows)), dpi=_DPI)
     fields: tuple[dict[str, Any], ...] = (
         {"colors": _COLORS},
         {"field": "curvature"},

@@ -1,7 +1,7 @@
 """Section 5 of the paper as data: what it prints of each example, and what of it can be used.
 
 The paper prints knot vectors of contact curves, sizes of control nets and a table of results, but no control points.
-The bases in `examples/` are our own (`stand_ins`): they match the description, the printed knots and the printed
+The bases in `examples/` are our own (`example_bases`): they match the description, the printed knots and the printed
 sizes. So energies, times and curvatures cannot be compared digit by digit. What can be compared: sizes, knots, numbers
 of control points of the blends, the continuity that is reached, and in which order methods stand.
 """
@@ -10,9 +10,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 
 from papers.baselines.interface import BlendTask
+from papers.lin2014 import printed as pr
 from solver import Base
 from solver.io.json_files import read_problem
 from solver.surfaces import BSplineSurface
@@ -66,43 +67,52 @@ class Departure:
     why: str
 
 
-_LARGE_ARC = (0, 0, 0, 0, 0.3, 0.7, 1, 1, 1, 1)
-_SMALL_ARC = (0, 0, 0, 0, 0.5, 1, 1, 1, 1)
+_CYLINDERS = ("fig-8.larger", "fig-8.smaller")
 
+
+def _printed(
+    figure: int,
+    description: str,
+    knots: tuple[str, str] | None,
+    continuity: Literal["C2", "G2"],
+    middle_curves: int,
+    iterations: int | None,
+    *table: Any,
+) -> Printed:
+    vectors = None
+    if knots is not None:
+        first, second = (tuple(float(x) for x in pr.KNOTS[key]) for key in knots)
+        vectors = (first, second)
+    sizes = pr.SIZES[f"fig-{figure}"]
+    return Printed(figure, description, sizes, vectors, continuity, middle_curves, iterations, *table)
+
+
+# Figure, description, knots; continuity, middle curves, iterations; seconds, energy and mean curvature of Table 1.
 PRINTED = {
     p.figure: p
     for p in (
-        Printed(
-            5, "two planar patches", ((6, 5), (6, 6)),
-            ((0, 0, 0, 0, 1 / 2, 1, 1, 1, 1), (0, 0, 0, 0, 1 / 3, 2 / 3, 1, 1, 1, 1)),
+        _printed(
+            5, "two planar patches", ("fig-5.first", "fig-5.second"),
             "C2", 1, None, 0.4515, 3.09e6, (0.0, 0.0817),
         ),
-        Printed(
-            6, "a planar patch and a curved one", ((5, 10), (5, 8)),
-            (
-                (0, 0, 0, 0, 0.15, 0.28, 0.48, 0.55, 0.70, 0.86, 1, 1, 1, 1),
-                (0, 0, 0, 0, 0.22, 0.39, 0.61, 0.76, 1, 1, 1, 1),
-            ),
+        _printed(
+            6, "a planar patch and a curved one", ("fig-6.planar", "fig-6.curved"),
             "G2", 1, 5, 1.4599, 3.15e6, (0.0, 0.2581),
         ),
-        Printed(
-            8, "two part cylinders of different radius", ((6, 6), (6, 5)), (_LARGE_ARC, _SMALL_ARC),
+        _printed(
+            8, "two part cylinders of different radius", _CYLINDERS,
             "C2", 1, None, 0.4520, 2.44e6, (0.0, 0.3822),
         ),
-        Printed(
-            9, "the part cylinders of Fig. 8 in another posture", ((6, 6), (6, 5)), (_LARGE_ARC, _SMALL_ARC),
+        _printed(
+            9, "the part cylinders of Fig. 8 in another posture", _CYLINDERS,
             "C2", 1, None, 0.4331, 3.62e6, (0.0, 0.2834),
         ),
-        Printed(
-            10, "two complete cylinders", ((10, 10), (8, 8)),
-            (
-                (0, 0, 0, 0.142857, 0.285714, 0.428571, 0.571429, 0.714286, 0.857143, 1, 1, 1, 1),
-                (0, 0, 0, 0, 0.2, 0.4, 0.6, 0.8, 1, 1, 1, 1),
-            ),
+        _printed(
+            10, "two complete cylinders", ("fig-10.first", "fig-10.second"),
             "G2", 0, 6, 1.6294, 2.99e6, (0.0, 0.1645),
         ),
-        Printed(
-            11, "a cone and a free-form surface", ((4, 10), (5, 64)), None,
+        _printed(
+            11, "a cone and a free-form surface", None,
             "G2", 0, None, 5.5418, 6.78e6, (0.0, 1.0613),
         ),
     )
