@@ -76,6 +76,32 @@ def reproduce_command(
         raise typer.Exit(ANSWER_IS_NO)
 
 
+@app.command("generate")
+@reports_errors
+def generate_command(
+    check: Annotated[bool, typer.Option("--check", help="Write nothing: show differences, exit 1 if any.")] = False,
+    c: Annotated[
+        str | None, typer.Option("--c", metavar="DIR", help="Write C99 for the blend problem of --problem instead.")
+    ] = None,
+    problem: Annotated[str | None, typer.Option(metavar="FILE", help="A stored blend problem, for --c.")] = None,
+) -> None:
+    """Write solver/generated from the derivations (in a checkout), or C for one blend problem (anywhere)."""
+    from solver.errors import OptionError
+
+    if c is None and problem is None:
+        derivations.cli.generate(check)
+        return
+    if c is None or problem is None:
+        missing, given = ("--c DIR", "--problem") if c is None else ("--problem FILE", "--c")
+        raise OptionError(f"generate: found {given} alone, expected {missing} with it")
+    if check:
+        raise OptionError("generate: found --check with --c, expected one of them")
+    from solver.c_code import write_c
+
+    for path in write_c(c, problem):
+        typer.echo(f"wrote {path}")
+
+
 def decided(name: str) -> Ledger:
     """Decide a paper, with a progress bar where standard error is a terminal."""
     from papers.ledger import load_paper
@@ -120,8 +146,9 @@ def _progress(total: int) -> Iterator[Callable[[Decision], None] | None]:
         yield lambda decision: bar.update(task, advance=1, description=decision.id)
 
 
+# `generate` above stands for the one of `derivations`, which may not know of `solver`.
 for _mounted in (solver.cli.app, derivations.cli.app):
-    app.registered_commands += _mounted.registered_commands
+    app.registered_commands += [c for c in _mounted.registered_commands if c.callback is not derivations.cli.generate]
 
 
 def main() -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -92,7 +93,7 @@ def constrained_problem(problem: BlendProblem) -> ConstrainedProblem:
 
     first = problem.control_points(*problem.start)
     matrix = problem.form.matrix().tocsc()
-    energy = _casadi_matrix(matrix)
+    energy = casadi_matrix(matrix)
     magnitude = float(np.sum(np.abs(first) * (abs(matrix) @ np.abs(first))))
     # Two bases that continue each other have energy 0 at the start: then the scale must stay clear of rounding.
     f_scale = max(float(np.sum(first * (matrix @ first))), 1e-4 * magnitude)
@@ -150,7 +151,7 @@ def _hessian(energy: ca.DM, prescribed: ca.Function, n_conditions: int) -> ca.Fu
     return ca.Function("hessian", [x, ca.MX.sym("p", 0, 0), lam_f, lam_g], [ca.diagcat(*blocks)], *names)
 
 
-def _casadi_matrix(matrix: SparseMatrix) -> ca.DM:
+def casadi_matrix(matrix: SparseMatrix) -> ca.DM:
     """Return a CSC matrix for CasADi."""
     return ca.DM(
         ca.Sparsity(matrix.shape[0], matrix.shape[1], matrix.indptr.tolist(), matrix.indices.tolist()), matrix.data
@@ -170,8 +171,10 @@ def _seam_conditions(problem: BlendProblem, p: Any) -> list[Any]:
     return conditions
 
 
-def contact_rows(side: Side, a: Any, degree: int, spans: tuple[float, float]) -> list[Any]:
-    """Rows that the contact prescribes, each an (n, 3) expression in a."""
+def contact_rows(
+    side: Side, a: Any, degree: int, spans: tuple[float, float], rows: Sequence[Any] | None = None
+) -> list[Any]:
+    """Rows that the contact prescribes, each an (n, 3) expression in a and in the rows of the base."""
     q = side.degree
     if side.order == 0:
         matrix = ca.DM.ones(1, 1)
@@ -179,9 +182,9 @@ def contact_rows(side: Side, a: Any, degree: int, spans: tuple[float, float]) ->
         matrix = contact_casadi.contact_rows_1(a, degree, spans[0], q, side.spans[0])
     else:
         matrix = contact_casadi.contact_rows_2(a, degree, *spans, q, *side.spans)
-    rows = [ca.DM(row) for row in side.rows]
+    base = [ca.DM(row) for row in side.rows] if rows is None else rows
     order = side.order + 1
-    return [sum((matrix[i, j] * rows[j] for j in range(1, order)), matrix[i, 0] * rows[0]) for i in range(order)]
+    return [sum((matrix[i, j] * base[j] for j in range(1, order)), matrix[i, 0] * base[0]) for i in range(order)]
 
 
 def solve_constrained(problem: BlendProblem) -> ConstrainedSolution:

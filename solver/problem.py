@@ -117,8 +117,9 @@ class BlendProblem:
         return min(self.seam_order, self.form.rows[row].size // 2 - 1)
 
     @cached_property
-    def _free_system(self) -> _FreeSystem:
-        return _FreeSystem(self.form, self.free_rows, [self.seam_order_of(i) for i in self.free_rows])
+    def free_system(self) -> FreeSystem:
+        """What has to be solved for the free rows."""
+        return FreeSystem(self.form, self.free_rows, [self.seam_order_of(i) for i in self.free_rows])
 
     def control_points(self, a: float, b: float) -> FloatArray:
         """Return p of least energy for given alpha^2 and beta^2, shape (N, 3): one linear solve for the free rows."""
@@ -130,13 +131,28 @@ class BlendProblem:
 
     def completed(self, points: FloatArray) -> FloatArray:
         """Fill the free rows of p, shape (N, d), so that the energy is least."""
-        return self._free_system.completed(points)
+        return self.free_system.completed(points)
 
 
-class _FreeSystem:
+class FreeSystem:
     """The stationarity system of the free rows, factorised once.
 
     Free control points are Z y: Z is the identity, but for closed rows that are to be smooth across their seam.
+
+    Attributes
+    ----------
+    size : int
+        Number of free control points; where it is 0 there is nothing else.
+    free : slice
+        Their place in p.
+    blocks : dict of sparse matrices
+        Those of H that couple free rows i with any row j.
+    z : sparse matrix or None
+        None is the identity.
+    order : ndarray of int
+        Sorts y along v.
+    matrix : sparse matrix
+        The system for the sorted y: symmetric, positive definite, banded.
     """
 
     def __init__(self, form: EnergyForm, rows: range, seam_orders: list[int]) -> None:

@@ -5,8 +5,8 @@ from __future__ import annotations
 import os
 import secrets
 import shutil
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Iterator, Mapping
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
 from solver.errors import FileError
@@ -84,6 +84,49 @@ def write_text(path: str | Path, text: str) -> None:
         As `atomic_path`.
     """
     write_bytes(path, text.encode())
+
+
+def check_folder(path: str | Path) -> Path:
+    """Return the real path of a folder if files can be written there, or if it can be made.
+
+    Raises
+    ------
+    FileError
+        A file of that name, no such parent folder, or no right to write.
+    """
+    folder = Path(os.path.realpath(path))
+    if folder.is_dir():
+        if not os.access(folder, os.W_OK):
+            raise FileError(f"{path}: may not be written to; choose another folder")
+        return folder
+    if folder.exists():
+        raise FileError(f"{path}: is not a folder; give the name of a folder")
+    return check_output(path)
+
+
+def write_texts(path: str | Path, texts: Mapping[str, str]) -> list[Path]:
+    """Write files by name into a folder, made if missing; all of them or none.
+
+    Raises
+    ------
+    FileError
+        As `check_folder`, or the system refused to write.
+    """
+    folder = check_folder(path)
+    is_new = not folder.is_dir()
+    try:
+        folder.mkdir(exist_ok=True)
+        with ExitStack() as stack:
+            # Every text lies in its temporary file before the first takes its place.
+            for name, text in texts.items():
+                stack.enter_context(atomic_path(folder / name)).write_bytes(text.encode())
+    except (OSError, FileError) as error:
+        if is_new:
+            shutil.rmtree(folder, ignore_errors=True)
+        if isinstance(error, FileError):
+            raise
+        raise FileError(f"{path}: cannot be written: {error.strerror or error}") from error
+    return [folder / name for name in texts]
 
 
 def read_bytes(path: str | Path) -> bytes:
