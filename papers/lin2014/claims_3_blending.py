@@ -180,7 +180,7 @@ CLAIMS: tuple[Claim, ...] = (
     holds("sec-3.uniform-knots", _BLEND, "u_i = i / (m - k + 2) spaces the inner knots uniformly.",
           part(Check(blending.uniform_knot_cases, Strength.RATIONAL, "equal division of [0, 1] by as many knots"),
                pr.UNIFORM_KNOT)),
-    holds("sec-3.three-curves", _BLEND, "The first three curves have the knots of R's contact curve, the last those of S.",
+    holds("sec-3.three-curves", _BLEND, "The first three curves have the knots of R's contact curve, the last of S.",
           part(proved(blending.three_row_cases, "the derived rows: combinations of R_0 .. R_2, with R_2 in row 2",
                       Strength.EACH_ORDER))),
     fails("sec-3.fewer-better", _BLEND, "In general, the fewer control points the blend has, the better its quality.",

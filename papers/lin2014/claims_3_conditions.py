@@ -10,6 +10,9 @@ from papers.ledger import Claim, Correction, Formula, Part, Reading, Verdict
 from papers.lin2014 import printed as pr
 from papers.lin2014.consequences import measured_rows
 from papers.lin2014.contact_checks import row_check, row_counterexample, t_ks1, u_before, u_last, w_kr1
+from papers.lin2014.geometry_checks import direction_cases, shape_parameter_cases
+from papers.lin2014.property_checks import proved, question
+from papers.lin2014.records import ambiguous, fails, holds_if, part
 
 _START_CHAINS = (*pr.COND_3_1.neighbours, (pr.w_kr, w_kr1))
 _END_CHAINS = (*pr.COND_3_2.neighbours, (pr.t_ks, t_ks1), (u_last, u_before))
@@ -53,6 +56,20 @@ TRUE_3_2 = Formula(
     ),
     (u_before > 0, u_before <= u_last, u_last < 1, pr.t_ks > pr.t_s, t_ks1 >= pr.t_ks, pr.k >= 3, pr.k_s >= 2),
     _END_CHAINS,
+)
+
+# The conditions with alpha = beta = 1, printed and true.
+PARAMETRIC_3_1 = Formula(
+    pr.COND_3_1.relation.subs(pr.alpha, 1),
+    tuple(x for x in pr.COND_3_1.variables if x != pr.alpha),
+    pr.COND_3_1.assumptions,
+    pr.COND_3_1.neighbours,
+)
+TRUE_PARAMETRIC_3_1 = Formula(
+    TRUE_3_1.relation.subs(pr.alpha, 1),
+    tuple(x for x in TRUE_3_1.variables if x != pr.alpha),
+    TRUE_3_1.assumptions,
+    TRUE_3_1.neighbours,
 )
 
 _WHERE = "Section 3, continuity conditions"
@@ -101,7 +118,10 @@ CLAIMS = (
         _WHERE,
         "Row 2 that makes the contact with R curvature-continuous, P_uu = alpha^4 R_ww, for every order k and k_r.",
         Verdict.FAILS,
-        (Reading((Part(row_check("start", 2), pr.COND_3_1),)),),
+        (
+            Reading((Part(row_check("start", 2), pr.COND_3_1),), label="u_1 and w_{k_r} - w_s as printed"),
+            Reading((Part(row_check("start", 2), pr.COND_3_1_SQUARES),), label="both squared, if the scan lost that"),
+        ),
         Correction(
             "Each second difference must be one of divided differences: over u_1 and u_2 on the blend, over the first "
             "two spans of the base on R.",
@@ -109,7 +129,8 @@ CLAIMS = (
         ),
         partial(row_counterexample, "start", 2, pr.COND_3_1),
         partial(measured_rows, "start", {2: pr.COND_3_1}, _SECOND_ORDER_TEXT),
-        remark="It happens to hold where u_1 = u_2 = w_{k_r} - w_s = w_{k_r+1} - w_s, for instance between Bezier "
+        remark="The blend gets the base's second derivative along the normal times (w_{k_r+1} - w_s) / u_2. It happens "
+        "to hold where u_1 = u_2 = w_{k_r} - w_s = w_{k_r+1} - w_s, for instance between Bezier "
         "surfaces over [0, 1]; but (13) asks for m >= k+1, so that U has inner knots and u_1 < u_2 unless they "
         "coincide. With the paper's uniform u_i, u_2 = 2 u_1, and it never holds.",
     ),
@@ -118,7 +139,10 @@ CLAIMS = (
         _WHERE,
         "Row m-2 that makes the contact with S curvature-continuous, P_uu = beta^4 S_tt, for every order k and k_s.",
         Verdict.FAILS,
-        (Reading((Part(row_check("end", 2), pr.COND_3_2),)),),
+        (
+            Reading((Part(row_check("end", 2), pr.COND_3_2),), label="1 - u_{m-3} and t_{k_s} - t_s as printed"),
+            Reading((Part(row_check("end", 2), pr.COND_3_2_SQUARES),), label="both squared, if the scan lost that"),
+        ),
         Correction(
             "As for (3.1), with the distances of the last two inner knots of U from 1.",
             (Part(row_check("end", 2), TRUE_3_2),),
@@ -127,4 +151,33 @@ CLAIMS = (
         partial(measured_rows, "end", {2: pr.COND_3_2}, _SECOND_ORDER_TEXT),
         remark="Two errors in one formula: that of (3.1), and for k other than 4 the index of (2.2).",
     ),
-)
+    holds_if("sec-3.sufficient-g1", _WHERE, "For all alpha, beta, (1.1), (1.2), (2.1), (2.2) suffice for G1.",
+             "alpha and beta are not zero",
+             part(question(lambda: shape_parameter_cases(1), "the implicit equation of a base, exact, regularity")),
+             remark="At alpha = 0 rows 0 and 1 of the blend coincide and it has no tangent plane at the contact; "
+             "nothing in the method keeps the search away from there (see sec-4.unconstrained)."),
+    fails("sec-3.sufficient-g2", _WHERE, "(1.1) to (3.2) together suffice for G2.",
+          *(part(row_check("start", row), getattr(pr, f"COND_{row + 1}_1")) for row in range(3)),
+          correction=Correction(
+              "With (3.1) and (3.2) corrected they do, for alpha and beta not zero.",
+              (Part(row_check("start", 0), pr.COND_1_1), Part(row_check("start", 1), pr.COND_2_1),
+               Part(row_check("start", 2), TRUE_3_1), Part(row_check("end", 2), TRUE_3_2))),
+          counterexample=partial(row_counterexample, "start", 2, pr.COND_3_1),
+          consequence=partial(measured_rows, "start", {1: pr.COND_2_1, 2: pr.COND_3_1},
+                              "The made pair with rows 1 and 2 as printed, the rest as in the checked G2 blend")),
+    ambiguous("sec-3.parametric-c1", "Section 3, parametric continuity",
+              "With alpha = beta = 1 the G1 conditions become C1 conditions.",
+              Reading((part(proved(lambda: direction_cases(1), "the chain rule")),),
+                      label="in the parameters w of R and u of P as they are, P_u = R_w"),
+              Reading((part(proved(lambda: direction_cases(-1), "the chain rule")),),
+                      label="with R run backwards, P_u = -R_w"),
+              remark="At S the parameters run the same way and P_u = S_t."),
+    fails("sec-3.parametric-c2", "Section 3, parametric continuity",
+          "With alpha = beta = 1 the G2 conditions become C2 conditions.",
+          part(row_check("start", 2, parametric=True), PARAMETRIC_3_1),
+          correction=Correction("With (3.1) corrected they do.",
+                                (Part(row_check("start", 2, parametric=True), TRUE_PARAMETRIC_3_1),)),
+          counterexample=partial(row_counterexample, "start", 2, PARAMETRIC_3_1, parametric=True),
+          consequence=partial(measured_rows, "start", {2: pr.COND_3_1}, "The made pair's C2 blend, row 2 as printed",
+                              "C2")),
+)  # fmt: skip

@@ -6,11 +6,25 @@ from functools import partial
 
 from sympy import Eq
 
-from papers.ledger import Claim, Correction, Formula, Part, Reading, Verdict
+from papers.ledger import Check, Claim, Correction, Formula, Part, Reading, Strength, Verdict
 from papers.lin2014 import printed as pr
 from papers.lin2014.consequences import measured_rows
-from papers.lin2014.contact_checks import derivative_check, derivative_counterexample, w_kr1
-from papers.lin2014.geometry_checks import general_check, special_check, special_counterexample
+from papers.lin2014.contact_checks import (
+    derivative_check,
+    derivative_counterexample,
+    mirror_cases,
+    row_counterexample,
+    w_kr1,
+)
+from papers.lin2014.geometry_checks import (
+    derived_row_cases,
+    derived_row_probe,
+    general_check,
+    special_check,
+    special_counterexample,
+    substitution_cases,
+)
+from papers.lin2014.records import fails, holds, holds_if, part
 
 _CHAINS = (*pr.COND_3_1.neighbours, (pr.w_kr, w_kr1))
 
@@ -46,6 +60,12 @@ TRUE_D2_R = Formula(
 
 _REGULAR = "R is regular along the contact and p_1 has no zero (and p_1 < 0, if the join shall not fold back)"
 _WHERE = "Appendix"
+
+
+def _derived(order: int) -> Check:
+    cases, probe = partial(derived_row_cases, order), partial(derived_row_probe, order)
+    return Check(cases, Strength.SYMBOLIC_ORDER, "solving for the row", proof=True, probe=probe)
+
 
 CLAIMS = (
     Claim(
@@ -108,7 +128,19 @@ CLAIMS = (
         "Second derivatives at the clamped end: (k-1)(k-2)/u_1 times the plain second difference of rows of P, "
         "(k_r-1)(k_r-2)/(w_{k_r}-w_s) times that of R.",
         Verdict.FAILS,
-        (Reading((Part(derivative_check("P", 2), pr.APP_D2_P), Part(derivative_check("R", 2), pr.APP_D2_R))),),
+        (
+            Reading(
+                (Part(derivative_check("P", 2), pr.APP_D2_P), Part(derivative_check("R", 2), pr.APP_D2_R)),
+                label="denominators as printed",
+            ),
+            Reading(
+                (
+                    Part(derivative_check("P", 2), pr.APP_D2_P_SQUARES),
+                    Part(derivative_check("R", 2), pr.APP_D2_R_SQUARES),
+                ),
+                label="squared denominators, if the scan lost the squares",
+            ),
+        ),
         Correction(
             "Second derivatives are differences of first ones, each over its own span: u_1 for P_1 - P_0, u_2 for "
             "P_2 - P_1, and once more u_1; the same for R.",
@@ -121,7 +153,26 @@ CLAIMS = (
             {2: pr.COND_3_1},
             "The made pair with row 2 by (3.1), which is (18) with these derivatives",
         ),
-        remark="Right for order 2, where both sides vanish, and where the first two spans have length 1. Reading u_1 "
-        "as a misread u_1^2 would not help unless u_1 = u_2; see app.squares.",
+        remark="Right for order 2, where both sides vanish, and where the first two spans have length 1. With "
+        "squares it holds where the first two spans are the same, such as without inner knots.",
     ),
-)
+    holds("sec-A.substitution", _WHERE, "p_1 = alpha^2, q_1 = p_2 = q_2 = 0 turn (15), (16) into (17), (18).",
+          part(Check(partial(substitution_cases, 1), Strength.SYMBOLIC_ORDER, "substitution", proof=True), pr.EQ_17),
+          part(Check(partial(substitution_cases, 2), Strength.SYMBOLIC_ORDER, "substitution", proof=True), pr.EQ_18),
+          remark="The algebra is right, the choice of p_1 is not: see eq-17."),
+    fails("sec-A.17-gives-2.1", _WHERE, "(17) and the first end derivatives give (2.1).",
+          part(_derived(1), pr.COND_2_1),
+          correction=Correction("They give (2.1) with the opposite sign of alpha^2; p_1 = -alpha^2 gives (2.1).",
+                                (Part(_derived(1), ROW_1_BY_17), Part(special_check(1), TRUE_17))),
+          counterexample=partial(row_counterexample, "start", 1, ROW_1_BY_17),
+          consequence=partial(measured_rows, "start", {1: ROW_1_BY_17},
+                              "The made pair with the row that (17) gives")),
+    holds("sec-A.18-gives-3.1", _WHERE, "(18) and the second end derivatives, as printed, give (3.1).",
+          part(_derived(2), pr.COND_3_1),
+          remark="The step is right; its premise app-d2 is not, and so (3.1) is wrong."),
+    holds_if("sec-A.similarly", _WHERE, "(1.2), (2.2), (3.2) follow like the others, at the other end.", "k = 4",
+             part(Check(mirror_cases, Strength.EACH_ORDER, "printed rows at R, mirrored, and at S, k = 3 to 8",
+                        proof=True)),
+             remark="The last inner knot is u_{m-k+1}; u_{m-3} is that one for k = 4 only. The error of (3.1) is "
+             "mirrored too."),
+)  # fmt: skip

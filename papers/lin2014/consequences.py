@@ -5,7 +5,7 @@ The pair is `examples/made-pair.json`: two bicubic bases with mismatched, non-un
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
@@ -38,14 +38,22 @@ def made_pair() -> tuple[Base, Base]:
 @cache
 def made_blend(continuity: Continuity = "G2") -> BlendResult:
     """Return the blend of the made pair with one middle curve, whose contact the referee has confirmed."""
-    return blend(*made_pair(), continuity=continuity, middle_curves=1)
+    return _blend_of(made_pair, continuity)
 
 
-def with_printed_rows(result: BlendResult, side: Side, formulas: Mapping[int, Formula]) -> SemiStructuredSurface:
-    """Return the blend with some rows next to one contact set by formulas.
+@cache
+def _blend_of(pair: Callable[[], tuple[Base, Base]], continuity: Continuity) -> BlendResult:
+    return blend(*pair(), continuity=continuity, middle_curves=1)
+
+
+def with_printed_rows(
+    pair: tuple[Base, Base], result: BlendResult, side: Side, formulas: Mapping[int, Formula]
+) -> SemiStructuredSurface:
+    """Return the blend of a pair with some rows next to one contact set by formulas.
 
     Parameters
     ----------
+    pair : (Base, Base)
     result : BlendResult
         Gives alpha, beta, knots and the rows that are kept.
     side : {"start", "end"}
@@ -54,7 +62,7 @@ def with_printed_rows(result: BlendResult, side: Side, formulas: Mapping[int, Fo
         formula sees the rows that the one before it has set.
     """
     surface = result.surface
-    base = make_side(made_pair()[0 if side == "start" else 1], "C2")
+    base = make_side(pair[0 if side == "start" else 1], "C2")
     values = _numbers(result, side, base.degree, base.spans)
     rows = [np.array(curve.control_points) for curve in surface.control_curves]
     place = (lambda i: i) if side == "start" else (lambda i: len(rows) - 1 - i)
@@ -86,11 +94,17 @@ def _numbers(result: BlendResult, side: Side, base_degree: int, spans: tuple[flo
     return common | {pr.k_s: base_degree + 1, pr.beta: b**0.5, pr.t_s: 0.0, pr.t_ks: spans[0], t_ks1: spans[1]}
 
 
-def measured_rows(side: Side, formulas: Mapping[int, Formula], what: str, continuity: Continuity = "G2") -> Consequence:
-    """Set rows of the made blend by formulas and measure what contact is left; for C2 the parametric residuals too."""
-    result = made_blend(continuity)
-    surface = with_printed_rows(result, side, formulas)
-    base_a, base_b = made_pair()
+def measured_rows(
+    side: Side,
+    formulas: Mapping[int, Formula],
+    what: str,
+    continuity: Continuity = "G2",
+    pair: Callable[[], tuple[Base, Base]] = made_pair,
+) -> Consequence:
+    """Set rows of a checked blend by formulas and measure what contact is left; for C2 the parametric residuals too."""
+    result = _blend_of(pair, continuity)
+    base_a, base_b = pair()
+    surface = with_printed_rows((base_a, base_b), result, side, formulas)
     if side == "start":
         ends, flipped = (base_a, Base(surface, "u0")), False
         kept = result.contact_a

@@ -19,6 +19,7 @@ from derivations.contact import A, contact_rows, contact_rows_from_pieces
 from derivations.splines import end_derivatives, end_derivatives_from_pieces, span_symbols
 from papers.ledger import Case, Check, Counterexample, Formula, Strength
 from papers.lin2014 import printed as pr
+from papers.lin2014.exact import Meaning, interpret
 from papers.search import smallest_assignment
 
 ORDERS = range(2, 9)
@@ -35,17 +36,20 @@ _ROWS = {"start": (pr.P_0, pr.P_1, pr.P_2), "end": (pr.P_m, pr.P_m1, pr.P_m2)}
 _BASE_ROWS = {"start": (pr.R_0, pr.R_1, pr.R_2), "end": (pr.S_0, pr.S_1, pr.S_2)}
 
 
-def row_check(side: Side, row: int) -> Check:
-    """Return the check of the condition for row 0, 1 or 2 counted from the contact at `side`."""
+def row_check(side: Side, row: int, *, parametric: bool = False) -> Check:
+    """Return the check of the condition for row 0, 1 or 2 counted from the contact at `side`.
+
+    With `parametric` alpha and beta are 1.
+    """
     return Check(
-        partial(_row_cases, side, row),
+        partial(_row_cases, side, row, parametric),
         Strength.SYMBOLIC_ORDER if side == "start" else Strength.EACH_ORDER,
         "the row from Cox-de Boor end derivatives and the chain rule, over symbolic knots; orders k and k_s from 2 to 8"
         if side == "end"
         else "the row from end derivatives and the chain rule for symbolic orders and knots, and from the Cox-de Boor "
         "pieces for each pair of orders from 2 to 8",
         proof=True,
-        probe=partial(_row_probe, side, row),
+        probe=partial(_row_probe, side, parametric),
     )
 
 
@@ -70,38 +74,54 @@ _PROBE = {
 }
 
 
-def _row_probe(side: Side, row: int, formula: Formula) -> tuple[Any, ...]:
-    left, right = formula.relation.args
-    return tuple((left - right).xreplace(_probe_values(side, row, *orders)) for orders in ((4, 4), (5, 3), (3, 5)))
+def _row_probe(side: Side, parametric: bool, formula: Formula) -> tuple[Any, ...]:
+    difference = formula.relation.lhs - formula.relation.rhs
+    orders = ((4, 4), (5, 3), (3, 5))
+    return tuple(difference.xreplace(_probe_values(side, parametric, *pair)) for pair in orders)
 
 
 @cache
-def _probe_values(side: Side, row: int, k: int, k_b: int) -> dict[Any, Any]:
-    values = _symbols(side, k, k_b, _rows_from_pieces(row, k - 1, k_b - 1, side))
-    return _PROBE | {symbol: sp.sympify(value).subs(_PROBE) for symbol, value in values.items()}
+def _probe_values(side: Side, parametric: bool, k: int, k_b: int) -> dict[Any, Any]:
+    values = _symbols(side, k, k_b, _rows_from_pieces(2, k - 1, k_b - 1, side))
+    probe = _PROBE | _ONES if parametric else _PROBE
+    return probe | {symbol: sp.sympify(value).subs(probe) for symbol, value in values.items()}
 
 
-def _row_cases(side: Side, row: int, formula: Formula | None) -> Iterator[Case]:
+def _row_cases(side: Side, row: int, parametric: bool, formula: Formula | None) -> Iterator[Case]:
     relation = _relation(formula)
-    right = relation.rhs if relation.lhs == _ROWS[side][row] else relation.rhs - relation.lhs + _ROWS[side][row]
-    if not right.has(pr.u_m3):
-        k, k_b = pr.k, _base_order(side)
-        values = _symbols(side, k, k_b, contact_rows(2, k - 1, _H, k_b - 1, _BASE_H))
-        yield _row_case(right, side, row, values, "every order k, k_r", own=True, meets=True)
+    if not relation.has(pr.u_m3):
+        yield _row_case(relation, side, "every order", _field_values(side, parametric, 0, 0), own=True, meets=True)
     for k in ORDERS:
-        if k <= row:
-            continue
         for k_b in ORDERS:
-            matrix = _rows_from_pieces(row, k - 1, k_b - 1, side)
-            own = k == CUBIC and k_b == CUBIC
-            values = _symbols(side, k, k_b, matrix)
-            yield _row_case(right, side, row, values, f"orders {k}, {k_b}", own=own, meets=k == CUBIC)
+            if k > row:
+                values = _field_values(side, parametric, k, k_b)
+                own = k == CUBIC and k_b == CUBIC
+                yield _row_case(relation, side, f"orders {k}, {k_b}", values, own=own, meets=k == CUBIC)
 
 
-def _row_case(right: Any, side: Side, row: int, values: dict[Any, Any], label: str, *, own: bool, meets: bool) -> Case:
-    difference = (right - _ROWS[side][row]).xreplace(values)
-    residual = difference_form(difference, _BASE_ROWS[side], factored=own)
-    return Case(label, residual == 0, own, meets, residual)
+def _row_case(relation: Any, side: Side, label: str, values: dict[Any, Any], *, own: bool, meets: bool) -> Case:
+    left, right = (interpret(x, Meaning(values)) for x in relation.args)
+    difference = right - left
+    if difference == 0:
+        return Case(label, True, own, meets, sp.Integer(0))
+    expression = difference.as_expr()
+    # In the paper's own setting the residual is shown, and should be readable.
+    return Case(label, False, own, meets, difference_form(expression, _BASE_ROWS[side]) if own else expression)
+
+
+@cache
+def _field_values(side: Side, parametric: bool, k: int, k_b: int) -> dict[Any, Any]:
+    """Return what each printed letter stands for, in a field of rational functions; order 0 means every order."""
+    orders = (pr.k, _base_order(side)) if not k else (k, k_b)
+    matrix = (
+        _rows_from_pieces(min(2, k - 1), k - 1, k_b - 1, side)
+        if k
+        else contact_rows(2, pr.k - 1, _H, _base_order(side) - 1, _BASE_H)
+    )
+    values = _symbols(side, *orders, matrix, parametric)
+    letters = [*_H, *_BASE_H, *_BASE_ROWS[side], pr.alpha, pr.beta, pr.w_s, pr.t_s, pr.k, pr.k_r, pr.k_s]
+    field = sp.QQ.frac_field(*letters)
+    return {s: field.from_sympy(sp.sympify(x)) for s, x in ({s: s for s in letters} | values).items()}
 
 
 def _relation(formula: Formula | None) -> Any:
@@ -119,9 +139,9 @@ def _rows_from_pieces(order: int, degree: int, base_degree: int, side: Side) -> 
     return contact_rows_from_pieces(order, degree, base_degree, side)
 
 
-def _symbols(side: Side, k: Any, k_b: Any, matrix: sp.Matrix) -> dict[Any, Any]:
+def _symbols(side: Side, k: Any, k_b: Any, matrix: sp.Matrix, parametric: bool = False) -> dict[Any, Any]:
     """Return what each printed letter stands for: knots as distances from the contact, blend rows by the oracle."""
-    shape = pr.alpha if side == "start" else pr.beta
+    shape = sp.Integer(1) if parametric else pr.alpha if side == "start" else pr.beta
     base = _BASE_ROWS[side]
     rows = matrix.subs(A, shape**2) * sp.Matrix(base[: matrix.cols])
     values = dict(zip(_ROWS[side], rows, strict=False)) | {_base_order(side): sp.sympify(k_b), pr.k: sp.sympify(k)}
@@ -155,10 +175,10 @@ def _derivative_cases(surface: Literal["P", "R"], order: int, formula: Formula |
         yield Case(label, residual == 0, number in (k, CUBIC), residual=residual)
 
 
-def difference_form(expression: Any, rows: tuple[Any, ...], *, factored: bool = True) -> Any:
+def difference_form(expression: Any, rows: tuple[Any, ...]) -> Any:
     """Return an expression, linear in control rows, by differences of neighbouring rows and powers of alpha, beta.
 
-    With its coefficients factored, equal things look the same. Zero is literally 0 in any case.
+    Each coefficient is factored, so that equal things look the same and zero is literally 0.
     """
     first, second, third = rows
     d1, d2 = sp.Symbol(f"({second}-{first})"), sp.Symbol(f"({third}-{second})")
@@ -166,15 +186,13 @@ def difference_form(expression: Any, rows: tuple[Any, ...], *, factored: bool = 
     numerator, denominator = sp.fraction(sp.together(moved))
     generators = (first, d1, d2, pr.alpha, pr.beta)
     polynomial = sp.Poly(numerator, *generators)
-    if not factored:
-        return polynomial.as_expr()
     return sum(
         (sp.factor(coefficient / denominator) * sp.prod(x**n for x, n in zip(generators, powers, strict=True)))
         for powers, coefficient in polynomial.terms()
     )
 
 
-def row_counterexample(side: Side, row: int, formula: Formula) -> Counterexample | None:
+def row_counterexample(side: Side, row: int, formula: Formula, *, parametric: bool = False) -> Counterexample | None:
     """Search for the smallest instance at which a printed row is not the true one: orders first, then heights.
 
     The one in the paper's own orders and knots (k = 4, no middle curve, so that u is 1/3, 2/3) is found beside it.
@@ -183,27 +201,30 @@ def row_counterexample(side: Side, row: int, formula: Formula) -> Counterexample
     for total in range(lowest + 2, 2 * ORDERS[-1] + 1):
         for k in range(lowest, total - 1):
             k_b = total - k
-            found = _counterexample_at(side, row, formula, (k, k_b), {})
+            fixed = _ONES if parametric else {}
+            found = _counterexample_at(side, row, formula, (k, k_b), fixed)
             if found is not None:
-                own = _counterexample_at(side, row, formula, (CUBIC, CUBIC), _OWN_KNOTS)
+                own = _counterexample_at(side, row, formula, (CUBIC, CUBIC), _OWN_KNOTS | fixed)
                 return found if own is None else replace(found, own=str(own))
     return None
 
 
+_ONES = {pr.alpha: sp.Integer(1), pr.beta: sp.Integer(1)}
 _OWN_KNOTS = {_H[0]: sp.Rational(1, 3), _H[1]: sp.Rational(2, 3), _H[2]: sp.Integer(1)}
 
 
 def _counterexample_at(
     side: Side, row: int, formula: Formula, orders: tuple[int, int], fixed: dict[Any, Any]
 ) -> Counterexample | None:
-    values = _symbols(side, *orders, _rows_from_pieces(row, orders[0] - 1, orders[1] - 1, side))
+    degree = orders[0] - 1
+    values = _symbols(side, *orders, _rows_from_pieces(min(2, degree), degree, orders[1] - 1, side))
     wrong = _relation(formula).rhs.subs(values, simultaneous=True).subs(fixed)
     true = values[_ROWS[side][row]].subs(fixed)
     found = _smallest_difference(wrong, true)
     if found is None:
         return None
     names = zip(("k", str(_base_order(side))), map(str, orders), strict=True)
-    at = _named(side, {h: x for h, x in fixed.items() if h != _H[2]} | found)
+    at = _named(side, {h: x for h, x in fixed.items() if h != _H[2] and h not in _ONES} | found)
     return Counterexample((*names, *at), str(wrong.subs(found)), str(true.subs(found)))
 
 
@@ -249,3 +270,17 @@ def derivative_counterexample(surface: Literal["P", "R"], order: int, formula: F
             values = (("k" if is_blend else "k_r", str(k)), *_named("start", found))
             return Counterexample(values, str(wrong.subs(found)), str(true.subs(found)))
     return None
+
+
+def mirror_cases(_: Formula | None) -> Iterator[Case]:
+    """Yield orders: (2.1) and (3.1), mirrored at u = 1/2 and with S for R, are (2.2) and (3.2) as printed."""
+    names = dict(zip(_ROWS["start"] + _BASE_ROWS["start"], _ROWS["end"] + _BASE_ROWS["end"], strict=True))
+    names |= {pr.alpha: pr.beta, pr.k_r: pr.k_s, pr.w_kr: pr.t_ks, pr.w_s: pr.t_s, pr.u_1: 1 - u_last}
+    for k in range(3, ORDERS[-1] + 1):
+        # For k = 4 the printed index m - 3 is that of the last inner knot, m - k + 1.
+        last = {pr.u_m3: u_last} if k == CUBIC else {}
+        same = all(
+            (at_r.relation.rhs.xreplace(names) - at_s.relation.rhs.xreplace(last)).subs(pr.k, k).expand() == 0
+            for at_r, at_s in ((pr.COND_2_1, pr.COND_2_2), (pr.COND_3_1, pr.COND_3_2))
+        )
+        yield Case(f"k = {k}", bool(same), own=k == CUBIC, meets=k == CUBIC)

@@ -8,7 +8,7 @@ speak of.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from functools import partial
+from functools import cache, partial
 from typing import Any
 
 import sympy as sp
@@ -96,6 +96,63 @@ def _necessity() -> Iterator[Case]:
         span = base.jacobian([_W, _V]).subs(_W, 0)
         exists = span.rank() == span.row_join(leaving).rank()
         yield Case(label, exists, own=regular, meets=regular)
+
+
+def shape_parameter_cases(order: int) -> Iterator[Case]:
+    """Yield values of alpha: with P_u = -alpha^2 R_w (and P_uu = alpha^4 R_ww) the surfaces touch to that order."""
+    _, base, implicit, _, _ = next(_instances())
+    condition = {1: pr.p_1 * pr.R_w, 2: pr.p_1**2 * pr.R_ww}[order]
+    for alpha in (sp.Integer(1), sp.Rational(1, 2), sp.Integer(-2), sp.Integer(0)):
+        functions = {pr.p_1: -(alpha**2), pr.q_1: sp.Integer(0)}
+        patch = _patch(order, base, functions, condition)
+        true = _touches(patch, implicit, order) and _regular(patch)
+        yield Case(f"alpha = {alpha}", true, own=alpha != 0, meets=alpha != 0)
+
+
+def direction_cases(sign: int) -> Iterator[Case]:
+    """Yield alpha = 1: true where P_u is `sign` times R_w, by the chain rule of a blend that leaves backwards."""
+    true = special_conditions(1)[1].subs(A, 1)
+    residual = sp.expand(sign * sp.Symbol("R_w") - true)
+    yield Case("alpha = 1", residual == 0, residual=residual)
+
+
+def substitution_cases(order: int, formula: Formula | None) -> Iterator[Case]:
+    """Decide whether p_1 = alpha^2, q_1 = p_2 = q_2 = 0 turns (15) and (16) into (17) and (18), as algebra."""
+    _, right = _sides(formula, pr.P_u if order == 1 else pr.P_uu)
+    general = (pr.EQ_15 if order == 1 else pr.EQ_16).relation.rhs
+    chosen = general.subs({pr.p_1: pr.alpha**2, pr.q_1: 0, pr.p_2: 0, pr.q_2: 0})
+    residual = sp.expand(right - chosen)
+    yield Case("all alpha", residual == 0, residual=residual)
+
+
+@cache
+def _derived_row(order: int) -> tuple[Any, Any]:
+    """Return the row, and what (17) or (18) and the end derivatives make of it, all as printed."""
+    condition, of_p, of_r, base, row = (
+        (pr.EQ_17, pr.APP_D1_P, pr.APP_D1_R, pr.R_w, pr.P_1)
+        if order == 1
+        else (pr.EQ_18, pr.APP_D2_P, pr.APP_D2_R, pr.R_ww, pr.P_2)
+    )
+    target = condition.relation.rhs.subs(base, of_r.relation.rhs)
+    (solution,) = sp.solve(of_p.relation.rhs - target, row)
+    return row, solution
+
+
+def derived_row_cases(order: int, formula: Formula | None) -> Iterator[Case]:
+    """Decide whether (17) or (18) and the end derivatives as printed give the row condition as printed, as algebra."""
+    row, solution = _derived_row(order)
+    left, right = _sides(formula, row)
+    residual = sp.factor(right - left - solution)
+    yield Case(f"solved for {row}", residual == 0, residual=residual)
+
+
+def derived_row_probe(order: int, formula: Formula) -> Any:
+    """Return the same difference at one rational point."""
+    row, solution = _derived_row(order)
+    difference = formula.relation.rhs - formula.relation.lhs + row - solution
+    # Distinct primes over another prime: no relation between them.
+    symbols = sorted(difference.free_symbols | set(formula.variables), key=str)
+    return difference.xreplace({s: sp.Rational(sp.prime(n + 3), 101) for n, s in enumerate(symbols)})
 
 
 def _instances() -> Iterator[tuple[str, sp.Matrix, Any, dict[Any, Any], bool]]:

@@ -73,6 +73,33 @@ COND_3_2 = Formula(
     _END_CHAINS,
 )
 
+# The same with squared denominators, in case the scan lost the squares.
+COND_3_1_SQUARES = Formula(
+    Eq(
+        P_2,
+        alpha**4 * u_1**2 * (k_r - 1) * (k_r - 2) / ((w_kr - w_s) ** 2 * (k - 1) * (k - 2)) * (R_0 - 2 * R_1 + R_2)
+        + 2 * P_1
+        - P_0,
+    ),
+    COND_3_1.variables,
+    COND_3_1.assumptions,
+    _START_CHAINS,
+)
+COND_3_2_SQUARES = Formula(
+    Eq(
+        P_m2,
+        beta**4
+        * ((1 - u_m3) ** 2 * (k_s - 1) * (k_s - 2))
+        / ((t_ks - t_s) ** 2 * (k - 1) * (k - 2))
+        * (S_0 - 2 * S_1 + S_2)
+        + 2 * P_m1
+        - P_m,
+    ),
+    COND_3_2.variables,
+    COND_3_2.assumptions,
+    _END_CHAINS,
+)
+
 # The functions of v in (15) and (16) may be mistaken for each other, and so may the derivatives of R.
 _CONTACT_CHAINS = ((p_1, p_2), (q_1, q_2), (p_1, q_1), (p_2, q_2), (R_w, R_v), (R_ww, R_wv, R_vv))
 
@@ -103,6 +130,18 @@ APP_D2_R = Formula(
     Eq(R_ww, (k_r - 1) * (k_r - 2) / (w_kr - w_s) * (R_2 - 2 * R_1 + R_0)),
     (R_ww, R_0, R_1, R_2, w_kr, w_s, k_r),
     (w_kr > w_s, k_r >= 2),
+    _START_CHAINS,
+)
+APP_D2_P_SQUARES = Formula(
+    Eq(P_uu, (k - 1) * (k - 2) / u_1**2 * (P_2 - 2 * P_1 + P_0)),
+    APP_D2_P.variables,
+    APP_D2_P.assumptions,
+    _START_CHAINS,
+)
+APP_D2_R_SQUARES = Formula(
+    Eq(R_ww, (k_r - 1) * (k_r - 2) / (w_kr - w_s) ** 2 * (R_2 - 2 * R_1 + R_0)),
+    APP_D2_R.variables,
+    APP_D2_R.assumptions,
     _START_CHAINS,
 )
 

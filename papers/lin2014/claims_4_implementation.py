@@ -1,0 +1,165 @@
+"""Section 4: the linear system (14), solvability, degrees, the search for alpha and beta."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from sympy import Eq
+
+from papers.ledger import Case, Check, Claim, Correction, Counterexample, Formula, Part, Strength
+from papers.lin2014 import energy_checks as energy
+from papers.lin2014 import printed as pr
+from papers.lin2014.consequences_3 import single_integrals, third_term, vector_lengths, zero_system
+from papers.lin2014.contact_checks import contact_rows
+from papers.lin2014.exact import Meaning, difference_case, indexed
+from papers.lin2014.property_checks import proved, question
+from papers.lin2014.records import fails, holds, holds_if, not_checkable, part
+
+_WHERE = "Section 4"
+_GRAM = Check(energy.gram_entry_cases, Strength.RATIONAL,
+              "entries against coefficients of the exact energy, bicubic, printed knots of Fig. 5")  # fmt: skip
+_DEGREE = "degree of the exact energy of a strip after substitution, k = 4, one middle curve"
+
+TRUE_14 = Formula(
+    Eq(pr.K, pr.A_2 * pr.G_0 + 2 * pr.A_1 * pr.G_1 + pr.A_0 * pr.G_2),
+    (pr.K, pr.A_0, pr.A_1, pr.A_2, pr.G_0, pr.G_1, pr.G_2),
+)
+TRUE_CVV = (Formula(Eq(pr.last, pr.N(3)), (pr.last,)), Formula(Eq(pr.last, pr.N(pr.m - 3)), (pr.last, pr.m)))
+_TRUE_GRAM = Correction(
+    "Each entry of A and B is a sum of integrals of products: those of two u-functions times those of two v-functions, "
+    "both differentiated alike, A_2 G_0 + 2 A_1 G_1 + A_0 G_2.",
+    (Part(_GRAM, TRUE_14),),
+)
+
+
+def _gram_counterexample(formula: Formula):  # type: ignore[no-untyped-def]
+    """Return a search over pairs of control points of the free curve, in ascending order."""
+
+    def search() -> Counterexample | None:
+        for case in energy.gram_entry_cases(formula):
+            if not case.true:
+                label = case.label.removeprefix("control points ")
+                true = next(iter(_true_entry(label)))
+                values = (("U", "0, 1/4, 1/2, 3/4, 1"), ("V_3", "5/12 inside"), ("entry", label))
+                return Counterexample(values, str(true + case.residual), str(true))
+        return None
+
+    return search
+
+
+def _true_entry(label: str) -> Iterator[energy.sp.Rational]:
+    for case in energy.gram_entry_cases(Formula(Eq(pr.K, 0, evaluate=False), (pr.K,))):
+        if case.label.endswith(label):
+            yield -case.residual
+
+
+def _no_middle_cases() -> Iterator[Case]:
+    """Yield m = 5: contact of order 2 at both ends sets all six rows; the end derivatives determine each of them."""
+    h, H = energy.sp.symbols("h1 h2", positive=True), energy.sp.symbols("H1 H2", positive=True)
+    rows = contact_rows(2, 3, h, 3, H)
+    yield Case("rows 0, 1, 2 from R, rows 3, 4, 5 from S", energy.free_rows(5, 2) == [] and rows.shape == (3, 3))
+    yield Case("each of them is determined", all(entry.is_finite is not False for entry in rows))
+
+
+def _unknown_cases() -> Iterator[Case]:
+    """Yield m: the rows listed in X, 3 .. m-3, and in N, 0 .. 2 and m-2 .. m, are all rows, each once."""
+    for m in range(5, 11):
+        listed = [*range(3, m - 2), 0, 1, 2, m - 2, m - 1, m]
+        yield Case(f"m = {m}", sorted(listed) == list(range(m + 1)) and energy.free_rows(m, 2) == listed[: m - 5])
+
+
+def _cvv_cases(formula: Formula | None) -> Iterator[Case]:
+    """Decide the last index of rows 3 and m-3 in C_vv, for rows of different lengths."""
+    if formula is None:
+        raise ValueError("formula: found None, expected a relation")
+    # All lengths differ, so that no two indices are confused.
+    for m, sizes in ((6, (4, 5, 6, 7, 8, 9, 10)), (7, (4, 5, 6, 7, 8, 9, 10, 11))):
+        row = m - 3 if formula.relation.rhs.has(pr.m) else 3
+        last = indexed("n", {(r,): size - 1 for r, size in enumerate(sizes)})
+        meaning = Meaning({pr.last: sizes[row] - 1, pr.m: m}, {"n": last})
+        yield difference_case(formula, f"m = {m}, rows of {', '.join(map(str, sizes))} points", meaning)
+
+
+def _cvv_counterexample() -> Counterexample | None:
+    case = next((c for c in _cvv_cases(pr.CVV_LAST[0]) if not c.true), None)
+    if case is None:
+        return None
+    return Counterexample((("rows", case.label),), f"last index off by {case.residual}", "n_3")
+
+
+def _initial_cases() -> Iterator[Case]:
+    """Yield that the rows of a C2 blend are those of a G2 blend with alpha = beta = 1."""
+    h, H = energy.sp.symbols("h1 h2", positive=True), energy.sp.symbols("H1 H2", positive=True)
+    a = energy.sp.Symbol("a", positive=True)
+    geometric, parametric = contact_rows(2, 3, h, 3, H, a), contact_rows(2, 3, h, 3, H, 1)
+    yield Case("all rows", (geometric.subs(a, 1) - parametric).applyfunc(energy.sp.cancel).is_zero_matrix)
+
+
+def _zero_system_cases() -> Iterator[Case]:
+    """Yield what (14) needs of A as printed: full rank."""
+    A, _ = energy.printed_system()
+    yield Case(f"{A.rows} unknown control points, rank {A.rank()}", bool(A.rank() == A.rows))
+
+
+CLAIMS: tuple[Claim, ...] = (
+    holds("sec-4.no-middle-curve", _WHERE, "Without a middle curve C2 contact determines all control points directly.",
+          part(proved(_no_middle_cases, "rows set by the derived contact conditions", Strength.EACH_ORDER)),
+          remark="By the corrected conditions; nothing is left to minimise."),
+    holds("sec-4.quadratic", _WHERE, "After the C1 or C2 conditions are put in, the objective is quadratic.",
+          part(Check(energy.degree_cases(2, False), Strength.RATIONAL, _DEGREE), pr.DEGREE_C),
+          part(Check(energy.degree_cases(1, False), Strength.RATIONAL, _DEGREE), pr.DEGREE_C)),
+    holds("sec-4.normal-equation", _WHERE, "Its minimum is found by one linear system, the normal equation.",
+          part(Check(lambda _: energy.positive_definite_cases(2), Strength.RATIONAL,
+                     "pivots of the exact energy matrix of the free rows")),
+          remark="The matrix is positive definite, so that there is exactly one solution."),
+    holds("sec-4.c1-similarly", _WHERE, "The linear system for C1 conditions is like that for C2.",
+          part(Check(lambda _: energy.positive_definite_cases(1), Strength.RATIONAL,
+                     "pivots of the exact energy matrix of the free rows")),
+          remark="Rows 2 and m-2 are unknown too."),
+    holds("sec-4.unknowns", _WHERE, "X holds the rows 3, .., m-3, N the rows 0, 1, 2, m-2, m-1, m.",
+          part(question(_unknown_cases, "rows that C2 contact sets and leaves free"))),
+    fails("eq-14", _WHERE, "A X^T = -B N^T, with A, B and a, b, c as printed, gives the least energy.",
+          part(_GRAM, pr.EQ_14),
+          part(question(_zero_system_cases, "rank of A as printed")),
+          part(question(energy.integrals_vanish_cases, "integrals of B_i' and B_i'' of inner rows, orders 3 to 6")),
+          correction=_TRUE_GRAM, counterexample=_gram_counterexample(pr.EQ_14), consequence=zero_system,
+          remark="B_i' and B_i'' of a row away from the ends integrate to zero, so that a_ij = c_ij = 0 for every "
+          "unknown control point, whatever the knots: as printed, (14) says 0 = 0."),
+    fails("sec-4.single-integrals", _WHERE,
+          "The energy's matrix is built from integrals of one basis product each, a_ij, b_ij, c_ij.",
+          part(_GRAM, pr.EQ_14_THIRD_TERM),
+          correction=_TRUE_GRAM, counterexample=_gram_counterexample(pr.EQ_14_THIRD_TERM),
+          consequence=single_integrals,
+          remark="Decided with C_vv^T C_vv as third term. A sum of three products of a column and a row has rank 3 at "
+          "most; the rank needed is the number of unknown control points."),
+    fails("sec-4.third-term", _WHERE, "The third term of A is C_uv^T C_vv, that of B is C_uv^T D_vv.",
+          part(_GRAM, pr.EQ_14_PRODUCTS),
+          correction=_TRUE_GRAM, counterexample=_gram_counterexample(pr.EQ_14_PRODUCTS), consequence=third_term,
+          remark="Decided with products integrated last. C_vv^T C_vv and C_vv^T D_vv are right, as (11) shows: P_uv "
+          "and P_vv do not meet there. With the printed term A is not symmetric."),
+    fails("sec-4.cvv-indices", _WHERE, "In C_vv row 3 ends with b_{3,n_2} and row m-3 with b_{m-3,n_{m-2}}.",
+          *(part(Check(_cvv_cases, Strength.RATIONAL, "lengths of rows"), formula) for formula in pr.CVV_LAST),
+          correction=Correction("b_{3,n_3} and b_{m-3,n_{m-3}}, as in C_uu and C_uv.",
+                                tuple(Part(Check(_cvv_cases, Strength.RATIONAL, "lengths of rows"), formula)
+                                      for formula in TRUE_CVV)),
+          counterexample=_cvv_counterexample, consequence=vector_lengths,
+          remark="Misprints, or misreads by the scan: C_uu and C_uv beside it have the right indices."),
+    holds("sec-4.g1-degree", _WHERE, "With the G1 conditions put in, the objective is of degree four.",
+          part(Check(energy.degree_cases(1, True), Strength.RATIONAL, _DEGREE), pr.DEGREE_G1),
+          remark="In the free control points, alpha and beta together."),
+    holds("sec-4.g2-degree", _WHERE, "With the G2 conditions put in, the objective is of degree eight.",
+          part(Check(energy.degree_cases(2, True), Strength.RATIONAL, _DEGREE), pr.DEGREE_G2),
+          remark="Of degree four in alpha^2 and beta^2, and quadratic in the free control points: once these are "
+          "eliminated, a polynomial in two numbers is left. Where R_ww and S_tt vanish the degree is four."),
+    holds_if("sec-4.unconstrained", _WHERE, "With the G1 or G2 conditions put in, the problem has no constraint left.",
+             "the energy over alpha^2, beta^2 is not least at zero",
+             part(question(energy.shape_cases, "the energy as a polynomial in alpha^2, beta^2, exactly")),
+             remark="alpha, beta = 0 must be kept out: for two parallel plates, joined by a turn of 180 degrees, the "
+             "least energy lies there, where the blend has no tangent plane at either contact."),
+    holds("sec-4.initial-value", _WHERE, "The C2 solution is an admissible start for the G2 search.",
+          part(proved(_initial_cases, "the derived rows at alpha = 1", Strength.EACH_ORDER))),
+    not_checkable("sec-4.fminunc", _WHERE, "fminunc is a BFGS quasi-Newton method with a cubic line search.",
+                  "a statement on a version of another program, which is not here"),
+    not_checkable("sec-4.few-steps", _WHERE, "Started there, fminunc needs several steps to reach a local minimum.",
+                  "the control points of the examples are not printed, nor the version of the program"),
+)  # fmt: skip
