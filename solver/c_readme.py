@@ -72,7 +72,9 @@ $example```
 
 _SOLVE = Template("""
 Contact is linear here, so `blend_solve` is the whole solve: `a` and `b` are the control rows of the bases from the
-edge inwards, which `blend_contact` returns as they were in the problem.
+edge inwards, which `blend_contact` returns as they were in the problem. What was decided there from the points stays
+as it was: direction, seam, knots, a natural alpha, a scale of v by lengths.
+
 $reading
 """)
 
