@@ -16,7 +16,7 @@ from solver.certificate import check_certificate
 from solver.closing import snapped_seam
 from solver.continuity import Contact, check_regular_edge, measure_contact
 from solver.correspondence import Correspondence, Flip, correspond
-from solver.errors import ContactError, EdgeError, FoldError, OptionError
+from solver.errors import ContactError, FoldError, OptionError
 from solver.gram import thin_plate_energy
 from solver.knots import inner_knots
 from solver.limits import required_limits
@@ -314,18 +314,19 @@ def _checked_contacts(
     found: _Found,
 ) -> tuple[Contact, Contact]:
     """Let the referee measure both contacts, and refuse a result that misses its limits."""
-    try:
-        contact_a = measure_contact(a, Base(surface, "u0"), correspondence=Correspondence(flipped=False))
-        contact_b = measure_contact(Base(surface, "u1"), b, correspondence=matched)
-    except EdgeError as error:
-        for base in (a, b):
-            check_regular_edge(base)
-        raise ContactError(
-            f"the blend is degenerate where it meets a base, alpha2 = {found.a:.1e}, beta2 = {found.b:.1e} ({error}); "
-            "try method reduced, which keeps them admissible"
-        ) from None
-    for name, contact, wanted in (("a", contact_a, continuity[0]), ("b", contact_b, continuity[1])):
+    contact_a = measure_contact(a, Base(surface, "u0"), correspondence=Correspondence(flipped=False))
+    contact_b = measure_contact(Base(surface, "u1"), b, correspondence=matched)
+    for name, base, contact, wanted, shape in (
+        ("a", a, contact_a, continuity[0], found.a),
+        ("b", b, contact_b, continuity[1], found.b),
+    ):
         for measure, value, limit in required_limits(contact, wanted):
+            if np.isnan(value):
+                check_regular_edge(base)
+                raise ContactError(
+                    f"contact {name}: the blend is degenerate where it meets the base, its shape parameter is "
+                    f"{shape:.1e}; try method reduced, which keeps it admissible"
+                )
             if not value <= limit:
                 raise ContactError(
                     f"contact {name}: {measure} is {value:.3g}, expected at most {limit:.3g} for {wanted}; "

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from dataclasses import asdict
+from math import isnan
 from typing import TYPE_CHECKING, Annotated, Any, cast, get_args
 
 import typer
@@ -212,7 +213,8 @@ def contact_record(contact: Contact) -> dict[str, Any]:
     """Return what a JSON file holds of a measured contact."""
     record = asdict(contact)
     del record["rounding"]
-    return record
+    # JSON knows no NaN: what cannot be measured is null.
+    return {name: None if isinstance(value, float) and isnan(value) else value for name, value in record.items()}
 
 
 def report_record(result: BlendResult) -> dict[str, Any]:

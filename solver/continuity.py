@@ -25,12 +25,15 @@ class Place:
 class Contact:
     """How two surfaces meet along an edge; the worst over samples in every span of both.
 
+    Angle and curvature are not a number where a side has no normal somewhere along the edge.
+
     Attributes
     ----------
     gap : float
         Largest distance, model units.
     angle_degrees : float
-        Largest angle between the tangent planes, from |n1 x n2|.
+        Largest angle by which the surface turns at the edge, from |n1 x n2|: 0 where the tangent planes agree, 180
+        where one side folds back over the other.
     curvature_jump : float
         Largest difference of normal curvature across the edge, 1/length.
     curvature_jump_relative : float
@@ -82,7 +85,7 @@ def measure_contact(a: Base, b: Base, flip: Flip = "auto", correspondence: Corre
     Raises
     ------
     EdgeError
-        The edge of a side is a point, or its cross derivative is parallel to the edge, so that there is no normal.
+        `flip` is not one of auto, yes, no.
 
     Examples
     --------
@@ -95,17 +98,16 @@ def measure_contact(a: Base, b: Base, flip: Flip = "auto", correspondence: Corre
     """
     matched = correspondence or correspond(a, b, flip)
     s_a, s_b = corresponding_samples(a, b, matched)
-    side_a, side_b = _Side(a, s_a), _Side(b, s_b)
+    side_a, side_b = _Side(a, s_a, 1.0), _Side(b, s_b, 1.0 if matched.flipped else -1.0)
     size = model_size(a.surface, b.surface)
     places = [Place(float(s), (float(p[0]), float(p[1]), float(p[2]))) for s, p in zip(s_a, side_a.point, strict=True)]
 
     gap = np.linalg.norm(side_a.point - side_b.point, axis=1)
-    normal_b = side_b.normal * np.where(np.sum(side_a.normal * side_b.normal, axis=1) < 0, -1.0, 1.0)[:, None]
-    sine = np.linalg.norm(np.cross(side_a.normal, normal_b), axis=1)
-    angle = np.degrees(np.arcsin(np.minimum(sine, 1.0)))
-    k_a, k_b = side_a.curvature(side_a.normal), side_b.curvature(normal_b)
+    sine = np.linalg.norm(np.cross(side_a.normal, side_b.normal), axis=1)
+    angle = np.degrees(np.arctan2(sine, np.sum(side_a.normal * side_b.normal, axis=1)))
+    k_a, k_b = side_a.curvature(), side_b.curvature()
     jump = np.abs(k_a - k_b)
-    largest = max(float(np.abs(k_a).max()), float(np.abs(k_b).max()), 1e-3 / size)
+    largest = float(np.max(np.abs([*k_a, *k_b, 1e-3 / size])))
     # One side is left backwards: odd derivatives change sign unless the edges are at opposite ends.
     sign = -1.0 if a.edge[1] == b.edge[1] else 1.0
     noise = [_noise(side_a, order) + _noise(side_b, order) for order in range(3)]
@@ -144,13 +146,23 @@ def check_regular_edge(base: Base) -> None:
         Naming the first place.
     """
     start, end = base.range_along
-    _Side(base, start + (end - start) * (np.arange(64) + 0.5) / 64)
+    s = start + (end - start) * np.arange(65) / 64
+    missing = np.isnan(_Side(base, s, 1.0).normal[:, 0])
+    if missing.any():
+        raise EdgeError(
+            f"edge {base.edge}: no normal at parameter {s[missing][0]:.6g} along it (the edge is a point there, or the "
+            "cross derivative vanishes or is parallel to the edge); choose an edge where the surface is regular"
+        )
 
 
 class _Side:
-    """Referee's values along one edge: w runs across, s along."""
+    """Referee's values along one edge: w runs across, s along.
 
-    def __init__(self, base: Base, s: FloatArray) -> None:
+    The normal is that of the direction into the surface and the direction along the edge, times `sign`: so two sides
+    that continue each other, one taken with the opposite sign, have one normal, and a fold back turns it over.
+    """
+
+    def __init__(self, base: Base, s: FloatArray, sign: float) -> None:
         self.base = base
         self.point = base.derivative(s, 0, 0)
         self.x_w, self.x_s = base.derivative(s, 1, 0), base.derivative(s, 0, 1)
@@ -158,28 +170,25 @@ class _Side:
         cross = np.cross(self.x_w, self.x_s)
         length = np.linalg.norm(cross, axis=1)
         scale = np.linalg.norm(self.x_w, axis=1) * np.linalg.norm(self.x_s, axis=1)
-        degenerate = ~(length > 1e-12 * scale)
-        if degenerate.any():
-            at = float(s[degenerate][0])
-            raise EdgeError(
-                f"edge {base.edge}: no normal at parameter {at:.6g} along it (the edge is a point there, or the cross "
-                "derivative vanishes or is parallel to the edge); choose an edge where the surface is regular"
-            )
-        self.normal = cross / length[:, None]
+        inwards = -sign if base.edge[1] == "1" else sign
+        regular = (length > 1e-12 * scale)[:, None]
+        self.normal = np.divide(inwards * cross, length[:, None], out=np.full_like(cross, np.nan), where=regular)
 
-    def curvature(self, normal: FloatArray) -> FloatArray:
+    def across(self) -> tuple[FloatArray, FloatArray]:
+        """Return y and d = x_w + y x_s, d perpendicular to the edge; not a number where there is no normal."""
+        squared = np.where(np.isnan(self.normal[:, 0]), np.nan, np.sum(self.x_s**2, axis=1))
+        y = -np.sum(self.x_w * self.x_s, axis=1) / squared
+        return y, self.x_w + y[:, None] * self.x_s
+
+    def curvature(self) -> FloatArray:
         """Return normal curvature in the direction of the tangent plane perpendicular to the edge, shape (K,)."""
-        # d = x_w + y x_s with d . x_s = 0; its normal curvature is II(d, d) / (d . d).
-        y = -np.sum(self.x_w * self.x_s, axis=1) / np.sum(self.x_s**2, axis=1)
-        d = self.x_w + y[:, None] * self.x_s
+        y, d = self.across()
         second = self.x_ww + 2 * y[:, None] * self.x_ws + (y**2)[:, None] * self.x_ss
-        return np.asarray(np.sum(second * normal, axis=1) / np.sum(d**2, axis=1))
+        return np.asarray(np.sum(second * self.normal, axis=1) / np.sum(d**2, axis=1))
 
     def least_cross_speed(self) -> float:
         """Return the least speed across the edge."""
-        along = self.x_s / np.linalg.norm(self.x_s, axis=1)[:, None]
-        across = self.x_w - np.sum(self.x_w * along, axis=1)[:, None] * along
-        return float(np.linalg.norm(across, axis=1).min())
+        return float(np.linalg.norm(self.across()[1], axis=1).min())
 
 
 def control_point_cloud(surface: Surface) -> FloatArray:

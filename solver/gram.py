@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from solver.arrays import FloatArray, SparseMatrix
 from solver.errors import InputError
 from solver.generated.energy_numpy import gram_block
-from solver.knots import breakpoints, derivative_points, merge_breakpoints
+from solver.knots import breakpoints, derivative_matrix, derivative_points, merge_breakpoints
 from solver.surfaces import BSplineSurface, Surface
 
 IndexArray: TypeAlias = NDArray[np.intp]
@@ -88,6 +88,14 @@ class Samples:
     def curves(self, points: FloatArray, order: int) -> FloatArray:
         """Return values from control points of the derivative, shape (C, degree - order + n): shape (C, G, S)."""
         return np.asarray(np.einsum("kgs,cks->cgs", self.lower[order], points[:, self.local(order)]))
+
+    def add_transposed(self, values: FloatArray, order: int, total: FloatArray) -> None:
+        """Add to `total` the transpose of `curves` applied to values, shape (C, G, S)."""
+        place = self.local(order)
+        low, high = int(place.min()), int(place.max()) + 1
+        entries = np.einsum("kgs,cgs->cks", self.lower[order], values)
+        for line, part in zip(total, entries, strict=True):
+            line[low:high] += np.bincount((place - low).ravel(), part.ravel(), minlength=high - low)
 
 
 @cache
@@ -297,8 +305,16 @@ class EnergyForm:
     def matrix(self) -> SparseMatrix:
         """Return H, shape (N, N)."""
         every = range(len(self.rows))
-        blocks = self.blocks(every)
-        return sp.block_array([[blocks.get((i, j)) for j in every] for i in every], format="csr")
+        return self.assembled(self.blocks(every), every)
+
+    def assembled(self, blocks: dict[tuple[int, int], SparseMatrix], rows: range) -> SparseMatrix:
+        """Return the square matrix that couples the given neighbouring rows, from blocks that hold it."""
+        start, size = self.offsets[rows.start], self.offsets[rows.stop] - self.offsets[rows.start]
+        parts = [(i, j, block.tocoo()) for (i, j), block in blocks.items() if i in rows and j in rows]
+        lines = np.concatenate([block.coords[0] + (self.offsets[i] - start) for i, _, block in parts])
+        columns = np.concatenate([block.coords[1] + (self.offsets[j] - start) for _, j, block in parts])
+        values = np.concatenate([block.data for *_, block in parts])
+        return sp.csr_array((values, (lines, columns)), shape=(size, size))
 
     def products(self, points: FloatArray) -> FloatArray:
         """Return the energy products of surfaces over these knots, shape (K, K); energies are on the diagonal.
@@ -328,6 +344,43 @@ class EnergyForm:
                 # The factor of |d^2 P / du^du dv^(2 - du)|^2 in the energy: 1, 2, 1.
                 total += float(gram_block(*np.eye(3)[du], *np.eye(3)[2 - du])) * np.einsum("ka,la->kl", flat, flat)
         return total
+
+    def gradient(self, points: FloatArray) -> FloatArray:
+        """Return H p, shape (N, d), from second derivatives at Gauss points: it keeps digits that the matrix H loses.
+
+        Parameters
+        ----------
+        points : ndarray, shape (N, d)
+        """
+        m, d = len(self.rows) - 1, points.shape[1]
+        rows = np.split(points, self.offsets[1:-1])
+        nets = [[self._nets(members, rows, dv) for members in self._members] for dv in range(3)]
+        back = [[None if net is None else np.zeros(net.shape) for net in level] for level in nets]
+        U, p = self.u.knots, self.u.degree
+        roots = [root @ derivative_matrix(p, U, du).toarray() for du, root in enumerate(self._roots)]
+        for along in self._along():
+            weights = along[0].weights
+            for du, root in enumerate(roots):
+                dv = 2 - du
+                curves = np.zeros((m + 1, d, *weights.shape))
+                for samples, members, net in zip(along, self._members, nets[dv], strict=True):
+                    if net is not None:
+                        curves[members] = samples.curves(net, dv).reshape(len(members), d, *weights.shape)
+                values = (root @ curves.reshape(m + 1, -1)).reshape(-1, d, *weights.shape)
+                values *= weights * float(gram_block(*np.eye(3)[du], *np.eye(3)[dv]))
+                pulled = (root.T @ values.reshape(len(values), -1)).reshape(curves.shape)
+                for samples, members, total in zip(along, self._members, back[dv], strict=True):
+                    if total is not None:
+                        samples.add_transposed(pulled[members].reshape(-1, *weights.shape), dv, total)
+        result = np.zeros_like(points)
+        for dv, level in enumerate(back):
+            for members, total in zip(self._members, level, strict=True):
+                if total is not None:
+                    basis = self.rows[members[0]]
+                    lines = derivative_matrix(basis.degree, basis.knots, dv).T @ total.T
+                    for i, part in zip(members, np.split(lines, len(members), axis=1), strict=True):
+                        result[self.offsets[i] : self.offsets[i + 1]] += part
+        return result
 
     @cached_property
     def _members(self) -> list[list[int]]:

@@ -11,6 +11,8 @@ from solver.errors import OptionError
 from solver.gram import Basis
 from solver.knots import breakpoints, checked_knots, clamped, merge_breakpoints, uniform_knots
 
+# More than any blend needs; the energy in u is held in full.
+MOST_MIDDLE_CURVES = 1000
 # Rows that each contact owns: position, first and second derivative.
 ROWS_PER_SIDE = 3
 # Below it second derivatives in u vanish: creases across would cost nothing, and free rows would be undetermined.
@@ -33,8 +35,8 @@ def blend_u_basis(degree_u: int, middle_curves: int, inner: Sequence[float] | No
     >>> blend_u_basis(3, 0).knots[4:-4]
     array([0.33333333, 0.66666667])
     """
-    if not isinstance(middle_curves, int) or middle_curves < 0:
-        raise OptionError(f"middle_curves: found {middle_curves}, expected a whole number, 0 or more")
+    if not isinstance(middle_curves, int) or not 0 <= middle_curves <= MOST_MIDDLE_CURVES:
+        raise OptionError(f"middle_curves: found {middle_curves}, expected a whole number, 0 to {MOST_MIDDLE_CURVES}")
     rows = 2 * ROWS_PER_SIDE + middle_curves
     if not isinstance(degree_u, int) or not _LEAST_DEGREE <= degree_u < rows:
         raise OptionError(

@@ -276,6 +276,16 @@ def test_a_missed_contact_raises(monkeypatch):
         blend(*facing_pair(np.random.default_rng(0)), continuity="C2")
 
 
+def test_a_blend_that_leaves_into_the_base_raises(monkeypatch):
+    # The sign of (17) as printed: tangent planes and curvatures agree, but the blend folds back over the base.
+    from solver.generated import contact_numpy
+
+    right = contact_numpy.contact_rows_2
+    monkeypatch.setattr(contact_numpy, "contact_rows_2", lambda a, *spans: right(-a, *spans))
+    with pytest.raises(ContactError, match="contact a: angle_degrees is 180"):
+        blend(*facing_pair(np.random.default_rng(0)), alpha=1.0)
+
+
 def test_regularity_of_a_smooth_blend():
     a, b = facing_pair(np.random.default_rng(0), planar=True)
     assert measure_regularity(blend(a, b).surface).largest_turn_degrees < 20

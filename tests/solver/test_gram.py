@@ -99,6 +99,18 @@ def test_energy_agrees_with_the_referee_and_with_the_gram_form(seed):
     assert energy == pytest.approx(float(np.sum(p * (EnergyForm(u, tuple(rows)).matrix() @ p))), rel=1e-10)
 
 
+@given(st.integers(0, 10**6))
+def test_gradient_agrees_with_the_matrix(seed):
+    rng = np.random.default_rng(seed)
+    rows = tuple(
+        Basis(int(q), random_knots(rng, int(q), int(q) + int(rng.integers(1, 6)))) for q in rng.integers(1, 5, 5)
+    )
+    form = EnergyForm(Basis(3, random_knots(rng, 3, 5)), rows)
+    points = rng.uniform(-1, 1, (form.offsets[-1], 4))
+    expected = form.matrix() @ points
+    np.testing.assert_allclose(form.gradient(points), expected, rtol=0, atol=1e-11 * np.abs(expected).max())
+
+
 def test_energy_of_a_known_surface():
     # X = (u, v, u^2 + 3 u v + v^2): the density is 2^2 + 2 3^2 + 2^2 = 26, over [0, 1] x [0, 1].
     net = [[[i / 2, j / 2, (i == 2) + 3 * i * j / 4 + (j == 2)] for j in range(3)] for i in range(3)]

@@ -7,7 +7,16 @@ from hypothesis import strategies as st
 from scipy.interpolate import make_interp_spline
 
 from helpers.bases import facing_pair, patch, turned
-from solver import Base, BSplineSurface, FoldError, OptionError, SemiStructuredSurface, blend
+from solver import (
+    Base,
+    BSplineSurface,
+    EdgeError,
+    FoldError,
+    OptionError,
+    SemiStructuredSurface,
+    blend,
+    thin_plate_energy,
+)
 from solver.closing import periodic_points, reseamed, seam_order
 from solver.de_boor import curve_points, surface_points
 from solver.gram import Basis
@@ -221,3 +230,29 @@ def test_orientation_is_the_same_every_time_and_either_way():
     for seed in range(10):
         a, b = facing_pair(np.random.default_rng(seed))
         assert blend(a, b).flipped == blend(b, a).flipped == blend(a, b).flipped
+
+
+@pytest.mark.parametrize("length", [1e-3, 0.005, 200.0])
+def test_length_of_the_v_domain(length):
+    # A part of a few millimetres in metres: the terms of (11) differ by length^-4, and the solve must still be true.
+    a, b = facing_pair(np.random.default_rng(3), edges=("u0", "u0"), backwards=(False, False))
+    plain = blend(a, b, continuity="C0", v_scale="unit")
+    scaled = blend(Base(map_domain(a.surface, v_range=(0.0, length)), "u0"), b, continuity="C0")
+    # The minimum of the paper's energy is no worse there than any other blend of the same kind.
+    other = map_domain(plain.surface, v_range=(0.0, length))
+    assert scaled.energy <= thin_plate_energy(other) * (1 + 1e-9)
+
+
+def test_a_degenerate_corner_does_not_stop_parametric_contact():
+    rng = np.random.default_rng(0)
+    s = patch(rng, degrees=(3, 3), counts=(5, 6))
+    net = s.control_points.copy()
+    net[1, 0] = net[0, 0]
+    a = Base(BSplineSurface(3, 3, s.knots_u, s.knots_v, net), "u0")
+    _, b = facing_pair(rng, edges=("u0", "u0"), backwards=(False, False))
+    for continuity in ("C0", "C1", "C2"):
+        result = blend(a, b, continuity=continuity)
+        assert np.isnan(result.contact_a.angle_degrees)
+        assert result.contact_a.gap < 1e-14
+    with pytest.raises(EdgeError, match="edge u0: no normal"):
+        blend(a, b, continuity="G1")

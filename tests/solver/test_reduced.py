@@ -258,7 +258,7 @@ def test_a_local_method_stops_at_a_worse_minimum(seed, excess):
 @pytest.mark.parametrize("seed", [0, 2, 4, 13])
 def test_bfgs_runs_to_zero(seed):
     a, b = crooked_pair(seed)
-    with pytest.raises(ContactError, match="degenerate where it meets a base"):
+    with pytest.raises(ContactError, match="degenerate where it meets the base"):
         blend(a, b, flip="no", method="bfgs", middle_curves=0)
     proved = blend(a, b, flip="no", middle_curves=0)
     assert proved.active_bounds
