@@ -82,7 +82,7 @@ def blend_command(
         result = blend(
             Base(first.surface, cast(Any, edge_a)),
             Base(second.surface, cast(Any, edge_b)),
-            continuity=cast(Any, (continuity, continuity_b or continuity)),
+            continuity=cast(Any, (continuity, continuity if continuity_b is None else continuity_b)),
             middle_curves=middle_curves,
             method=cast(Any, method),
             flip=cast(Any, flip),

@@ -90,6 +90,11 @@ def checked_knots(knots: ArrayLike, degree: int, n_control: int, name: str = "kn
 def uniform_knots(degree: int, n_spans: int) -> FloatArray:
     """Return the clamped uniform vector on [0, 1] with `n_spans` spans.
 
+    Raises
+    ------
+    KnotError
+        No span at all.
+
     Examples
     --------
     >>> uniform_knots(2, 2)

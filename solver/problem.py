@@ -132,7 +132,13 @@ class BlendProblem:
         return self.completed(points)
 
     def completed(self, points: FloatArray) -> FloatArray:
-        """Fill the free rows of p, shape (N, d), so that the energy is least."""
+        """Fill the free rows of p, shape (N, d), so that the energy is least.
+
+        Raises
+        ------
+        ComputationError
+            The stationarity system is singular or too ill-conditioned to be trusted.
+        """
         return self.free_system.completed(points)
 
 

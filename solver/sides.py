@@ -109,7 +109,8 @@ def make_side(base: Base, continuity: Continuity, name: str = "base") -> Side:
     surface = base.surface
     if not isinstance(surface, BSplineSurface):
         raise EdgeError(f"{name}: a semi-structured surface, expected a B-spline surface; convert it with to_bspline()")
-    if surface.weights is not None:
+    # Equal weights cancel: such a surface is polynomial.
+    if surface.weights is not None and np.ptp(surface.weights) > 0:
         raise EdgeError(
             f"{name}: rational, but only polynomial B-spline surfaces are blended; approximate it without weights"
         )

@@ -66,8 +66,12 @@ def load_json(path: str | Path) -> Any:
         raise FileError(
             f"{path}: not JSON (line {error.lineno}, column {error.colno}: {error.msg}); write the file anew"
         ) from None
+    except UnicodeDecodeError:
+        raise FileError(f"{path}: not text in UTF-8; give a JSON file, or a CAD file with its own suffix") from None
     except ValueError as error:
-        raise FileError(f"{path}: {error}") from None
+        # Python's own words on a number of thousands of digits name no remedy that a file could follow.
+        reason = "a number of too many digits; write at most 17" if "digits" in str(error) else str(error)
+        raise FileError(f"{path}: {reason}") from None
     # Python reads NaN, Infinity and 1e999; looking for the place takes time, and is needed for them alone.
     if _PERHAPS_NOT_FINITE.search(data):
         for place, number in _numbers(content):
