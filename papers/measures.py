@@ -172,8 +172,8 @@ def seam_measure(surface: ParametricSurface) -> SeamMeasure:
     u = _samples(surface.breakpoints[0])
     first, second = (geometry(surface, u, np.full_like(u, v)) for v in surface.domain[1])
     sine = np.linalg.norm(np.cross(first.normal, second.normal), axis=1)
-    across = np.cross(first.normal, first.tangent_u)
-    jump = first.normal_curvature(across) - second.normal_curvature(across)
+    curvatures = [end.normal_curvature(np.cross(end.normal, end.tangent_u)) for end in (first, second)]
+    jump = curvatures[0] - curvatures[1]
     return SeamMeasure(
         float(np.linalg.norm(first.point - second.point, axis=1).max()),
         float(np.degrees(np.arcsin(np.minimum(sine, 1.0)).max())),
@@ -194,12 +194,17 @@ def contact_measure(side: ContactSide, surface: ParametricSurface, end: int, *, 
     """
     v, on_edge = corresponding(side, surface, end, aligned=aligned)
     turn = oriented_turn(side, surface, end, v, on_edge)
-    if aligned and isinstance(surface, BSplineSurface | SemiStructuredSurface):
-        found = measure_contact(Base(side.surface, "u0"), Base(surface, f"u{end}"), flip="no")  # type: ignore[arg-type]
-        return ContactMeasure(
-            found.gap, found.angle_degrees, found.curvature_jump, found.curvature_jump_relative, turn, found.c2_residual
-        )
-    return measured_by_formula(side, surface, end, v, on_edge, turn)
+    if not aligned or turn > FOLD or not isinstance(surface, BSplineSurface | SemiStructuredSurface):
+        return measured_by_formula(side, surface, end, v, on_edge, turn)
+    judged = measure_contact(Base(side.surface, "u0"), Base(surface, "u1" if end else "u0"), flip="no")
+    return ContactMeasure(
+        judged.gap,
+        judged.angle_degrees,
+        judged.curvature_jump,
+        judged.curvature_jump_relative,
+        turn,
+        judged.c2_residual,
+    )
 
 
 def measured_by_formula(
@@ -211,8 +216,8 @@ def measured_by_formula(
     gap = float(np.linalg.norm(base.point - blend.point, axis=1).max())
     sine = np.linalg.norm(np.cross(base.normal, blend.normal), axis=1)
     sign = np.where(np.sum(base.normal * blend.normal, axis=1) < 0, -1.0, 1.0)
-    across = np.cross(base.normal, base.tangent_v)
-    k_base, k_blend = base.normal_curvature(across), sign * blend.normal_curvature(across)
+    k_base, k_blend = (side.normal_curvature(np.cross(side.normal, base.tangent_v)) for side in (base, blend))
+    k_blend = sign * k_blend
     jump = float(np.abs(k_base - k_blend).max())
     size = max(model_size(side.surface), float(np.ptp(surface.evaluate_grid(*_ends(surface)), axis=(0, 1)).max()))
     largest = max(float(np.abs(k_base).max()), float(np.abs(k_blend).max()), 1e-3 / size)

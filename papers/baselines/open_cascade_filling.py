@@ -132,7 +132,7 @@ def _on_unit_square(plate: BSplineSurface, a: ContactSide, b: ContactSide) -> Fo
         return _chain(plate, parameters, x, y, du, dv)
 
     # The plate knows nothing of the knots of the contacts: a few smooth pieces are enough.
-    return FormulaSurface(at, np.linspace(0, 1, 5), np.linspace(start, end, 13))
+    return FormulaSurface(at, np.linspace(0, 1, 5), np.linspace(start, end, 25))
 
 
 def _chain(

@@ -21,9 +21,9 @@ from matplotlib.patches import Rectangle
 from papers.baselines.interface import BlendTask
 from papers.baselines.registry import method
 from papers.baselines.splines import as_spline
-from papers.lin2014.section5 import FIGURES, PRINTED, example
 from papers.lin2014.example_bases import figure_5_on_common_knots
-from papers.reproduction import Drawing
+from papers.lin2014.section5 import FIGURES, PRINTED, example
+from papers.study import Drawing
 from solver import Base, BlendResult, SemiStructuredSurface, blend
 from solver.io.disk import atomic_path, check_output
 from solver.knots import greville
