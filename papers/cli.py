@@ -17,7 +17,7 @@ import solver.cli
 from solver.exit_status import ANSWER_IS_NO, reports_errors
 
 if TYPE_CHECKING:
-    from papers.verification import Decision, Ledger
+    from papers.verification import Ledger
 
 app = typer.Typer(
     no_args_is_help=True,
@@ -71,7 +71,7 @@ def reproduce_command(
 
     if paper not in paper_names():
         raise LedgerError(f"paper: found {paper!r}, expected one of {', '.join(paper_names())}")
-    ledger = reproduce(paper, out, decide=decided, show=print_ledger, echo=typer.echo)
+    ledger = reproduce(paper, out, decide=decided, show=print_ledger, echo=typer.echo, progress=_progress)
     if not ledger.ok:
         raise typer.Exit(ANSWER_IS_NO)
 
@@ -108,8 +108,8 @@ def decided(name: str) -> Ledger:
     from papers.verification import verify
 
     total = len(load_paper(name).claims)
-    with _progress(total) as advance:
-        return verify(name, workers=min(os.cpu_count() or 1, 8), progress=advance)
+    with _progress("deciding", total) as advance:
+        return verify(name, workers=min(os.cpu_count() or 1, 8), progress=lambda decision: advance(decision.id))
 
 
 def print_ledger(ledger: Ledger) -> None:
@@ -132,18 +132,19 @@ def print_ledger(ledger: Ledger) -> None:
 
 
 @contextmanager
-def _progress(total: int) -> Iterator[Callable[[Decision], None] | None]:
+def _progress(doing: str, total: int) -> Iterator[Callable[[str], None]]:
+    """Show a bar where standard error is a terminal; the function that is given is told of each step."""
     from rich.console import Console
     from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
 
     console = Console(stderr=True)
     if not console.is_terminal:
-        yield None
+        yield lambda step: None
         return
-    columns = (TextColumn("deciding"), BarColumn(), MofNCompleteColumn(), TextColumn("{task.description}"))
+    columns = (TextColumn(doing), BarColumn(), MofNCompleteColumn(), TextColumn("{task.description}"))
     with Progress(*columns, console=console, transient=True) as bar:
         task = bar.add_task("", total=total)
-        yield lambda decision: bar.update(task, advance=1, description=decision.id)
+        yield lambda step: bar.update(task, advance=1, description=step)
 
 
 # `generate` above stands for the one of `derivations`, which may not know of `solver`.

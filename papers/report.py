@@ -168,6 +168,7 @@ def ledger_markdown(ledger: Ledger) -> str:
         "",
         *counts_text(ledger).splitlines(),
         "",
+        *([ledger.paper.legend, ""] if ledger.paper.legend else []),
         *_erratum(ledger),
         *_section(ledger, Verdict.HOLDS_IF, "True only under an unstated condition", _conditional_lines),
         *_section(ledger, Verdict.AMBIGUOUS, "Can be read in more than one way", _ambiguous_lines),
@@ -247,8 +248,8 @@ def _conditional_lines(claim: Claim, decision: Decision) -> Iterable[str]:
 def _ambiguous_lines(_claim: Claim, decision: Decision) -> Iterable[str]:
     for reading in decision.readings:
         extra = f", leaves {_code(reading.residual)}" if reading.residual not in (None, 0) else ""
-        under = f" if {reading.condition}" if reading.condition and reading.verdict is Verdict.HOLDS_IF else ""
-        yield f"Read as {reading.label}: {reading.verdict}{under}{extra}."
+        verdict = f"holds if {reading.condition}" if reading.verdict is Verdict.HOLDS_IF else str(reading.verdict)
+        yield f"Read as {reading.label}: {verdict}{extra}."
 
 
 def _reason_lines(claim: Claim, _decision: Decision) -> Iterable[str]:
@@ -256,16 +257,22 @@ def _reason_lines(claim: Claim, _decision: Decision) -> Iterable[str]:
 
 
 def ledger_html(ledger: Ledger) -> str:
-    """Return a section of HTML with the formulas set in MathML; it needs no network."""
-    parts = [f"<section id='ledger'><h2>Claims and verdicts</h2><p>{escape(counts_text(ledger))}</p>"]
-    for claim, decision in zip(ledger.paper.claims, ledger.decisions, strict=True):
-        parts.append(_claim_html(claim, decision))
-    return "\n".join([*parts, "</section>"])
+    """Return the records as HTML with their formulas set in MathML; it needs no network."""
+    counts = ledger.counts()
+    shown = [("all", counts["printed"]), *((str(v), counts[v]) for v in Verdict if counts[v])]
+    filters = "".join(
+        f"<button type='button' data-verdict='{name}' aria-pressed='{'true' if name == 'all' else 'false'}'>"
+        f"{name} {count}</button>"
+        for name, count in shown
+    )
+    pairs = zip(ledger.paper.claims, ledger.decisions, strict=True)
+    claims = "\n".join(_claim_html(claim, decision) for claim, decision in pairs)
+    return f"<p>{escape(counts_text(ledger))}</p><p class='filters'>{filters}</p>\n{claims}"
 
 
 def _claim_html(claim: Claim, decision: Decision) -> str:
     verdict = str(decision.verdict or "no answer")
-    rows: list[tuple[str, str]] = []
+    rows: list[tuple[str, str]] = [("where", escape(claim.where))]
     rows += [("printed", mathml(f.relation)) for f in claim.formulas]
     residual = residual_of(decision)
     rows += [("residual", mathml(residual))] if residual is not None else []
@@ -284,7 +291,6 @@ def _claim_html(claim: Claim, decision: Decision) -> str:
     rows += [(name, escape(text)) for name, text in texts if text]
     body = "".join(f"<tr><th>{name}</th><td>{content}</td></tr>" for name, content in rows)
     return (
-        f"<details class='claim {verdict}' {'open' if decision.verdict is Verdict.FAILS else ''}>"
-        f"<summary><b>{escape(claim.id)}</b> <span class='verdict'>{verdict}</span> {escape(claim.statement)}</summary>"
-        f"<table>{body}</table></details>"
+        f"<details class='claim {verdict}' id='claim-{escape(claim.id)}'><summary><b>{escape(claim.id)}</b> "
+        f"<span class='verdict'>{verdict}</span> {escape(claim.statement)}</summary><table>{body}</table></details>"
     )

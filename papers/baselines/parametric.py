@@ -1,0 +1,15 @@
+"""Our own solver with C2 contact, that is with alpha = beta = 1: one linear solve, whatever the example asks for."""
+
+from __future__ import annotations
+
+from papers.baselines.interface import BlendTask, Method, Outcome
+from papers.baselines.semistructured import outcome_of
+from solver import blend
+
+
+def blend_parametric(task: BlendTask) -> Outcome:
+    """Blend with C2 contact and as many middle curves as the paper has."""
+    return outcome_of(blend(task.a, task.b, continuity="C2", middle_curves=task.middle_curves))
+
+
+METHODS = (Method("semistructured-c2", "C2, linear solve", "`solver.blend`, continuity C2", 9, blend_parametric),)

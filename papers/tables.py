@@ -1,0 +1,117 @@
+"""What was measured, as tables for readers: every method on one example, blends of one solver side by side."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+from papers.baselines.comparison import Comparison
+from papers.baselines.interface import BlendTask
+from papers.measures import Measures
+from papers.study import Table
+from solver.continuity import model_size
+
+# What counts as met: degrees, fraction of the curvature, fraction of the size of the model.
+LIMIT = 1e-9
+
+
+def cell(value: Any) -> str:
+    """Return the text of a value.
+
+    Examples
+    --------
+    >>> [cell(value) for value in (None, True, 1234.5678, (0.0, 0.25), 7)]
+    ['–', 'yes', '1235', '0 to 0.25', '7']
+    """
+    if value is None:
+        return "–"
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if isinstance(value, float):
+        return f"{value:.4g}" if abs(value) < 1e5 or abs(value) >= 1e15 else f"{value:.4g}".replace("e+0", "e")
+    if isinstance(value, tuple):
+        return " to ".join(map(cell, value))
+    return str(value)
+
+
+def reached(task: BlendTask, measures: Measures) -> str:
+    """Return the continuity that both contacts meet up to rounding: G2, G1, G0, or "none"."""
+    if measures.gap > LIMIT * max(model_size(base.surface) for base in (task.a, task.b)):
+        return "none"
+    if measures.angle_degrees > LIMIT:
+        return "G0"
+    return "G1" if measures.curvature_jump_relative > LIMIT else "G2"
+
+
+_METHODS_HEAD = (
+    "#", "method", "contact", "control points", "energy (11)", "∫ κ₁²+κ₂²", "gap", "angle [°]", "curvature jump",
+    "folds", "largest turn inside [°]", "least area / mean", "|H|", "α²", "β²", "iterations", "seconds", "note",
+)  # fmt: skip
+
+
+def methods_table(comparisons: Sequence[Comparison]) -> Table:
+    """Return one line a method for one example; methods that cannot be used stand below with their reason."""
+    rows, reasons = [], []
+    for number, comparison in enumerate(comparisons, start=1):
+        outcome, m = comparison.outcome, comparison.measures
+        if outcome is None or m is None:
+            reasons.append(f"{comparison.method.title}: {comparison.reason}.")
+            continue
+        values = (
+            number, comparison.method.title, reached(comparison.task, m), outcome.control_points, m.energy, m.bending, m.gap,
+            m.angle_degrees, m.curvature_jump_relative, m.folds, m.largest_turn_degrees, m.least_area_ratio,
+            m.mean_curvature, outcome.alpha2, outcome.beta2, outcome.iterations, m.seconds, outcome.note,
+        )  # fmt: skip
+        rows.append(tuple(map(cell, values)))
+    task = comparisons[0].task
+    note = f"Not used here: {' '.join(reasons)}" if reasons else ""
+    return Table(f"{task.name}-methods", f"{task.title}: every method", _METHODS_HEAD, tuple(rows), note)
+
+
+METHODS_NOTE = (
+    "Contact: what both edges meet up to rounding (angle below 1e-9 degrees, relative curvature jump below 1e-9). Gap in "
+    "model units; the jump is that of the normal curvature across the contact, relative to the largest one there. Energy "
+    "is (11) over the blend's parameters; ∫ κ₁²+κ₂² is over the surface, so it does not depend on parameters (– where "
+    "it does not settle). |H|: least and largest mean curvature of the blend, 1/length. Folds: the normal turns by more "
+    "than 90 degrees at a contact or between neighbouring samples. Seconds: the method alone, one run on this machine. "
+    "– where a method has no such number."
+)
+
+_SIDE_HEAD = (
+    "pair", "contact", "energy", "α²", "β²", "gap a", "angle a [°]", "curvature jump a", "gap b", "angle b [°]",
+    "curvature jump b", "largest turn inside [°]", "least area / mean", "control points", "seconds", "bounds hit",
+)  # fmt: skip
+
+
+def blends_table(chosen: Iterable[tuple[str, Comparison]]) -> Table:
+    """Return one column a blend, given as (contact, comparison): what the referee says of each edge."""
+    rows = []
+    for contact, comparison in chosen:
+        outcome, m = comparison.outcome, comparison.measures
+        if outcome is None or m is None:
+            continue
+        a, b = m.contact_a, m.contact_b
+        values = (
+            comparison.task.name, contact, m.energy, outcome.alpha2, outcome.beta2, a.gap, a.angle_degrees,
+            a.curvature_jump_relative, b.gap, b.angle_degrees, b.curvature_jump_relative, m.largest_turn_degrees,
+            m.least_area_ratio, outcome.control_points, m.seconds, outcome.note or "none",
+        )  # fmt: skip
+        rows.append(tuple(map(cell, values)))
+    columns = tuple(zip(_SIDE_HEAD, *rows, strict=True))
+    note = "Contact is judged by the de Boor referee; gap in model units, the curvature jump relative."
+    return Table("blends", "Blends, measured", columns[0], columns[1:], note)
+
+
+def text_lines(table: Table) -> list[str]:
+    """Return the table for a terminal."""
+    columns = list(zip(table.head, *table.rows, strict=True))
+    widths = [max(map(len, column)) for column in columns]
+    lines = (table.head, *table.rows)
+    return ["  ".join(c.ljust(w) for c, w in zip(line, widths, strict=True)).rstrip() for line in lines]
+
+
+def markdown_lines(table: Table) -> list[str]:
+    """Return the table in Markdown, with its title and its note."""
+    lines = (table.head, ("---",) * len(table.head), *table.rows)
+    body = ["| " + " | ".join(c.replace("|", "\\|").replace("\n", " ") for c in line) + " |" for line in lines]
+    return [f"### {table.title}", "", *body, "", *([table.note, ""] if table.note else [])]

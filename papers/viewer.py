@@ -1,0 +1,232 @@
+"""The interactive view of the report: sampled surfaces packed for a small WebGL2 viewer (`viewer.js`).
+
+Plotly was the other choice. Its library alone is some 5 MB in a page, every view takes one of the browser's few WebGL
+contexts, it shades by the normals of triangles, and its colours sit on vertices, so that stripes could not follow the
+eye. Here a page with a hundred surfaces takes a few megabytes, one context serves all views, and stripes are drawn for
+each pixel from exact normals.
+"""
+
+from __future__ import annotations
+
+import json
+from base64 import b64encode
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from html import escape
+from importlib.resources import files
+from typing import Any
+
+import numpy as np
+
+from papers.baselines.interface import ParametricSurface
+from papers.measures import geometry_grid
+from solver import BSplineSurface, SemiStructuredSurface
+from solver.arrays import FloatArray
+from solver.plotting import BASE_COLOR, BLEND_COLOR
+
+# Samples along each parameter, at least; every breakpoint is one of them.
+_SAMPLES = 44
+_SHORT, _SIGNED_SHORT = 65535, 32767
+_MARGIN = 1.08
+
+
+@dataclass(frozen=True, eq=False)
+class Piece:
+    """One sampled surface.
+
+    Attributes
+    ----------
+    label, caption : str
+        For the list of blends, and the line below the view.
+    color : str
+    points, normals : ndarray, shape (rows, columns, 3)
+        Exact ones; where the surface is degenerate the normal is zero.
+    mean : ndarray, shape (rows, columns)
+        Mean curvature, 1/length, with respect to `normals`; zero where the surface is degenerate.
+    area : ndarray, shape (rows, columns)
+        Area element.
+    polygons : tuple of ndarray, shape (n, 3)
+        Control points of each v-control curve, or row of the net.
+    """
+
+    label: str
+    caption: str
+    color: str
+    points: FloatArray
+    normals: FloatArray
+    mean: FloatArray
+    area: FloatArray
+    polygons: tuple[FloatArray, ...] = ()
+
+
+@dataclass(frozen=True, eq=False)
+class Model:
+    """Two bases and what some methods put between them; the first blend is the one that is shown at first."""
+
+    name: str
+    title: str
+    bases: tuple[Piece, Piece]
+    blends: tuple[Piece, ...]
+
+
+def model(
+    name: str,
+    title: str,
+    bases: Sequence[ParametricSurface],
+    blends: Sequence[tuple[str, str, ParametricSurface]],
+) -> Model:
+    """Sample the bases and the blends, given as (label, caption, surface), and let their normals agree.
+
+    The side from which the first blend and the bases show most of their area is the one towards which a positive mean
+    curvature bulges.
+    """
+    first, second = (piece("base", "", BASE_COLOR, surface) for surface in bases)
+    between = [piece(*blend[:2], BLEND_COLOR, blend[2]) for blend in blends]
+    lead = between[0]
+    first, second = _agreeing(first, lead), _agreeing(second, lead)
+    if sum(float(np.sum(p.area * (p.normals @ _eye([first, second, lead])))) for p in (first, second, lead)) < 0:
+        first, second, lead = (_reversed(p) for p in (first, second, lead))
+    return Model(name, title, (first, second), (lead, *(_agreeing(blend, first) for blend in between[1:])))
+
+
+def piece(label: str, caption: str, color: str, surface: ParametricSurface) -> Piece:
+    """Sample a surface with its exact normals and mean curvature."""
+    u, v = (_samples(breaks) for breaks in surface.breakpoints)
+    local = geometry_grid(surface, u, v)
+    polygons: tuple[FloatArray, ...] = ()
+    if isinstance(surface, SemiStructuredSurface):
+        polygons = tuple(curve.control_points for curve in surface.control_curves)
+    elif isinstance(surface, BSplineSurface):
+        polygons = tuple(surface.control_points)
+    area = np.linalg.norm(np.cross(local.tangent_u, local.tangent_v), axis=2)
+    # `mean` is positive where the surface bends towards its normal: bulging is the opposite.
+    return Piece(label, caption, color, local.point, np.nan_to_num(local.normal), -np.nan_to_num(local.mean), area, polygons)
+
+
+def _samples(breaks: FloatArray) -> FloatArray:
+    each = max(2, -(-_SAMPLES // (len(breaks) - 1)))
+    inner = np.linspace(0, 1, each, endpoint=False)
+    return np.append((breaks[:-1, None] + np.diff(breaks)[:, None] * inner).ravel(), breaks[-1])
+
+
+def _agreeing(turned: Piece, fixed: Piece) -> Piece:
+    """Return a surface with normals that agree with those of another one where the two are closest."""
+    edges = [np.concatenate([p[0], p[-1], p[:, 0], p[:, -1]]) for p in (turned.points, fixed.points)]
+    normals = [np.concatenate([n[0], n[-1], n[:, 0], n[:, -1]]) for n in (turned.normals, fixed.normals)]
+    distance = np.sum((edges[0][:, None] - edges[1][None]) ** 2, axis=2)
+    nearest = np.argmin(distance, axis=1)
+    closest = np.sqrt(distance[np.arange(len(nearest)), nearest])
+    touching = closest <= np.sort(closest)[len(closest) // 8]
+    agreement = np.sum(normals[0][touching] * normals[1][nearest[touching]])
+    return _reversed(turned) if agreement < 0 else turned
+
+
+def _reversed(piece: Piece) -> Piece:
+    return replace(piece, normals=-piece.normals, mean=-piece.mean)
+
+
+def _eye(pieces: Sequence[Piece]) -> FloatArray:
+    return np.asarray(camera(pieces)[2])
+
+
+def camera(pieces: Sequence[Piece]) -> FloatArray:
+    """Return the rows right, up, towards the eye: along the normal that most of the area shares, and a little aside."""
+    spread = sum(np.einsum("ij,ija,ijb->ab", p.area / p.area.sum(), p.normals, p.normals) for p in pieces)
+    normal = _signed(np.linalg.eigh(spread)[1][:, -1])
+    points = np.concatenate([p.points.reshape(-1, 3) for p in pieces])
+    across = (points - points.mean(axis=0)) @ (np.eye(3) - np.outer(normal, normal))
+    right = _signed(np.linalg.eigh(across.T @ across)[1][:, -1])
+    up = np.cross(normal, right)
+    eye = normal - 0.55 * up + 0.35 * right
+    eye /= np.linalg.norm(eye)
+    right = np.cross(up, eye)
+    right /= np.linalg.norm(right)
+    return np.stack([right, np.cross(eye, right), eye])
+
+
+def _signed(vector: FloatArray) -> FloatArray:
+    """Of the two directions of an eigenvector, the one whose largest component is positive."""
+    return vector if vector[np.argmax(np.abs(vector))] > 0 else -vector
+
+
+def packed(model: Model) -> dict[str, Any]:
+    """Return what `viewer.js` reads: numbers of 16 bits in base64, and how to scale them."""
+    shown = (*model.bases, *model.blends)
+    points = np.concatenate([p.points.reshape(-1, 3) for p in shown])
+    low, box = points.min(axis=0), np.maximum(np.ptp(points, axis=0), 1e-12 * np.ptp(points))
+    limit = curvature_limit((*model.bases, model.blends[0]))
+    lead = (*model.bases, model.blends[0])
+    seen = np.concatenate([p.points.reshape(-1, 3) for p in lead])
+    middle = (seen.min(axis=0) + seen.max(axis=0)) / 2
+    size = float(np.linalg.norm(seen - middle, axis=1).max())
+    turn = camera(lead)
+    projected = (seen - middle) @ turn.T
+    # The width of the view is 1.6 times its height.
+    fit = size / (_MARGIN * max(float(np.abs(projected[:, 0]).max()), 1.6 * float(np.abs(projected[:, 1]).max())))
+    return {
+        "camera": np.round(turn, 6).tolist(),
+        "middle": ((middle - low) / size).tolist(),
+        "box": (box / size).tolist(),
+        "fit": fit,
+        "bases": [_packed_piece(p, low, box, size, limit) for p in model.bases],
+        "blends": [_packed_piece(p, low, box, size, limit) for p in model.blends],
+    }
+
+
+def _packed_piece(piece: Piece, low: FloatArray, box: FloatArray, size: float, limit: float) -> dict[str, Any]:
+    rows, columns = piece.mean.shape
+    vertices = np.zeros((rows, columns, 8), dtype="<i2")
+    vertices[..., :3] = np.rint((piece.points - low) / box * _SHORT).astype("<u2").view("<i2")
+    vertices[..., 3] = np.rint(np.clip(piece.mean / limit, -1, 1) * _SIGNED_SHORT)
+    vertices[..., 4:7] = np.rint(piece.normals * _SIGNED_SHORT)
+    record: dict[str, Any] = {
+        "caption": piece.caption,
+        "color": piece.color,
+        "rows": rows,
+        "columns": columns,
+        "vertices": _base64(vertices),
+    }
+    if piece.polygons:
+        control_points = (np.concatenate(piece.polygons) - low) / size
+        counts = [len(polygon) for polygon in piece.polygons]
+        record["polygons"] = {"counts": counts, "points": _base64(control_points.astype("<f4"))}
+    return record
+
+
+def curvature_limit(pieces: Sequence[Piece]) -> float:
+    """Return the end of a symmetric scale of mean curvature that holds 98 % of the area, 1/length."""
+    bend = np.concatenate([np.abs(p.mean).ravel() for p in pieces])
+    area = np.concatenate([p.area.ravel() / p.area.size for p in pieces])
+    order = np.argsort(bend)
+    share = np.cumsum(area[order])
+    found = float(bend[order][np.searchsorted(share, 0.98 * share[-1])])
+    flat = 1e-9 / float(np.ptp(np.concatenate([p.points.reshape(-1, 3) for p in pieces]), axis=0).max())
+    return max(found, flat)
+
+
+def _base64(array: Any) -> str:
+    return b64encode(np.ascontiguousarray(array).tobytes()).decode("ascii")
+
+
+def viewer_html(model: Model) -> str:
+    """Return the view of a model with its data; the page needs `viewer_script` once, at its end."""
+    options = "".join(f"<option value='{i}'>{escape(blend.label)}</option>" for i, blend in enumerate(model.blends))
+    limit = curvature_limit((*model.bases, model.blends[0]))
+    modes = (("shaded", "shaded"), ("curvature", "mean curvature"), ("zebra", "zebra"))
+    buttons = "".join(f"<button type='button' data-mode='{mode}'>{text}</button>" for mode, text in modes)
+    # `</` would end the script element.
+    data = json.dumps(packed(model), allow_nan=False).replace("</", "<\\/")
+    return f"""<div class="viewer" id="view-{escape(model.name)}">
+<div class="bar"><label>blend <select>{options}</select></label><span class="modes">{buttons}</span>
+<label><input type="checkbox"> control points</label><button type="button" data-reset>reset</button></div>
+<canvas tabindex="0" role="img" aria-label="interactive view: {escape(model.title)}"></canvas>
+<p class="scale" hidden>{-limit:.3g} <span></span> +{limit:.3g} mean curvature, 1/length; positive where the surface
+bulges towards the side first shown</p>
+<p class="numbers"></p>
+<p class="hint">Drag or arrow keys turn, wheel (after a click) or + and − zoom, shift and drag move.</p>
+<script type="application/json">{data}</script></div>"""
+
+
+def viewer_script() -> str:
+    """Return the script that brings every view of a page to life."""
+    return files("papers").joinpath("viewer.js").read_text(encoding="utf-8")
