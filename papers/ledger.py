@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import importlib
 import importlib.util
+import inspect
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
@@ -264,10 +265,20 @@ class Claim:
 
 @dataclass(frozen=True)
 class Paper:
-    """A loaded paper: its name (or path), its first docstring line, and its records."""
+    """A loaded paper.
+
+    Attributes
+    ----------
+    name : str
+        Or path.
+    title, legend : str
+        First paragraph of its docstring, and the rest.
+    claims : tuple of Claim
+    """
 
     name: str
     title: str
+    legend: str
     claims: tuple[Claim, ...]
 
     def claim(self, identifier: str) -> Claim:
@@ -306,8 +317,8 @@ def load_paper(name: str) -> Paper:
         if claim.id in {c.id for c in claims[:i]}:
             raise LedgerError(f"claim {claim.id}: the id occurs twice, expected once")
         check_record(claim)
-    title = (package.__doc__ or folder.name).strip().splitlines()[0]
-    return Paper(name, title, tuple(claims))
+    title, _, legend = inspect.cleandoc(package.__doc__ or folder.name).partition("\n\n")
+    return Paper(name, title.rstrip("."), legend, tuple(claims))
 
 
 def _package(name: str) -> ModuleType:

@@ -1,1 +1,10 @@
-"""Semi-structured B-spline for blending two B-spline surfaces (2014, doi 10.1016/j.camwa.2014.07.013)."""
+"""Semi-structured B-spline for blending two B-spline surfaces (2014, doi 10.1016/j.camwa.2014.07.013).
+
+Letters are the paper's. Besides, in formulas and residuals: h_r is the distance from a contact to the r-th knot of U
+after it (u_r at u = 0, 1 - u_{m-k+2-r} at u = 1), H_r the same of the base across the contact. Y is the value of a
+surface or of a rule, C that of a curve, L and F_0 are a last and a first index, n(i) = n_i. F(i, j, ...) is a blossom
+P_ij^s[...]; in counts F(j, s) is the number of control points of Q_j^s. K couples two control points in the energy;
+A_d and G_d are integrals of products of two d-th derivatives, in u and in v. J is the area element |P_u x P_v|. The
+made pair is `examples/made-pair.json`: two bicubic bases of our own, extent 8, with 3 and 4 inner knots along their
+contacts. What is below 1e-9 (degrees, fractions of the curvature) is rounding.
+"""

@@ -22,7 +22,6 @@ from papers.lin2014.exact import Meaning, UndefinedError, bernstein, difference_
 # Degrees m, n of the patch and k of the Bezier function; the paper's own example is bicubic.
 DEGREES = ((1, 1, 1), (2, 2, 1), (1, 3, 2), (3, 3, 1), (2, 1, 3), (3, 3, 2))
 BICUBIC = 3
-PARAMETERS = (Fraction(0), Fraction(2, 7), Fraction(3, 5), Fraction(1))
 
 
 @cache
@@ -30,6 +29,13 @@ def _patch(m: int, n: int, k: int) -> tuple[list[list[Any]], list[Any]]:
     """Return ring generators for P_ij and v_r."""
     _, _, net, function = generic_patch(m, n, k)
     return net, function
+
+
+@cache
+def _parameters(m: int, n: int, k: int) -> tuple[Any, Any]:
+    """Return two more generators of the same ring, for parameters: what holds for them holds for all values."""
+    u, w, _, _ = generic_patch(m, n, k)
+    return u, w
 
 
 def de_casteljau(points: Any, x: Any) -> Any:
@@ -45,10 +51,10 @@ def patch_cases(formula: Formula | None) -> Iterator[Case]:
     """Decide (4): the double sum against de Casteljau."""
     for m, n, k in DEGREES:
         net, _ = _patch(m, n, k)
-        for u, v in zip(PARAMETERS, PARAMETERS[::-1], strict=True):
-            functions = {"P": _net_lookup(net), "B": bernstein, "Y": lambda u, v, net=net: _value(net, u, v)}
-            meaning = Meaning({pr.u: u, pr.v: v, pr.m: m, pr.n: n}, functions)
-            yield difference_case(_given(formula), f"degrees {m}, {n} at {u}, {v}", meaning, own=m == n == BICUBIC)
+        u, v = _parameters(m, n, k)
+        functions = {"P": _net_lookup(net), "B": bernstein, "Y": lambda u, v, net=net: _value(net, u, v)}
+        meaning = Meaning({pr.u: u, pr.v: v, pr.m: m, pr.n: n}, functions)
+        yield difference_case(_given(formula), f"degrees {m}, {n}", meaning, own=m == n == BICUBIC)
 
 
 def _net_lookup(net: list[list[Any]]) -> Any:
@@ -60,9 +66,9 @@ def function_cases(formula: Formula | None) -> Iterator[Case]:
     for k in range(1, 6):
         _, function = _patch(1, 1, k)
         lookup = indexed("v", {(r,): value for r, value in enumerate(function)})
-        for t in PARAMETERS:
-            functions = {"v": lookup, "B": bernstein, "C": lambda t, f=function: de_casteljau(f, t)}
-            yield difference_case(_given(formula), f"degree {k} at t = {t}", Meaning({pr.t: t, pr.k: k}, functions))
+        t, _ = _parameters(1, 1, k)
+        functions = {"v": lookup, "B": bernstein, "C": lambda t, f=function: de_casteljau(f, t)}
+        yield difference_case(_given(formula), f"degree {k}", Meaning({pr.t: t, pr.k: k}, functions))
 
 
 def range_cases(_: Formula | None) -> Iterator[Case]:
@@ -83,19 +89,18 @@ def division_cases(part: str) -> Any:
         for m, n, k in DEGREES:
             net, function = _patch(m, n, k)
             rows = expanded_rows(m, n, k, "bottom" if part == "bottom" else "top")
-            for u, v in zip(PARAMETERS[1:3], (Fraction(3, 4), Fraction(1, 5)), strict=True):
-                cut = de_casteljau(function, u)
-                at = cut * v if part == "bottom" else cut + (1 - cut) * v
-                meaning = Meaning(
-                    {pr.u: u, pr.v: v, pr.n: n},
-                    {
-                        "B": bernstein,
-                        "Q": lambda j, s, u, rows=rows, n=n: de_casteljau(rows[_row(part, j, s, n)], u),
-                        "Y": lambda u, _, net=net, at=at: _value(net, u, at),
-                    },
-                )
-                label = f"degrees {m}, {n}, {k} at {u}, {v}"
-                yield difference_case(_given(formula), label, meaning, own=m == n == BICUBIC)
+            u, v = _parameters(m, n, k)
+            cut = de_casteljau(function, u)
+            at = cut * v if part == "bottom" else cut + (1 - cut) * v
+            meaning = Meaning(
+                {pr.u: u, pr.v: v, pr.n: n},
+                {
+                    "B": bernstein,
+                    "Q": lambda j, s, u, rows=rows, n=n: de_casteljau(rows[_row(part, j, s, n)], u),
+                    "Y": lambda u, _, net=net, at=at: _value(net, u, at),
+                },
+            )
+            yield difference_case(_given(formula), f"degrees {m}, {n}, {k}", meaning, own=m == n == BICUBIC)
 
     return cases
 
@@ -116,8 +121,8 @@ def row_formula_cases(depth: int) -> Any:
             if n < depth:
                 continue
             net, function = _patch(m, n, k)
+            u, _ = _parameters(m, n, k)
             for j in range(n - depth + 1):
-                u = PARAMETERS[1 + j % 2]
                 meaning = Meaning(
                     {pr.j: j, pr.u: u, pr.m: m, pr.k: k},
                     {
@@ -126,7 +131,7 @@ def row_formula_cases(depth: int) -> Any:
                         "F": lambda i, j, *r, net=net, f=function: _blossom_at(net, f, i, j, r),
                     },
                 )
-                label = f"degrees {m}, {n}, {k}, j = {j}, u = {u}"
+                label = f"degrees {m}, {n}, {k}, j = {j}"
                 yield difference_case(_given(formula), label, meaning, own=m == n == BICUBIC)
 
     return cases

@@ -25,6 +25,8 @@ CLAIMS: tuple[Claim, ...] = (
                       label="what the conditions as printed do")),
     holds("sec-1.superfluous-knots", "Section 1", "Giving both contact curves the same knots adds control points.",
           part(question(figures.superfluous_cases, "rows on their own knots and on the union, as printed"))),
+    holds("sec-1.knot-insertion", "Section 1", "Knot insertion makes the knots of both contact curves identical.",
+          part(question(blending.nested_space_cases, "spline spaces over the printed pairs, by exact rank"))),
     holds_if("sec-1.rolling-ball", _RELATED, "A rolling-ball blend meets its bases with G1 at the most.",
              "the curvature of the base across the contact is not that of the ball",
              part(question(figures.circle_cases, "curvature of a circle and of the base"))),

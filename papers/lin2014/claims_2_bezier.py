@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from sympy import Eq, Sum
 
-from papers.ledger import Case, Claim, Correction, Counterexample, Formula, Part, Reading, Strength
+from papers.ledger import Case, Check, Claim, Correction, Counterexample, Formula, Part, Reading, Strength
 from papers.lin2014 import bezier_checks as bezier
 from papers.lin2014 import printed as pr
 from papers.lin2014.bezier_checks import check
@@ -13,10 +15,17 @@ from papers.lin2014.property_checks import question
 from papers.lin2014.records import ambiguous, fails, holds, not_checkable, part
 
 _WHERE = "Section 2, Bezier example"
-_TRIANGLE = "de Casteljau's triangle, for all control points, degrees 1 to 5 at rational parameters"
-_EXPANSION = "rows found by substituting v(u) and changing the basis, degrees up to (3, 3, 2), all P_ij and v_i"
+_TRIANGLE = "de Casteljau's triangle, for all parameters and control points, degrees 1 to 5"
+_POLAR = "the symmetric multi-affine form, a sum over subsets of the arguments, degrees up to 4"
+_EXPANSION = "rows found by substituting v(u) and changing the basis, degrees up to (3, 3, 2), all u, v, P_ij, v_i"
 _LEMMAS = "the identities behind the closed form, for every m, n, k"
 _COUNTING = "degrees of the rows found by substitution"
+
+
+def _identity(cases: Any, method: str) -> Check:
+    """Return a check that decides an identity in all parameters and control points, degree by degree."""
+    return check(cases, method, proof=True, strength=Strength.EACH_ORDER)
+
 
 TRUE_TOP_LAST = Formula(Eq(pr.F(pr.n, 0), pr.m + 1), (pr.m, pr.n))
 _LEMMA_PART = part(check(bezier.lemma_cases, _LEMMAS, proof=True, strength=Strength.SYMBOLIC_ORDER))
@@ -55,21 +64,21 @@ def _range_counterexample() -> Counterexample:
 
 CLAIMS: tuple[Claim, ...] = (
     holds("eq-4", _WHERE, "A Bezier patch as a double sum over Bernstein polynomials.",
-          part(check(bezier.patch_cases, _TRIANGLE), pr.EQ_4)),
+          part(_identity(bezier.patch_cases, _TRIANGLE), pr.EQ_4)),
     holds("eq-5", _WHERE,
           "A Bezier function v(t) with control points (i/k, v_i); with v_i in [0, 1] it stays in [0, 1].",
-          part(check(bezier.function_cases, _TRIANGLE), pr.EQ_5),
-          part(check(bezier.function_cases, _TRIANGLE), pr.EQ_5_ABSCISSA),
+          part(_identity(bezier.function_cases, _TRIANGLE), pr.EQ_5),
+          part(_identity(bezier.function_cases, _TRIANGLE), pr.EQ_5_ABSCISSA),
           part(check(bezier.range_cases, "signs and sum of Bernstein polynomials of degree 1 to 8"))),
     holds("eq-6", _WHERE,
           "The sub-patches below and above v(u) are P_1 = sum of Q_0^s B_s^n and P_2 = sum of Q_s^{n-s} B_s^n.",
-          part(check(bezier.division_cases("bottom"), _EXPANSION), pr.EQ_6_BOTTOM),
-          part(check(bezier.division_cases("top"), _EXPANSION), pr.EQ_6_TOP), _LEMMA_PART,
+          part(_identity(bezier.division_cases("bottom"), _EXPANSION), pr.EQ_6_BOTTOM),
+          part(_identity(bezier.division_cases("top"), _EXPANSION), pr.EQ_6_TOP), _LEMMA_PART,
           remark="v runs over [0, 1] across each sub-patch: P_1(u, v) = P(u, v v(u)), P_2(u, v) = P(u, v(u) + (1 - "
           "v(u)) v); the text does not say so. The letters k and l stand for an order elsewhere."),
     holds("sec-2.q-formula", _WHERE,
           "Q_j^s has the Bezier points that the formula under (6) gives: products of binomials and blossoms.",
-          *(part(check(bezier.row_formula_cases(depth), "Q_j^s(u) from the blossom at v(u), all P_ij and v_i"), formula)
+          *(part(_identity(bezier.row_formula_cases(depth), "the blossom at v(u), all u, P_ij and v_i"), formula)
             for depth, formula in enumerate(pr.Q_ROWS, start=1)), _LEMMA_PART,
           remark="Several (i, j_1, .., j_s) share one Bernstein polynomial; the sum over l only groups them."),
     fails("sec-2.q-range", _WHERE,
@@ -80,9 +89,9 @@ CLAIMS: tuple[Claim, ...] = (
           counterexample=_range_counterexample, consequence=missing_first_row,
           remark="The counts in the text do include Q_0^0 with its m + 1 points."),
     holds("sec-2.blossom-1", _WHERE, "First step of the blossom recursion.",
-          part(check(bezier.blossom_cases(True), "the symmetric multi-affine form by subsets"), pr.BLOSSOM_1)),
+          part(_identity(bezier.blossom_cases(True), _POLAR), pr.BLOSSOM_1)),
     holds("sec-2.blossom-2", _WHERE, "Further steps of the blossom recursion, s = 2, .., n.",
-          part(check(bezier.blossom_cases(False), "the symmetric multi-affine form by subsets"), pr.BLOSSOM_2),
+          part(_identity(bezier.blossom_cases(False), _POLAR), pr.BLOSSOM_2),
           remark="The order of the arguments does not matter, so that the order of the printed steps does not either."),
     holds("sec-2.bottom-counts", _WHERE,
           "The rows of the bottom sub-patch have m+1, m+k+1, .., m+nk+1 control points; there are n+1 of them.",

@@ -11,7 +11,7 @@ from papers.lin2014 import printed as pr
 from papers.lin2014.consequences_3 import more_curves, parameter_dependence, union_knots
 from papers.lin2014.contact_checks import row_check
 from papers.lin2014.property_checks import proved, question
-from papers.lin2014.records import ambiguous, fails, holds, holds_if, part
+from papers.lin2014.records import ambiguous, fails, holds, holds_if, not_checkable, part
 from papers.lin2014.spline_checks import (
     SURFACE_CHECK,
     base_cases,
@@ -134,6 +134,10 @@ CLAIMS: tuple[Claim, ...] = (
              "neither knot vector contains the other",
              part(question(blending.mismatch_cases, "spline spaces over the printed pairs, by exact rank")),
              remark="Where V^r is part of V^s, a classical surface over V^s carries both contact curves as they are."),
+    not_checkable("sec-3.quality", _ENERGY, "The smaller the strain energy, the better the surface.",
+                  "a convention; which surface is better is not defined apart from it"),
+    not_checkable("sec-3.strain-cost", _ENERGY, "Computing the strain energy is considerable work.",
+                  "no machine, program or size is named"),
     fails("sec-3.strain-energy", _ENERGY,
           "The quality of a surface is the integral of its squared principal curvatures over the parameter space.",
           part(Check(energy.strain_cases, Strength.SYMBOLIC_ORDER, "scaling a parameter",

@@ -61,6 +61,7 @@ def derivative_check(surface: Literal["P", "R"], order: int) -> Check:
         "end derivatives for a symbolic order (by induction from the recurrence), and those of the Cox-de Boor pieces "
         "for each order from 2 to 8, over symbolic knots",
         proof=True,
+        probe=_derivative_probe,
     )
 
 
@@ -173,6 +174,19 @@ def _derivative_cases(surface: Literal["P", "R"], order: int, formula: Formula |
         residual = difference_form(right - (true * sp.Matrix(rows))[0], rows)
         label = f"every order {k}" if number is k else f"order {number}"
         yield Case(label, residual == 0, number in (k, CUBIC), residual=residual)
+
+
+def _derivative_probe(formula: Formula) -> tuple[Any, ...]:
+    relation = formula.relation
+    found = []
+    for number in (3, 4, 5):
+        values = _PROBE | {pr.u_1: _PROBE[_H[0]], pr.u_2: _PROBE[_H[1]], pr.k: number, pr.k_r: number}
+        values |= {pr.w_kr: pr.w_s + _PROBE[_H[0]], w_kr1: pr.w_s + _PROBE[_H[1]]}
+        values |= dict(zip(_ROWS["start"], map(sp.Integer, (2, 7, 31)), strict=True))
+        numbers = {s: sp.sympify(x).xreplace(_PROBE) for s, x in values.items()}
+        # The derivative itself, on the left, stays a letter.
+        found.append((relation.lhs - relation.rhs).xreplace(numbers))
+    return tuple(found)
 
 
 def difference_form(expression: Any, rows: tuple[Any, ...]) -> Any:

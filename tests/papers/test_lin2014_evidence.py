@@ -1,0 +1,160 @@
+"""The evidence behind the verdicts, judged by something else: exact splines at the counterexamples, measured blends."""
+
+import ast
+from fractions import Fraction
+from pathlib import Path
+
+import numpy as np
+import pytest
+import sympy as sp
+
+import papers.lin2014
+from papers.ledger import load_paper
+from papers.lin2014 import printed as pr
+from papers.lin2014.claims_3_conditions import TRUE_2_2, TRUE_3_1, TRUE_3_2
+from papers.lin2014.consequences import made_blend, made_pair, measured_rows, with_printed_rows
+from papers.lin2014.consequences_3 import COMMON_TERMS, with_normal_equation
+from papers.lin2014.contact_checks import row_check, row_counterexample, t_ks1, u_before, u_last, w_kr1
+from papers.lin2014.exact import Meaning, UndefinedError, clamped, de_boor, interpret
+from papers.search import smallest_assignment
+
+ROOT = Path(__file__).parents[2]
+
+
+def test_printed_formulas_run_in_the_papers_folder_only():
+    for path in (*ROOT.glob("solver/**/*.py"), *ROOT.glob("derivations/**/*.py"), *ROOT.glob("papers/*.py")):
+        names = [
+            name
+            for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+            if isinstance(node, ast.Import | ast.ImportFrom)
+            for name in (getattr(node, "module", None) or "", *(alias.name for alias in node.names))
+        ]
+        assert not [name for name in names if "printed" in name.split(".")], path
+
+
+def second_derivative(order, knots, points):
+    """Second derivative at the start, by differences of exact values on the first span: no formula of ours."""
+    first = next(t for t in knots if t > knots[0]) - knots[0]
+    count = max(order, 3)
+    x = [Fraction(knots[0]) + first * Fraction(i, 2 * count) for i in range(count)]
+    values = [de_boor(order, knots, points, t) for t in x]
+    t = sp.Symbol("t")
+    polynomial = sp.interpolate(
+        list(zip(map(sp.Rational, map(str, x)), map(sp.Rational, map(str, values)), strict=True)), t
+    )
+    return sp.diff(polynomial, t, 2).subs(t, sp.Rational(str(knots[0])))
+
+
+ROW_2 = [("printed", pr.COND_3_1), ("corrected", TRUE_3_1)]
+
+
+@pytest.mark.parametrize("k", [3, 4, 5])
+@pytest.mark.parametrize("k_r", [2, 3, 4, 6])
+def test_row_2_at_numbers_judged_by_exact_splines(k, k_r):
+    """P_uu(0) = alpha^4 R_ww(0): true of the corrected row, false of the printed one."""
+    W = clamped(k_r, Fraction(1, 5), Fraction(1, 2), start=0, end=1)
+    U = clamped(k, Fraction(1, 4), Fraction(2, 5), Fraction(3, 4))
+    R = [Fraction(x) for x in (2, -1, 5)] + [Fraction(0)] * (len(W) - k_r - 3)
+    numbers = {
+        pr.k: k, pr.k_r: k_r, pr.alpha: Fraction(3, 2), pr.u_1: U[k], pr.u_2: U[k + 1],
+        pr.w_kr: W[k_r], w_kr1: W[k_r + 1], pr.w_s: Fraction(0), pr.R_0: R[0], pr.R_1: R[1], pr.R_2: R[2], pr.P_0: R[0],
+    }  # fmt: skip
+    numbers[pr.P_1] = interpret(pr.COND_2_1.relation.rhs, Meaning(numbers))
+    wanted = Fraction(3, 2) ** 4 * Fraction(str(second_derivative(k_r, W, R)))
+    found = {}
+    for name, formula in ROW_2:
+        row = interpret(formula.relation.rhs, Meaning(numbers))
+        points = [R[0], numbers[pr.P_1], row] + [Fraction(0)] * (len(U) - k - 3)
+        found[name] = Fraction(str(second_derivative(k, U, points)))
+    assert found["corrected"] == wanted
+    assert found["printed"] != wanted
+
+
+def test_counterexamples_are_the_smallest_and_reproduce():
+    found = row_counterexample("start", 2, pr.COND_3_1)
+    values = dict(found.values)
+    assert (values["k"], values["k_r"]) == ("3", "2")
+    # P_1 = -1/6; the printed row is 2 P_1 - P_0, the true one P_1 + (u_2/u_1)(P_1 - P_0).
+    assert (found.printed, found.true) == ("-1/3", "-5/12")
+    assert row_counterexample("start", 1, pr.COND_2_1) is None
+
+
+def test_search_goes_by_height():
+    x, y = sp.symbols("x y", positive=True)
+    assert smallest_assignment([x, y], lambda at: at[x] * at[y] == 6) == {x: 2, y: 3}
+    assert smallest_assignment([x], lambda at: False) is None
+    n = sp.Symbol("n", integer=True, positive=True)
+    assert smallest_assignment([n], lambda at: at[n] > Fraction(3, 2)) == {n: 2}
+
+
+@pytest.mark.parametrize(
+    ("side", "formulas"),
+    [("start", {1: pr.COND_2_1, 2: TRUE_3_1}), ("end", {1: TRUE_2_2, 2: TRUE_3_2})],
+)
+def test_corrected_rows_give_back_the_solvers_blend(side, formulas):
+    """The solver's rows come from generated code, these from the formulas of the ledger."""
+    result = made_blend()
+    surface = with_printed_rows(made_pair(), result, side, formulas)
+    for ours, theirs in zip(surface.control_curves, result.surface.control_curves, strict=True):
+        # Extent 8, a few dozen roundings.
+        np.testing.assert_allclose(ours.control_points, theirs.control_points, rtol=0, atol=1e-12)
+
+
+def test_the_printed_row_leaves_a_curvature_jump_that_both_judges_see():
+    consequence = measured_rows("start", {2: pr.COND_3_1}, "made pair")
+    assert consequence.measured["relative curvature jump"] > 0.1
+    assert consequence.measured["angle between tangent planes [degrees]"] < 1e-9
+    assert consequence.measured["relative curvature jump with the corrected formula"] < 1e-9
+    assert consequence.judges["Open CASCADE"] == "touches at 5, G1 at 5, G2 at 0 of 5 points"
+    right = measured_rows("start", {2: TRUE_3_1}, "made pair")
+    assert right.measured["relative curvature jump"] < 1e-9
+    assert right.judges["Open CASCADE"] == "touches at 5, G1 at 5, G2 at 5 of 5 points"
+
+
+def test_the_right_normal_equation_gives_the_solvers_middle_curve():
+    result = made_blend("C2")
+    surface = with_normal_equation(result, (*COMMON_TERMS, (1, (0, 2), (0, 2))))
+    ours, theirs = (s.control_curves[3].control_points for s in (surface, result.surface))
+    np.testing.assert_allclose(ours, theirs, rtol=0, atol=1e-9)
+
+
+def test_an_undefined_letter_is_not_zero():
+    with pytest.raises(UndefinedError, match="x is not defined"):
+        interpret(sp.Symbol("x") + 1, Meaning({}))
+
+
+def test_a_wrong_knot_makes_a_row_check_red():
+    """u_1 for u_2 in the corrected row."""
+    right = [case.true for case in row_check("start", 2).cases(TRUE_3_1)]
+    assert all(right)
+    wrong = pr.Formula(TRUE_3_1.relation.xreplace({pr.u_2: pr.u_1}), TRUE_3_1.variables)
+    assert not any(case.true for case in row_check("start", 2).cases(wrong))
+
+
+def test_every_letter_of_corrected_end_formulas_matters():
+    for letter in (u_last, u_before, t_ks1):
+        moved = pr.Formula(TRUE_3_2.relation.xreplace({letter: letter + sp.Rational(1, 7)}), TRUE_3_2.variables)
+        assert not all(case.true for case in row_check("end", 2).cases(moved)), letter
+
+
+def test_the_curvature_that_the_printed_row_gives():
+    """Along the normal: the base's second derivative times (w_{k_r+1} - w_s) / u_2, the remark of cond-3.1."""
+    assert "times (w_{k_r+1} - w_s) / u_2" in load_paper("lin2014").claim("cond-3.1").remark
+    from papers.lin2014.figure_checks import _base_derivatives, _printed_derivatives, _rows_across
+
+    H = sp.symbols("H1 H2", positive=True)
+    alpha = sp.Symbol("alpha", positive=True)
+    rows, along = _rows_across("curved")
+    for m in (5, 6, 8):
+        _, second = _printed_derivatives(rows, m, H, alpha)
+        first, base = _base_derivatives(rows, H)
+        normal = first.cross(along)
+        ratio = sp.cancel(second.dot(normal) / (alpha**4 * base.dot(normal)))
+        assert sp.simplify(ratio - H[1] / sp.Rational(2, m - 2)) == 0
+
+
+def test_the_paper_has_a_title_and_a_legend():
+    paper = load_paper("lin2014")
+    assert paper.title.startswith("Semi-structured B-spline")
+    assert "h_r" in paper.legend
+    assert Path(papers.lin2014.__file__).parent.joinpath("printed.py").is_file()

@@ -1,0 +1,86 @@
+"""The paper decided anew, once, as a whole: every verdict, every piece of evidence, the report."""
+
+from pathlib import Path
+
+from papers.ledger import Verdict
+from papers.report import ledger_html, ledger_markdown, ledger_record
+from papers.verification import verify
+from solver.io.json_text import to_text
+
+REPORT = Path(__file__).parents[2] / "papers" / "lin2014" / "REPORT.md"
+
+# Decided by hand as well, by reading the derivation.
+KNOWN = {
+    "def-1": "holds-if",
+    "eq-1": "holds",
+    "eq-6": "holds",
+    "eq-11": "holds-if",
+    "eq-12": "ambiguous",
+    "eq-14": "fails",
+    "eq-15": "holds-if",
+    "eq-16": "holds-if",
+    "eq-17": "fails",
+    "eq-18": "holds",
+    "cond-1.1": "holds",
+    "cond-1.2": "holds",
+    "cond-2.1": "holds",
+    "cond-2.2": "holds-if",
+    "cond-3.1": "fails",
+    "cond-3.2": "fails",
+    "app-d1": "holds",
+    "app-d2": "fails",
+    "sec-2.top-last-row": "fails",
+    "sec-3.m-bound": "holds-if",
+    "sec-3.averaging": "ambiguous",
+    "sec-4.no-middle-curve": "holds",
+    "sec-4.g1-degree": "holds",
+    "sec-4.g2-degree": "holds",
+    "fig-10.first-knots": "fails",
+    "fig-11.counts": "holds",
+}
+
+
+def test_every_claim_is_decided_as_recorded_and_the_report_is_fresh():
+    ledger = verify("lin2014", workers=2)
+    wrong = {d.id: (str(d.verdict), d.problem, d.vacuous, d.mutation.survivors) for d in ledger.decisions if not d.ok}
+    assert wrong == {}
+    verdicts = {d.id: str(d.verdict) for d in ledger.decisions}
+    assert {f"eq-{n}" for n in range(1, 19)} <= set(verdicts)
+    assert {name: verdicts[name] for name in KNOWN} == KNOWN
+    counts = ledger.counts()
+    assert counts["printed"] >= 100
+    assert counts["decided"] == counts["printed"] - counts["not-checkable"]
+    assert counts["mutants"] > 1500
+    assert (counts["vacuous"], counts["changed"], counts["mutants_survived"]) == (0, 0, 0)
+    _evidence_is_complete(ledger)
+    _outputs_are_complete(ledger)
+    stored = REPORT.read_text(encoding="utf-8")
+    assert ledger_markdown(ledger) in stored, "run `semispline verify lin2014 --markdown papers/lin2014/REPORT.md`"
+
+
+def _evidence_is_complete(ledger):
+    for claim, decision in zip(ledger.paper.claims, ledger.decisions, strict=True):
+        if decision.verdict is Verdict.FAILS:
+            assert decision.counterexample, claim.id
+            assert decision.correction.verdict is Verdict.HOLDS, claim.id
+            assert decision.consequence.measured, claim.id
+            assert decision.readings[0].false_case, claim.id
+        if decision.verdict is Verdict.HOLDS_IF:
+            reading = decision.readings[0]
+            assert reading.true_case, claim.id
+            assert reading.false_case, claim.id
+        # Every formula claim was perturbed.
+        assert bool(claim.formulas) <= (decision.mutation.tried > 0), claim.id
+
+
+def _outputs_are_complete(ledger):
+    record = ledger_record(ledger)
+    assert len(record["claims"]) == len(ledger.paper.claims)
+    assert '"kind": "ledger"' in to_text(record)
+    html = ledger_html(ledger)
+    assert html.count("<details") == len(ledger.paper.claims)
+    assert html.count("<math>") > 60
+    # Nothing is fetched from a network.
+    assert "http" not in html
+    # No timings in what is kept under version control.
+    assert "seconds" not in ledger_markdown(ledger).replace("5.54 seconds", "")
