@@ -11,7 +11,7 @@ from solver.arrays import FloatArray, SparseMatrix
 from solver.curves import restrict_curve, set_curve_continuity
 from solver.errors import KnotError
 from solver.gram import Basis
-from solver.knots import derivative_matrix
+from solver.knots import derivative_matrix, derivative_points
 from solver.surfaces import BSplineCurve
 
 # Derivatives at both ends of a seam that differ by less than this, relative to the largest, count as equal.
@@ -30,10 +30,10 @@ def seam_order(along: Basis, rows: FloatArray) -> int:
     """
     order = -1
     for d in range(along.degree):
-        matrix = derivative_matrix(along.degree, along.knots, d)
-        ends = [np.einsum("j,kjx->kx", matrix[[i]].toarray()[0], rows) for i in (0, -1)]
-        largest = float(np.abs(matrix @ rows.transpose(1, 0, 2).reshape(along.size, -1)).max())
-        if np.abs(ends[0] - ends[1]).max() > SEAM_TOLERANCE * max(largest, float(np.ptp(rows, axis=1).max())):
+        # The first and the last control point of a derivative are its values at the ends.
+        points = derivative_points(along.degree, along.knots, rows.transpose(1, 0, 2), d)
+        largest = float(np.abs(points).max())
+        if np.abs(points[0] - points[-1]).max() > SEAM_TOLERANCE * max(largest, float(np.ptp(rows, axis=1).max())):
             break
         order = d
     return order

@@ -59,8 +59,9 @@ def correspond(a: Base, b: Base, flip: Flip = "auto") -> Correspondence:
     for flipped in (False, True) if flip == "auto" else (flip == "yes",):
         turned = (np.roll(second[::-1], 1, axis=0) if closed else second[::-1]) if flipped else second
         # Distance grows as the correlation falls: its terms of one curve alone do not depend on the match.
-        steps = np.arange(_SAMPLES) if closed else np.zeros(1, dtype=int)
-        correlation = np.array([np.sum(first * np.roll(turned, -k, axis=0)) for k in steps])
+        steps = range(_SAMPLES if closed else 1)
+        shifted = np.lib.stride_tricks.sliding_window_view(np.concatenate([turned, turned]), _SAMPLES, axis=0)
+        correlation = np.einsum("ix,kxi->k", first, shifted[: len(steps)])
         best = int(correlation.argmax())
         candidates.append((float(correlation[best]), flipped, best))
     slack = 1e-9 * float(np.sum(first**2) + np.sum(second**2))
