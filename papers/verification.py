@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import signal
+import threading
 import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import ProcessPoolExecutor, as_completed
+from contextlib import contextmanager
 from dataclasses import dataclass
 from multiprocessing import get_context
 from typing import Any
@@ -118,10 +121,15 @@ class VacuousError(CheckFailedError):
     """A check without a single instance."""
 
 
-def decide(claim: Claim) -> Decision:
+# No check of a paper that ships takes a tenth of this.
+TIME_LIMIT = 120.0
+
+
+def decide(claim: Claim, time_limit: float = TIME_LIMIT) -> Decision:
     """Run every check of one record.
 
-    A check without an answer does not raise: it leaves a decision without a verdict, which is never `ok`.
+    A check without an answer does not raise: it leaves a decision without a verdict, which is never `ok`. So does one
+    that takes longer than `time_limit` seconds, on systems with an interval timer.
     """
     started = time.perf_counter()
     readings: tuple[ReadingDecision, ...] = ()
@@ -129,20 +137,21 @@ def decide(claim: Claim) -> Decision:
     counterexample, correction, consequence = "", None, None
     mutation = MutationResult(0, 0, ())
     try:
-        readings = tuple(_decide_reading(reading) for reading in claim.readings)
-        verdict = _combined(readings)
-        if verdict is Verdict.FAILS:
-            found = claim.counterexample() if claim.counterexample else None
-            if found is None:
-                raise CheckFailedError("the search found no counterexample, expected one for a claim that fails")
-            counterexample = str(found)
-        if claim.correction:
-            correction = _decide_reading(Reading(claim.correction.parts))
-            if correction.verdict is not Verdict.HOLDS:
-                raise CheckFailedError(f"the correction {correction.verdict}, expected a formula that holds")
-        if claim.consequence:
-            consequence = claim.consequence()
-        mutation = _mutation(claim)
+        with _limited(time_limit):
+            readings = tuple(_decide_reading(reading) for reading in claim.readings)
+            verdict = _combined(readings)
+            if verdict is Verdict.FAILS:
+                found = claim.counterexample() if claim.counterexample else None
+                if found is None:
+                    raise CheckFailedError("the search found no counterexample, expected one for a claim that fails")
+                counterexample = str(found)
+            if claim.correction:
+                correction = _decide_reading(Reading(claim.correction.parts))
+                if correction.verdict is not Verdict.HOLDS:
+                    raise CheckFailedError(f"the correction {correction.verdict}, expected a formula that holds")
+            if claim.consequence:
+                consequence = claim.consequence()
+            mutation = _mutation(claim)
     except VacuousError as error:
         verdict, problem, vacuous = None, str(error), True
     except Exception as error:  # a check may fail in any way; none may pass for it
@@ -160,6 +169,25 @@ def decide(claim: Claim) -> Decision:
         mutation,
         time.perf_counter() - started,
     )
+
+
+@contextmanager
+def _limited(seconds: float) -> Iterator[None]:
+    """Raise `CheckFailedError` in the body after some seconds; does nothing outside the main thread of a process."""
+    if not hasattr(signal, "setitimer") or threading.current_thread() is not threading.main_thread():
+        yield
+        return
+
+    def stop(_number: int, _frame: object) -> None:
+        raise CheckFailedError(f"no answer within {seconds:g} seconds")
+
+    before = signal.signal(signal.SIGALRM, stop)
+    signal.setitimer(signal.ITIMER_REAL, seconds)
+    try:
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, before)
 
 
 def _decide_reading(reading: Reading) -> ReadingDecision:

@@ -245,7 +245,7 @@ def curve_based_cases(_: Formula | None) -> Iterator[Case]:
         for part in ("bottom", "top"):
             rows = expanded_rows(m, n, k, "bottom" if part == "bottom" else "top")
             degrees = tuple(len(row) - 1 for row in rows)
-            yield Case(f"degrees {m}, {n}, {k}, {part}", degrees == row_degrees(m, n, k, part))  # type: ignore[arg-type]
+            yield Case(f"degrees {m}, {n}, {k}, {part}", degrees == row_degrees(m, n, k, part))
 
 
 def hole() -> Hole:

@@ -8,6 +8,8 @@ from functools import cache
 from itertools import pairwise
 from typing import Any
 
+import sympy as sp
+
 from derivations.contact import A, contact_rows
 from derivations.splines import span_symbols
 from papers.ledger import Case, Formula
@@ -35,7 +37,7 @@ def printed_pair(name: str) -> tuple[tuple[Fraction, ...], tuple[Fraction, ...]]
 
 def inner_knots(key: str) -> list[Fraction]:
     """Return the knots of a printed vector strictly inside [0, 1]."""
-    return [Fraction(int(x.p), int(x.q)) for x in map(pr.Rational, pr.KNOTS[key]) if 0 < x < 1]
+    return [Fraction(int(x.p), int(x.q)) for x in map(sp.Rational, pr.KNOTS[key]) if 0 < x < 1]
 
 
 def contact_curve_cases() -> Iterator[Case]:
@@ -77,7 +79,7 @@ def layout_cases(formula: Formula | None) -> Iterator[Case]:
         unsound = [m for m in admitted if m - 2 <= 2 or m + 1 < k]
         label = f"k = {k}" + (f", m = {unsound[0]}" if unsound else "")
         # The residual tells bounds apart that admit different m.
-        residual = pr.Rational(len(admitted))
+        residual = sp.Integer(len(admitted))
         yield Case(label, not unsound, own=k == CUBIC, meets=k >= CUBIC, residual=residual)
 
 

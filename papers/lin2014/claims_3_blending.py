@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sympy as sp
 from sympy import Eq
 
 from papers.ledger import Case, Check, Claim, Correction, Counterexample, Formula, Part, Reading, Strength
@@ -40,7 +41,7 @@ ROW_1_AT_ZERO = Formula(Eq(pr.P_1, pr.P_0, evaluate=False), (pr.P_0, pr.P_1))
 
 def _strain_counterexample() -> Counterexample | None:
     """Search for the smallest curvature, area element and scale at which the printed measure changes."""
-    scale = pr.Symbol("c", positive=True)
+    scale = sp.Symbol("c", positive=True)
     found = smallest_assignment([pr.kappa_1, scale], lambda at: at[scale] != 1 and at[pr.kappa_1] != 0)
     if found is None:
         return None
@@ -56,7 +57,7 @@ def _strain_counterexample() -> Counterexample | None:
 
 def _fewer_counterexample() -> Counterexample | None:
     """Search for the smallest end data for which no middle curve costs more energy than one."""
-    symbols = pr.symbols("d0 d1 d2 e0 e1 e2", real=True)
+    symbols = sp.symbols("d0 d1 d2 e0 e1 e2", real=True)
     data = tuple(symbols)
     none, one = (energy.end_energy(4, m, data) for m in (5, 6))
     found = smallest_assignment(data, lambda at: (none - one).subs(at) > 0)
@@ -82,10 +83,10 @@ def _fewer_cases():  # type: ignore[no-untyped-def]
 
 def _more_rows_cases():  # type: ignore[no-untyped-def]
     """Yield that fewer rows never cost less: the difference of the energies is a positive semidefinite form."""
-    data = pr.symbols("d0 d1 d2 e0 e1 e2", real=True)
+    data = sp.symbols("d0 d1 d2 e0 e1 e2", real=True)
     for few, more in ((5, 6), (6, 7), (5, 8)):
         difference = energy.end_energy(4, few, data) - energy.end_energy(4, more, data)
-        form = energy.sp.hessian(difference, data)
+        form = sp.hessian(difference, data)
         yield Case(f"{few + 1} rows against {more + 1}", bool(form.is_positive_semidefinite))
 
 
@@ -190,11 +191,12 @@ CLAIMS: tuple[Claim, ...] = (
     fails("sec-3.fewer-better", _BLEND, "In general, the fewer control points the blend has, the better its quality.",
           part(question(_fewer_cases, "least energy (11) of strips with C2 contact, exactly")),
           correction=Correction(
-              "Measured by (11) no middle curve is never better than one: the difference of the least energies is a "
-              "positive semidefinite form in the contact data; knots that contain others never cost energy.",
+              "For strips, whose rows do not vary along v, no middle curve is never better than one: the difference of "
+              "the least energies (11) is a positive semidefinite form in the contact data. Knots that contain others "
+              "never cost energy.",
               (Part(proved(_more_rows_cases, "definiteness of the exact difference", Strength.RATIONAL)),)),
           counterexample=_fewer_counterexample, consequence=more_curves,
-          remark="By the paper's own measure its surfaces without a middle curve are the worse ones."),
+          remark="By the measure of the paper itself, a surface without a middle curve is the worse one."),
     fails("sec-1.fairness", "Section 1", "Inserting knots until both contact curves share theirs worsens the fairness.",
           part(question(_fairness_cases, "least energy (11), exactly")),
           correction=Correction(

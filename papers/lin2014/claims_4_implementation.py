@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+import sympy as sp
 from sympy import Eq
 
+from derivations.contact import contact_rows
 from papers.ledger import Case, Check, Claim, Correction, Counterexample, Formula, Part, Strength
 from papers.lin2014 import energy_checks as energy
 from papers.lin2014 import printed as pr
 from papers.lin2014.consequences_3 import single_integrals, third_term, vector_lengths, zero_system
-from papers.lin2014.contact_checks import contact_rows
 from papers.lin2014.exact import Meaning, difference_case, indexed
 from papers.lin2014.property_checks import proved, question
 from papers.lin2014.records import fails, holds, holds_if, not_checkable, part
@@ -47,7 +48,7 @@ def _gram_counterexample(formula: Formula):  # type: ignore[no-untyped-def]
     return search
 
 
-def _true_entry(label: str) -> Iterator[energy.sp.Rational]:
+def _true_entry(label: str) -> Iterator[sp.Rational]:
     for case in energy.gram_entry_cases(Formula(Eq(pr.K, 0, evaluate=False), (pr.K,))):
         if case.label.endswith(label):
             yield -case.residual
@@ -55,7 +56,7 @@ def _true_entry(label: str) -> Iterator[energy.sp.Rational]:
 
 def _no_middle_cases() -> Iterator[Case]:
     """Yield m = 5: contact of order 2 at both ends sets all six rows; the end derivatives determine each of them."""
-    h, H = energy.sp.symbols("h1 h2", positive=True), energy.sp.symbols("H1 H2", positive=True)
+    h, H = sp.symbols("h1 h2", positive=True), sp.symbols("H1 H2", positive=True)
     rows = contact_rows(2, 3, h, 3, H)
     yield Case("rows 0, 1, 2 from R, rows 3, 4, 5 from S", energy.free_rows(5, 2) == [] and rows.shape == (3, 3))
     yield Case("each of them is determined", all(entry.is_finite is not False for entry in rows))
@@ -89,10 +90,10 @@ def _cvv_counterexample() -> Counterexample | None:
 
 def _initial_cases() -> Iterator[Case]:
     """Yield that the rows of a C2 blend are those of a G2 blend with alpha = beta = 1."""
-    h, H = energy.sp.symbols("h1 h2", positive=True), energy.sp.symbols("H1 H2", positive=True)
-    a = energy.sp.Symbol("a", positive=True)
+    h, H = sp.symbols("h1 h2", positive=True), sp.symbols("H1 H2", positive=True)
+    a = sp.Symbol("a", positive=True)
     geometric, parametric = contact_rows(2, 3, h, 3, H, a), contact_rows(2, 3, h, 3, H, 1)
-    yield Case("all rows", (geometric.subs(a, 1) - parametric).applyfunc(energy.sp.cancel).is_zero_matrix)
+    yield Case("all rows", (geometric.subs(a, 1) - parametric).applyfunc(sp.cancel).is_zero_matrix)
 
 
 def _zero_system_cases() -> Iterator[Case]:

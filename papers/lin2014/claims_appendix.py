@@ -154,7 +154,7 @@ CLAIMS = (
             "The made pair with row 2 by (3.1), which is (18) with these derivatives",
         ),
         remark="Right for order 2, where both sides vanish, and where the first two spans have length 1. With "
-        "squares it holds where the first two spans are the same, such as without inner knots.",
+        "squares it holds where u_1 = u_2, such as without inner knots.",
     ),
     holds("sec-A.substitution", _WHERE, "p_1 = alpha^2, q_1 = p_2 = q_2 = 0 turn (15), (16) into (17), (18).",
           part(Check(partial(substitution_cases, 1), Strength.SYMBOLIC_ORDER, "substitution", proof=True), pr.EQ_17),

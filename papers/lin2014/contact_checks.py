@@ -119,7 +119,7 @@ def _field_values(side: Side, parametric: bool, k: int, k_b: int) -> dict[Any, A
         if k
         else contact_rows(2, pr.k - 1, _H, _base_order(side) - 1, _BASE_H)
     )
-    values = _symbols(side, *orders, matrix, parametric)
+    values = _symbols(side, orders[0], orders[1], matrix, parametric)
     letters = [*_H, *_BASE_H, *_BASE_ROWS[side], pr.alpha, pr.beta, pr.w_s, pr.t_s, pr.k, pr.k_r, pr.k_s]
     field = sp.QQ.frac_field(*letters)
     return {s: field.from_sympy(sp.sympify(x)) for s, x in ({s: s for s in letters} | values).items()}

@@ -38,7 +38,7 @@ class Meaning:
     """
 
     numbers: Mapping[Any, Any]
-    functions: Mapping[str, Callable[..., Any]] = field(default_factory=dict)
+    functions: Mapping[str, Any] = field(default_factory=dict)
 
 
 def interpret(expression: Any, meaning: Meaning) -> Any:
@@ -118,7 +118,7 @@ def as_expression(value: Any) -> Any:
     return value.as_expr() if hasattr(value, "as_expr") else sp.sympify(value)
 
 
-def indexed(name: str, values: Mapping[tuple[int, ...], Any]) -> Callable[..., Any]:
+def indexed(name: str, values: Mapping[Any, Any]) -> Callable[..., Any]:
     """Return a lookup by integer indices that refuses what is not there."""
 
     def look_up(*indices: Any) -> Any:

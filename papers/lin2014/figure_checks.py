@@ -186,9 +186,7 @@ def parametric_cases(kind: str, m: int) -> Any:
 
 def _base_derivatives(rows: tuple[sp.Matrix, ...], spans: Any) -> tuple[sp.Matrix, sp.Matrix]:
     matrix = end_derivatives(2, CUBIC - 1, spans)
-    return tuple(  # type: ignore[return-value]
-        sum((matrix[d, i] * rows[i] for i in range(3)), sp.zeros(3, 1)) for d in (1, 2)
-    )
+    return tuple(sum((matrix[d, i] * rows[i] for i in range(3)), sp.zeros(3, 1)) for d in (1, 2))
 
 
 def true_rows_cases(kind: str, m: int) -> Any:

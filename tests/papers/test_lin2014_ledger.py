@@ -1,6 +1,8 @@
 """The paper decided anew, once, as a whole: every verdict, every piece of evidence, the report."""
 
+import re
 from pathlib import Path
+from xml.etree import ElementTree
 
 from papers.ledger import Verdict
 from papers.report import ledger_html, ledger_markdown, ledger_record
@@ -79,7 +81,10 @@ def _outputs_are_complete(ledger):
     assert '"kind": "ledger"' in to_text(record)
     html = ledger_html(ledger)
     assert html.count("<details") == len(ledger.paper.claims)
-    assert html.count("<math>") > 60
+    formulas = re.findall("<math>.*?</math>", html)
+    assert len(formulas) > 60
+    for formula in formulas:
+        ElementTree.fromstring(formula)
     # Nothing is fetched from a network.
     assert "http" not in html
     # No timings in what is kept under version control.

@@ -1,5 +1,6 @@
 """Deciding: the made-up paper, and every way in which a check may fail to decide."""
 
+import time
 from dataclasses import replace
 
 import pytest
@@ -123,6 +124,19 @@ def test_a_check_without_an_instance_is_vacuous():
     decision = decide(claim_of())
     assert decision.vacuous
     assert decision.verdict is None
+    assert not decision.ok
+
+
+def test_a_check_that_does_not_end_is_stopped_and_is_no_pass():
+    def cases(_):
+        yield TRUE
+        while True:
+            time.sleep(0.01)
+
+    part = Part(Check(cases, Strength.RATIONAL, "waiting"))
+    decision = decide(Claim("c", "w", "s", Verdict.HOLDS, (Reading((part,)),)), time_limit=0.2)
+    assert decision.verdict is None
+    assert "no answer within 0.2 seconds" in decision.problem
     assert not decision.ok
 
 
