@@ -110,10 +110,10 @@ def _looked_up(values: dict[int, Any], key: int) -> Any:
 
 def three_row_cases() -> Iterator[Case]:
     """Yield orders: rows 0..2 of the blend are combinations of rows 0..2 of the base, and row 2 needs R_2."""
-    h, H = span_symbols(2), span_symbols(2, "H")
+    every = contact_rows(2, pr.k - 1, span_symbols(2), pr.k_r - 1, span_symbols(2, "H"))
     for k in range(3, 8):
         for k_r in range(3, 8):
-            rows = contact_rows(2, k - 1, h, k_r - 1, H)
+            rows = every.subs({pr.k: k, pr.k_r: k_r})
             needed = rows[2, 2] != 0 and rows[1, 1] != 0 and rows[2, 2].has(A)
             yield Case(f"orders {k}, {k_r}", bool(rows.shape == (3, 3) and needed), own=k == k_r == CUBIC)
 
