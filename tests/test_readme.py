@@ -14,7 +14,8 @@ def test_there_are_examples():
 
 
 @pytest.mark.parametrize("block", BLOCKS, ids=range(len(BLOCKS)))
-def test_example_runs(block):
+def test_example_runs(block, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
     names = {}
     exec(compile(block, str(README), "exec"), names)
     # An example that leaves nothing behind has shown nothing.
