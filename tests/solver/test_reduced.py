@@ -153,7 +153,7 @@ def dense_multistart(problem, points):
     return float(minimize(energy, start, bounds=bounds, method="L-BFGS-B").fun)
 
 
-def never_beaten(seeds, points):
+def verify_never_beaten(seeds, points):
     for seed in seeds:
         problem = problem_of(seed, middle_curves=seed % 3)
         found = solve_reduced(problem)
@@ -162,12 +162,12 @@ def never_beaten(seeds, points):
 
 
 def test_a_dense_multistart_never_beats_it():
-    never_beaten(range(12), 12)
+    verify_never_beaten(range(12), 12)
 
 
 @pytest.mark.slow
 def test_a_dense_multistart_never_beats_it_300_times():
-    never_beaten(range(300), 20)
+    verify_never_beaten(range(300), 20)
 
 
 @pytest.mark.parametrize("seed", range(10))
