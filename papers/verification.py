@@ -315,15 +315,20 @@ def _decisions(paper: Paper, workers: int) -> Iterator[Decision]:
         return
     # A fresh interpreter for each worker: forking a process with threads (BLAS, progress bar) is not safe.
     with ProcessPoolExecutor(workers, mp_context=get_context("spawn")) as pool:
-        waiting = [pool.submit(_decide_by_id, paper.name, claim.id) for claim in paper.claims]
-        yield from (future.result() for future in as_completed(waiting))
+        # Neighbours share oracles, which each worker derives for itself: so they go to one worker.
+        ids = [claim.id for claim in paper.claims]
+        groups = [ids[start : start + _GROUP] for start in range(0, len(ids), _GROUP)]
+        waiting = [pool.submit(_decide_by_id, paper.name, group) for group in groups]
+        for future in as_completed(waiting):
+            yield from future.result()
 
 
+_GROUP = 6
 _LOADED: dict[str, Paper] = {}
 
 
-def _decide_by_id(name: str, identifier: str) -> Decision:
-    """Decide one record in a worker, which loads the paper once: checks are functions and do not travel."""
+def _decide_by_id(name: str, identifiers: list[str]) -> list[Decision]:
+    """Decide some records in a worker, which loads the paper once: checks are functions and do not travel."""
     if name not in _LOADED:
         _LOADED[name] = load_paper(name)
-    return decide(_LOADED[name].claim(identifier))
+    return [decide(_LOADED[name].claim(identifier)) for identifier in identifiers]
