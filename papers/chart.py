@@ -8,7 +8,7 @@ from html import escape
 from math import ceil, floor, log10
 
 from papers.baselines.comparison import Comparison
-from papers.tables import reached
+from papers.tables import cell, reached
 
 _WIDTH, _HEIGHT = 640, 300
 _LEFT, _RIGHT, _TOP, _BOTTOM = 70, 20, 14, 44
@@ -56,16 +56,22 @@ def energy_chart(comparisons: Sequence[Comparison]) -> str:
     for value in upwards.ticks():
         y = upwards.place(value)
         parts.append(f"<line x1='{_LEFT}' x2='{_WIDTH - _RIGHT}' y1='{y:.1f}' y2='{y:.1f}' class='grid'/>")
-        parts.append(f"<text x='{_LEFT - 6}' y='{y + 4:.1f}' text-anchor='end'>{value:.3g}</text>")
+        parts.append(f"<text x='{_LEFT - 6}' y='{y + 4:.1f}' text-anchor='end'>{cell(value)}</text>")
     for mark in marks:
         label = ", ".join(map(str, mark.numbers))
         parts.append(f"<circle cx='{mark.x:.1f}' cy='{mark.y:.1f}' r='5' fill='{mark.color}'/>")
         end = mark.x > _WIDTH - 120
         anchor, dx = ("end", -8) if end else ("start", 8)
-        parts.append(f"<text x='{mark.x + dx:.1f}' y='{mark.y + 4:.1f}' text-anchor='{anchor}' class='mark'>{label}</text>")
-    parts.append(f"<text x='{(_LEFT + _WIDTH - _RIGHT) / 2}' y='{_HEIGHT - 8}' text-anchor='middle'>control points</text>")
+        parts.append(
+            f"<text x='{mark.x + dx:.1f}' y='{mark.y + 4:.1f}' text-anchor='{anchor}' class='mark'>{label}</text>"
+        )
+    parts.append(
+        f"<text x='{(_LEFT + _WIDTH - _RIGHT) / 2}' y='{_HEIGHT - 8}' text-anchor='middle'>control points</text>"
+    )
     middle = (_TOP + bottom) / 2
-    parts.append(f"<text x='14' y='{middle}' text-anchor='middle' transform='rotate(-90 14 {middle})'>energy (11)</text>")
+    parts.append(
+        f"<text x='14' y='{middle}' text-anchor='middle' transform='rotate(-90 14 {middle})'>energy (11)</text>"
+    )
     title = escape(f"Energy against control points: {comparisons[0].task.title}")
     return f"<svg viewBox='0 0 {_WIDTH} {_HEIGHT}' role='img' aria-label='{title}' class='chart'>{''.join(parts)}</svg>"
 

@@ -24,6 +24,8 @@ from papers.viewer import model, viewer_html, viewer_script
 
 # Pixels across a picture in the page; the files beside it are for print.
 _PICTURE_WIDTH = 1600
+# Findings whose details are shown before anybody asks.
+_OPEN = 3
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,13 +59,13 @@ class Results:
 
 def page(results: Results) -> str:
     """Return the page."""
-    title = results.ledger.paper.title.rstrip(".")
+    title, _, published = results.ledger.paper.title.rstrip(".").partition(" (")
     found = results.study.findings(results.comparisons)
     used = {name for example in results.study.examples for name in example.pictures}
     rest = [drawing.name for drawing in results.study.drawings if drawing.name not in used]
     sections = (
         ("found", "What was found", _summary(results.ledger, found)),
-        ("tables", "Its table", "".join(map(table_html, results.study.tables(results.comparisons)))),
+        ("tables", "The paper's table", "".join(map(table_html, results.study.tables(results.comparisons)))),
         ("examples", "Examples and rivals", _examples(results)),
         ("blends", "Pairs, edge by edge", table_html(results.blends)),
         ("figures", "Other figures", "".join(_picture(results, name) for name in rest)),
@@ -75,8 +77,9 @@ def page(results: Results) -> str:
     return f"""<!DOCTYPE html>
 <html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width, initial-scale=1">
 <title>{escape(title)}: claims, examples and rivals</title><style>{_asset("page.css")}</style></head><body>
-<header><h1>{escape(title)}</h1><p class="lead">Every printed claim decided, every example run again, every rival
-measured. {escape(results.study.preface)}</p><nav>{links}</nav></header>
+<header><h1>{escape(title)} <small>{escape(published.rstrip(")"))}</small></h1>
+<p class="lead">Every printed claim decided, every example run again, every rival measured.
+{escape(results.study.preface)}</p><nav>{links}</nav></header>
 <main>{body}</main>
 <script>{viewer_script()}</script><script>{_asset("page.js")}</script>
 </body></html>
@@ -95,10 +98,17 @@ def _summary(ledger: Ledger, found: Sequence[Finding]) -> str:
         for claim, decision in zip(ledger.paper.claims, ledger.decisions, strict=True)
         if decision.verdict is Verdict.FAILS
     ]
-    items = "".join(f"<li><b>{escape(f.short)}.</b> <span>{escape(f.detail)}</span></li>" for f in found)
+    items = "".join(
+        f"<details{' open' if i < _OPEN else ''}><summary>{escape(f.short)}</summary>{_paragraph(f.detail)}</details>"
+        for i, f in enumerate(found)
+    )
     return f"""<div class="tiles"><div class="tile"><b>{counts["printed"]}</b>printed claims</div>{tiles}</div>
-<div class="columns"><div><h3>The method, run</h3><ul class="findings">{items}</ul></div>
+<div class="columns"><div class="findings"><h3>The method, run beside its rivals</h3>{items}</div>
 <div><h3>False as printed</h3><ul class="failures">{"".join(failures) or "<li>nothing</li>"}</ul></div></div>"""
+
+
+def _paragraph(text: str) -> str:
+    return f"<p>{escape(text)}</p>"
 
 
 def table_html(table: Table) -> str:
@@ -129,9 +139,9 @@ def _example(results: Results, example: Example, comparisons: Sequence[Compariso
     legend = f"<p class='legend'>Numbers are those of the table; {LEGEND}</p>" if chart else ""
     table = methods_table(comparisons)
     return (
-        f"<article id='{escape(task.name)}'><h3>{escape(task.title)}</h3><ul class='notes'>{notes}</ul>"
-        f"<div class='pair'>{view}<div>{chart}{legend}</div></div>{table_html(table)}"
-        f"<div class='pictures'>{pictures}</div></article>"
+        f"<article id='{escape(task.name)}'><h3>{escape(task.title)}</h3>"
+        f"<div class='pair'>{view}<div><ul class='notes'>{notes}</ul>{chart}{legend}</div></div>"
+        f"<div class='pictures'>{pictures}</div>{table_html(table)}</article>"
     )
 
 
@@ -151,14 +161,17 @@ def _caption(comparison: Comparison) -> str:
 
 
 def _picture(results: Results, name: str) -> str:
-    path = results.pictures[name]
     text = escape(next(d.caption for d in results.study.drawings if d.name == name))
-    source = picture_uri(path)
-    return f"<figure id='{escape(name)}'><img src='{source}' alt='{text}'><figcaption>{text}</figcaption></figure>"
+    source, width, height = _inlined(results.pictures[name])
+    kind = "wide" if width > 1.6 * height else "normal"
+    return (
+        f"<figure class='{kind}'><img src='{source}' alt='{text}' width='{width}' height='{height}'>"
+        f"<figcaption>{text}</figcaption></figure>"
+    )
 
 
-def picture_uri(path: Path) -> str:
-    """Return a picture as a data URI: a WebP of at most 1600 pixels across."""
+def _inlined(path: Path) -> tuple[str, int, int]:
+    """Return a picture as a data URI, and its size: a WebP of at most 1600 pixels across."""
     with Image.open(path) as picture:
         small = picture.convert("RGB")
         if small.width > _PICTURE_WIDTH:
@@ -166,7 +179,7 @@ def picture_uri(path: Path) -> str:
             small = small.resize((_PICTURE_WIDTH, height), Image.Resampling.LANCZOS)
         buffer = BytesIO()
         small.save(buffer, "WEBP", quality=88, method=4)
-    return f"data:image/webp;base64,{b64encode(buffer.getvalue()).decode('ascii')}"
+        return f"data:image/webp;base64,{b64encode(buffer.getvalue()).decode('ascii')}", *small.size
 
 
 def _made(results: Results) -> str:
@@ -175,7 +188,7 @@ def _made(results: Results) -> str:
     )
     return f"""<p>{escape(counts_text(results.ledger))}</p>
 <p>To repeat it: <code>{escape(results.command)}</code>, or <code>make report</code> in a checkout, which installs the
-exact versions of <code>constraints.txt</code> first. No random number is drawn anywhere in this run, so there is no seed
-to set; numbers are the same at every run on one machine, times aside. <code>numbers.json</code> and
+exact versions of <code>constraints.txt</code> first. No random number is drawn anywhere in this run, so there is no
+seed to set; numbers are the same at every run on one machine, times aside. <code>numbers.json</code> and
 <code>report.md</code> beside this page hold all of them, and the pictures for print.</p>
 <div class="scroll"><table>{rows}</table></div>"""

@@ -270,6 +270,12 @@ def ledger_html(ledger: Ledger) -> str:
     return f"<p>{escape(counts_text(ledger))}</p><p class='filters'>{filters}</p>\n{claims}"
 
 
+def _evidence_words(reading: ReadingDecision) -> str:
+    kind = "proof" if reading.proof else "instances"
+    cases = f"{reading.cases} case{'s' if reading.cases != 1 else ''}"
+    return f"{reading.verdict}: {reading.strength.text} ({kind}, {cases}): {reading.method}"
+
+
 def _claim_html(claim: Claim, decision: Decision) -> str:
     verdict = str(decision.verdict or "no answer")
     rows: list[tuple[str, str]] = [("where", escape(claim.where))]
@@ -282,8 +288,7 @@ def _claim_html(claim: Claim, decision: Decision) -> str:
         ("counterexample", decision.counterexample),
         ("consequence", consequence_text(decision.consequence)),
         *(("holds if", r.condition) for r in decision.readings if r.condition),
-        *((f"read as {r.label}", str(r.verdict)) for r in decision.readings if r.label),
-        ("evidence", evidence_text(decision)),
+        *((f"read as {r.label}" if r.label else "evidence", _evidence_words(r)) for r in decision.readings),
         ("reason", claim.reason),
         ("remark", claim.remark),
         ("problem", decision.problem),

@@ -1,4 +1,4 @@
-"""`semispline reproduce`: verify a paper, run its examples with every method, and write pictures, numbers and a page."""
+"""`semispline reproduce`: verify a paper, run its examples with every method, write pictures, numbers and a page."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from papers.baselines.registry import methods
 from papers.environment import environment
 from papers.page import Results, page
 from papers.report import ledger_markdown, ledger_record
-from papers.study import Drawing, Example, Study, Table
+from papers.study import Comparisons, Drawing, Example, Study, Table
 from papers.tables import METHODS_NOTE, blends_table, markdown_lines, methods_table, text_lines
 from papers.verification import Ledger
 from solver.errors import FileError
@@ -76,7 +76,7 @@ def reproduce(
 def collect(
     ledger: Ledger, study: Study, folder: Path, chosen: Iterable[Method], progress: Progress, command: str
 ) -> Results:
-    """Run the chosen methods on all examples, one after another so that times can be compared, and draw all pictures."""
+    """Run the chosen methods on all examples, one after another so that times compare, and draw all pictures."""
     chosen = tuple(chosen)
     comparisons: dict[str, list[Comparison]] = {}
     with progress("blending", len(study.examples) * len(chosen)) as advance:
@@ -140,7 +140,7 @@ def markdown(results: Results) -> list[str]:
     return [*lines, "", ledger_markdown(results.ledger)]
 
 
-def _edge_by_edge(examples: Iterable[Example], comparisons: dict[str, list[Comparison]]) -> list[tuple[str, Comparison]]:
+def _edge_by_edge(examples: Iterable[Example], comparisons: Comparisons) -> list[tuple[str, Comparison]]:
     """Return the C2 and G2 blends of our own solver on every pair that is no figure of the paper."""
     names = [e.task.name for e in examples if not e.task.name.startswith("figure-")]
     return [

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 from typing import Any
 
 from papers.baselines.comparison import Comparison
-from papers.baselines.interface import BlendTask
+from papers.baselines.interface import BlendTask, Outcome
 from papers.measures import Measures
 from papers.study import Table
 from solver.continuity import model_size
@@ -16,22 +16,26 @@ LIMIT = 1e-9
 
 
 def cell(value: Any) -> str:
-    """Return the text of a value.
+    """Return the text of a value: four significant digits, or all digits in front of the point.
 
     Examples
     --------
-    >>> [cell(value) for value in (None, True, 1234.5678, (0.0, 0.25), 7)]
-    ['–', 'yes', '1235', '0 to 0.25', '7']
+    >>> [cell(value) for value in (None, True, 123456.78, 2.5e-13, 0.0817, (1e-18, 0.25), 7)]
+    ['–', 'yes', '123457', '2.5e-13', '0.0817', '0 to 0.25', '7']
     """
     if value is None:
         return "–"
     if isinstance(value, bool):
         return "yes" if value else "no"
-    if isinstance(value, float):
-        return f"{value:.4g}" if abs(value) < 1e5 or abs(value) >= 1e15 else f"{value:.4g}".replace("e+0", "e")
     if isinstance(value, tuple):
-        return " to ".join(map(cell, value))
-    return str(value)
+        largest = max(map(abs, value))
+        # Far below the other end of a range is rounding.
+        return " to ".join(cell(x if abs(x) > 1e-9 * largest else 0.0) for x in value)
+    if not isinstance(value, float):
+        return str(value)
+    if 1e4 <= abs(value) < 1e9:
+        return f"{value:.0f}"
+    return f"{value:.4g}" if value == 0 or abs(value) >= 1e-3 else f"{value:.1e}"
 
 
 def reached(task: BlendTask, measures: Measures) -> str:
@@ -43,9 +47,23 @@ def reached(task: BlendTask, measures: Measures) -> str:
     return "G1" if measures.curvature_jump_relative > LIMIT else "G2"
 
 
+def c2_residual(measures: Measures) -> float | None:
+    """Return the larger difference of second derivatives across the contacts, relative; None where there is none."""
+    found = (measures.contact_a.c2_residual, measures.contact_b.c2_residual)
+    return None if found[0] is None or found[1] is None else max(found[0], found[1])
+
+
+def _remark(outcome: Outcome, measures: Measures) -> str:
+    seam = measures.seam
+    if seam is None:
+        return outcome.note
+    text = f"seam: gap {cell(seam.gap)}, angle {cell(seam.angle_degrees)}°, curvature jump {cell(seam.curvature_jump)}"
+    return f"{text}; {outcome.note}" if outcome.note else text
+
+
 _METHODS_HEAD = (
     "#", "method", "contact", "control points", "energy (11)", "∫ κ₁²+κ₂²", "gap", "angle [°]", "curvature jump",
-    "folds", "largest turn inside [°]", "least area / mean", "|H|", "α²", "β²", "iterations", "seconds", "note",
+    "C2 residual", "folds", "turn inside [°]", "least area / mean", "|H|", "α²", "β²", "iterations", "seconds", "note",
 )  # fmt: skip
 
 
@@ -58,9 +76,10 @@ def methods_table(comparisons: Sequence[Comparison]) -> Table:
             reasons.append(f"{comparison.method.title}: {comparison.reason}.")
             continue
         values = (
-            number, comparison.method.title, reached(comparison.task, m), outcome.control_points, m.energy, m.bending, m.gap,
-            m.angle_degrees, m.curvature_jump_relative, m.folds, m.largest_turn_degrees, m.least_area_ratio,
-            m.mean_curvature, outcome.alpha2, outcome.beta2, outcome.iterations, m.seconds, outcome.note,
+            number, comparison.method.title, reached(comparison.task, m), outcome.control_points, m.energy, m.bending,
+            m.gap, m.angle_degrees, m.curvature_jump_relative, c2_residual(m), m.folds, m.largest_turn_degrees,
+            m.least_area_ratio, m.mean_curvature, outcome.alpha2, outcome.beta2, outcome.iterations, m.seconds,
+            _remark(outcome, m),
         )  # fmt: skip
         rows.append(tuple(map(cell, values)))
     task = comparisons[0].task
@@ -69,12 +88,12 @@ def methods_table(comparisons: Sequence[Comparison]) -> Table:
 
 
 METHODS_NOTE = (
-    "Contact: what both edges meet up to rounding (angle below 1e-9 degrees, relative curvature jump below 1e-9). Gap in "
-    "model units; the jump is that of the normal curvature across the contact, relative to the largest one there. Energy "
-    "is (11) over the blend's parameters; ∫ κ₁²+κ₂² is over the surface, so it does not depend on parameters (– where "
-    "it does not settle). |H|: least and largest mean curvature of the blend, 1/length. Folds: the normal turns by more "
-    "than 90 degrees at a contact or between neighbouring samples. Seconds: the method alone, one run on this machine. "
-    "– where a method has no such number."
+    "Contact: what both edges meet up to rounding (angle below 1e-9 degrees, relative curvature jump below 1e-9). Gap "
+    "in model units; the jump is that of the normal curvature across the contact, relative to the largest one there; "
+    "the C2 residual that of second derivatives, each in its own parameter. Energy is (11) in the blend's parameters; "
+    "∫ κ₁²+κ₂² is over the surface, so it does not depend on them (– where it does not settle). |H|: least and largest "
+    "mean curvature of the blend, 1/length. Folds: the normal turns by more than 90 degrees at a contact or between "
+    "neighbouring samples inside. Seconds: the method alone, one run on this machine."
 )
 
 _SIDE_HEAD = (

@@ -7,16 +7,16 @@
     layout(location = 1) in float bend;     // mean curvature over its limit
     layout(location = 2) in vec3 normal;
     uniform mat3 turn; uniform vec3 middle, box; uniform vec2 scale, shift; uniform float size;
-    out vec3 n; out float h;
+    out vec3 n, p; out float h;
     void main() {
-      vec3 p = turn * (position * box - middle);
+      p = turn * (position * box - middle);
       n = turn * normal; h = bend;
       gl_Position = vec4(p.xy * scale + shift, -p.z * 0.25, 1.0);
       gl_PointSize = size;
     }`;
   const FRAGMENT = `#version 300 es
     precision highp float;
-    in vec3 n; in float h; out vec4 color;
+    in vec3 n, p; in float h; out vec4 color;
     uniform int mode; uniform vec3 paint;
     vec3 diverging(float t) {  // blue, light grey, red
       vec3 grey = vec3(0.87), blue = vec3(0.23, 0.30, 0.75), red = vec3(0.71, 0.02, 0.15);
@@ -31,12 +31,12 @@
         float gloss = pow(max(dot(reflect(vec3(0, 0, -1), m), normalize(vec3(-0.3, 0.5, 0.8))), 0.0), 24.0);
         color = vec4(paint * light + 0.25 * gloss, 1.0);
       } else if (mode == 1) {
-        color = vec4(diverging(h) * (0.55 + 0.45 * light), 1.0);
-      } else {  // stripes of 4.5 degrees, mirrored, around an axis that lies across the picture
-        vec3 ray = reflect(vec3(0, 0, -1), m);
-        float s = degrees(acos(clamp(dot(ray, vec3(0.70710678, 0.70710678, 0.0)), -1.0, 1.0))) / 9.0;
+        color = vec4(diverging(n.z < 0.0 ? h : -h) * (0.55 + 0.45 * light), 1.0);  // positive: bulges towards the eye
+      } else {  // stripes of 4.5 degrees around an axis that lies across the picture, mirrored, seen from near by
+        vec3 sight = normalize(p - vec3(0, 0, 2.2));
+        float s = degrees(acos(clamp(dot(reflect(sight, m), vec3(0.70710678, 0.70710678, 0.0)), -1.0, 1.0))) / 9.0;
         float wave = 4.0 * abs(fract(s) - 0.5) - 1.0, soft = clamp(4.0 * fwidth(s), 0.001, 1.0);
-        color = vec4(vec3(0.06 + 0.94 * smoothstep(-soft, soft, wave)) * (0.7 + 0.3 * light), 1.0);
+        color = vec4(mix(paint * 0.9, vec3(0.97), smoothstep(-soft, soft, wave)) * (0.7 + 0.3 * light), 1.0);
       }
     }`;
   const MODES = { shaded: 0, curvature: 1, zebra: 2 };

@@ -11,7 +11,7 @@ from __future__ import annotations
 import json
 from base64 import b64encode
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from html import escape
 from importlib.resources import files
 from typing import Any
@@ -22,7 +22,7 @@ from papers.baselines.interface import ParametricSurface
 from papers.measures import geometry_grid
 from solver import BSplineSurface, SemiStructuredSurface
 from solver.arrays import FloatArray
-from solver.plotting import BASE_COLOR, BLEND_COLOR
+from solver.plotting import BASE_COLOR, BLEND_COLOR, line_of_sight
 
 # Samples along each parameter, at least; every breakpoint is one of them.
 _SAMPLES = 44
@@ -42,7 +42,7 @@ class Piece:
     points, normals : ndarray, shape (rows, columns, 3)
         Exact ones; where the surface is degenerate the normal is zero.
     mean : ndarray, shape (rows, columns)
-        Mean curvature, 1/length, with respect to `normals`; zero where the surface is degenerate.
+        Mean curvature, 1/length, positive where the surface bends towards its normal; zero where it is degenerate.
     area : ndarray, shape (rows, columns)
         Area element.
     polygons : tuple of ndarray, shape (n, 3)
@@ -75,18 +75,10 @@ def model(
     bases: Sequence[ParametricSurface],
     blends: Sequence[tuple[str, str, ParametricSurface]],
 ) -> Model:
-    """Sample the bases and the blends, given as (label, caption, surface), and let their normals agree.
-
-    The side from which the first blend and the bases show most of their area is the one towards which a positive mean
-    curvature bulges.
-    """
+    """Sample the bases, and the blends, given as (label, caption, surface)."""
     first, second = (piece("base", "", BASE_COLOR, surface) for surface in bases)
-    between = [piece(*blend[:2], BLEND_COLOR, blend[2]) for blend in blends]
-    lead = between[0]
-    first, second = _agreeing(first, lead), _agreeing(second, lead)
-    if sum(float(np.sum(p.area * (p.normals @ _eye([first, second, lead])))) for p in (first, second, lead)) < 0:
-        first, second, lead = (_reversed(p) for p in (first, second, lead))
-    return Model(name, title, (first, second), (lead, *(_agreeing(blend, first) for blend in between[1:])))
+    between = (piece(label, caption, BLEND_COLOR, surface) for label, caption, surface in blends)
+    return Model(name, title, (first, second), tuple(between))
 
 
 def piece(label: str, caption: str, color: str, surface: ParametricSurface) -> Piece:
@@ -99,8 +91,8 @@ def piece(label: str, caption: str, color: str, surface: ParametricSurface) -> P
     elif isinstance(surface, BSplineSurface):
         polygons = tuple(surface.control_points)
     area = np.linalg.norm(np.cross(local.tangent_u, local.tangent_v), axis=2)
-    # `mean` is positive where the surface bends towards its normal: bulging is the opposite.
-    return Piece(label, caption, color, local.point, np.nan_to_num(local.normal), -np.nan_to_num(local.mean), area, polygons)
+    normals, mean = np.nan_to_num(local.normal), np.nan_to_num(local.mean)
+    return Piece(label, caption, color, local.point, normals, mean, area, polygons)
 
 
 def _samples(breaks: FloatArray) -> FloatArray:
@@ -109,57 +101,17 @@ def _samples(breaks: FloatArray) -> FloatArray:
     return np.append((breaks[:-1, None] + np.diff(breaks)[:, None] * inner).ravel(), breaks[-1])
 
 
-def _agreeing(turned: Piece, fixed: Piece) -> Piece:
-    """Return a surface with normals that agree with those of another one where the two are closest."""
-    edges = [np.concatenate([p[0], p[-1], p[:, 0], p[:, -1]]) for p in (turned.points, fixed.points)]
-    normals = [np.concatenate([n[0], n[-1], n[:, 0], n[:, -1]]) for n in (turned.normals, fixed.normals)]
-    distance = np.sum((edges[0][:, None] - edges[1][None]) ** 2, axis=2)
-    nearest = np.argmin(distance, axis=1)
-    closest = np.sqrt(distance[np.arange(len(nearest)), nearest])
-    touching = closest <= np.sort(closest)[len(closest) // 8]
-    agreement = np.sum(normals[0][touching] * normals[1][nearest[touching]])
-    return _reversed(turned) if agreement < 0 else turned
-
-
-def _reversed(piece: Piece) -> Piece:
-    return replace(piece, normals=-piece.normals, mean=-piece.mean)
-
-
-def _eye(pieces: Sequence[Piece]) -> FloatArray:
-    return np.asarray(camera(pieces)[2])
-
-
-def camera(pieces: Sequence[Piece]) -> FloatArray:
-    """Return the rows right, up, towards the eye: along the normal that most of the area shares, and a little aside."""
-    spread = sum(np.einsum("ij,ija,ijb->ab", p.area / p.area.sum(), p.normals, p.normals) for p in pieces)
-    normal = _signed(np.linalg.eigh(spread)[1][:, -1])
-    points = np.concatenate([p.points.reshape(-1, 3) for p in pieces])
-    across = (points - points.mean(axis=0)) @ (np.eye(3) - np.outer(normal, normal))
-    right = _signed(np.linalg.eigh(across.T @ across)[1][:, -1])
-    up = np.cross(normal, right)
-    eye = normal - 0.55 * up + 0.35 * right
-    eye /= np.linalg.norm(eye)
-    right = np.cross(up, eye)
-    right /= np.linalg.norm(right)
-    return np.stack([right, np.cross(eye, right), eye])
-
-
-def _signed(vector: FloatArray) -> FloatArray:
-    """Of the two directions of an eigenvector, the one whose largest component is positive."""
-    return vector if vector[np.argmax(np.abs(vector))] > 0 else -vector
-
-
 def packed(model: Model) -> dict[str, Any]:
     """Return what `viewer.js` reads: numbers of 16 bits in base64, and how to scale them."""
     shown = (*model.bases, *model.blends)
     points = np.concatenate([p.points.reshape(-1, 3) for p in shown])
     low, box = points.min(axis=0), np.maximum(np.ptp(points, axis=0), 1e-12 * np.ptp(points))
-    limit = curvature_limit((*model.bases, model.blends[0]))
     lead = (*model.bases, model.blends[0])
+    limit = curvature_limit(lead)
     seen = np.concatenate([p.points.reshape(-1, 3) for p in lead])
     middle = (seen.min(axis=0) + seen.max(axis=0)) / 2
     size = float(np.linalg.norm(seen - middle, axis=1).max())
-    turn = camera(lead)
+    turn = line_of_sight([(p.points, p.normals, p.area) for p in lead])
     projected = (seen - middle) @ turn.T
     # The width of the view is 1.6 times its height.
     fit = size / (_MARGIN * max(float(np.abs(projected[:, 0]).max()), 1.6 * float(np.abs(projected[:, 1]).max())))
@@ -220,8 +172,8 @@ def viewer_html(model: Model) -> str:
 <div class="bar"><label>blend <select>{options}</select></label><span class="modes">{buttons}</span>
 <label><input type="checkbox"> control points</label><button type="button" data-reset>reset</button></div>
 <canvas tabindex="0" role="img" aria-label="interactive view: {escape(model.title)}"></canvas>
-<p class="scale" hidden>{-limit:.3g} <span></span> +{limit:.3g} mean curvature, 1/length; positive where the surface
-bulges towards the side first shown</p>
+<p class="scale" hidden>{-limit:.3g} <span></span> +{limit:.3g} mean curvature, 1/length, positive where the surface
+bulges towards the eye</p>
 <p class="numbers"></p>
 <p class="hint">Drag or arrow keys turn, wheel (after a click) or + and − zoom, shift and drag move.</p>
 <script type="application/json">{data}</script></div>"""

@@ -183,23 +183,34 @@ def _quiet_vtk() -> Iterator[None]:
 
 
 def _view(samples: Sequence[_Sampled]) -> _View:
-    """Look along the normal that most of the area shares, a little from above and from the right.
+    right, up, towards_eye = line_of_sight([(item.geometry.point, item.normal, _area(item)) for item in samples])
+    return _View(towards_eye, right, up)
 
-    The sign of a normal does not matter: the dominant eigenvector of the sum of n n^T over the area is taken.
+
+def line_of_sight(surfaces: Sequence[tuple[FloatArray, FloatArray, FloatArray]]) -> FloatArray:
+    """Return unit rows right, up, towards the eye, from where surfaces are seen well.
+
+    The eye looks along the normal that most of the area shares, a little from above and from the right. The sign of a
+    normal does not matter: the dominant eigenvector of the sum of n n^T over the area is taken.
+
+    Parameters
+    ----------
+    surfaces : sequence of (points, normals, area elements)
+        Samples of each surface, shapes (n_u, n_v, 3), (n_u, n_v, 3) and (n_u, n_v).
     """
     spread = np.zeros((3, 3))
-    for item in samples:
-        area = _area(item) / max(float(_area(item).sum()), np.finfo(np.float64).tiny)
-        spread += np.einsum("ij,ija,ijb->ab", area, item.normal, item.normal)
+    for _, normals, area in surfaces:
+        share = area / max(float(area.sum()), np.finfo(np.float64).tiny)
+        spread += np.einsum("ij,ija,ijb->ab", share, normals, normals)
     normal = _signed(np.linalg.eigh(spread)[1][:, -1])
-    points = _all_points(samples)
+    points = np.concatenate([p.reshape(-1, 3) for p, _, _ in surfaces])
     across = (points - points.mean(axis=0)) @ (np.eye(3) - np.outer(normal, normal))
     # The longest extent lies across the picture.
     right = _signed(np.linalg.eigh(across.T @ across)[1][:, -1])
     up = np.cross(normal, right)
     towards_eye = _unit(normal - 0.55 * up + 0.35 * right)
     right = _unit(np.cross(up, towards_eye))
-    return _View(towards_eye, right, np.cross(towards_eye, right))
+    return np.stack([right, np.cross(towards_eye, right), towards_eye])
 
 
 def _view_from(direction: FloatArray) -> _View:

@@ -62,9 +62,9 @@ def pair(name: str) -> Example:
         return Example(BlendTask(name, title, *made_pair()), (note,), pictures)
     title = f"Real pair: impeller.igs, faces {IMPELLER_FACES[0]} and {IMPELLER_FACES[1]}, edges u0 and u0"
     note = (
-        "Two neighbouring blades of an impeller, from the model that the package pyiges ships. Nobody would manufacture "
-        "this web between two leading edges; it is a test on real data, whose parameter speeds and knots nobody chose "
-        "for us."
+        "Two neighbouring blades of an impeller, from the model that the package pyiges ships. Nobody would "
+        "manufacture this web between two leading edges; it is a test on real data, whose parameter speeds and knots "
+        "nobody chose for us."
     )
     return Example(BlendTask(name, title, *_impeller()), (note,), pictures)
 
