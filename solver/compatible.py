@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from solver.arrays import FloatArray, SparseMatrix
+from solver.curves import restrict_curve
 from solver.errors import OptionError
 from solver.knots import MERGE_TOLERANCE, clamped, inner_knots
 from solver.refinement import elevated_knots, elevation_matrix, refinement_matrix
@@ -68,8 +69,9 @@ def convert_to_bspline(surface: SemiStructuredSurface, tolerance: float = MERGE_
     ----------
     surface : SemiStructuredSurface
     tolerance : float
-        Knots of different curves closer than this fraction of the v-domain become one; two knots of one curve never
-        do. 0 merges only equal knots, and then the conversion changes nothing.
+        Knots of different curves closer than this fraction of the v-domain become one; two inner knots of one curve
+        never do. An inner knot becomes an end of the domain where it is that close to it, and within 1e-12. 0 merges
+        only equal knots, and then the conversion changes nothing.
 
     Examples
     --------
@@ -95,7 +97,8 @@ def compatible_curves(curves: Sequence[BSplineCurve], tolerance: float = MERGE_T
     if not 0 <= tolerance < 1:
         raise OptionError(f"tolerance: found {tolerance}, expected a fraction of the domain in [0, 1)")
     degree = max(curve.degree for curve in curves)
-    merged = _merged_knots(curves, tolerance)
+    whole = [_without_slivers(curve, min(tolerance, MERGE_TOLERANCE)) for curve in curves]
+    merged = _merged_knots(whole, tolerance)
     raised = [elevated_knots(v, degree - c.degree) for c, v in zip(curves, merged, strict=True)]
     counts: dict[float, int] = {}
     for vector in raised:
@@ -106,11 +109,11 @@ def compatible_curves(curves: Sequence[BSplineCurve], tolerance: float = MERGE_T
     start, end = float(curves[0].knots[0]), float(curves[0].knots[-1])
     knots = clamped(np.repeat(np.array(order), [counts[x] for x in order]), degree, start, end)
     rows, shift, change = [], 0.0, 0.0
-    for curve, vector, high in zip(curves, merged, raised, strict=True):
-        if (vector != curve.knots).any():
-            shift = max(shift, float(np.abs(vector - curve.knots).max()))
-            change = max(change, _knot_change(curve, vector))
-        points = elevation_matrix(curve.degree, vector, degree) @ curve.control_points
+    for curve, near, vector, high in zip(curves, whole, merged, raised, strict=True):
+        if len(vector) != len(curve.knots) or (vector != curve.knots).any():
+            shift = max(shift, _end_shift(curve, near), float(np.abs(vector - near.knots).max()))
+            change = max(change, _change(curve, replace(near, knots=vector)))
+        points = elevation_matrix(curve.degree, vector, degree) @ near.control_points
         rows.append(refinement_matrix(degree, high, knots) @ points if len(high) != len(knots) else points)
     return CompatibleCurves(degree, knots, np.stack(rows), shift, change)
 
@@ -137,22 +140,36 @@ def _merged_knots(curves: Sequence[BSplineCurve], tolerance: float) -> list[Floa
     return [np.array([meaning.get(x, x) for x in curve.knots.tolist()]) for curve in curves]
 
 
-def _knot_change(curve: BSplineCurve, knots: FloatArray) -> float:
-    """Bound the distance between the curve and that with the same control points over other knots.
+def _without_slivers(curve: BSplineCurve, tolerance: float) -> BSplineCurve:
+    """Return the curve without the knots that close to an end: the end is where the last of them was."""
+    start, end = float(curve.knots[0]), float(curve.knots[-1])
+    inner = inner_knots(curve.knots, curve.degree)
+    width = tolerance * (end - start)
+    if not len(inner) or (inner[0] - start > width and end - inner[-1] > width):
+        return curve
+    return restrict_curve(curve, start, end)
+
+
+def _end_shift(curve: BSplineCurve, whole: BSplineCurve) -> float:
+    """Return how far the knots of `curve` that `whole` lacks are from the nearer end."""
+    gone = np.setdiff1d(curve.knots, whole.knots)
+    return float(np.minimum(gone - curve.knots[0], curve.knots[-1] - gone).max(initial=0.0))
+
+
+def _change(curve: BSplineCurve, other: BSplineCurve) -> float:
+    """Bound the distance between two curves of one degree.
 
     Both are refined to all knots of both; the difference lies in the convex hull of the differences of their control
     points.
     """
     counts: dict[float, int] = {}
-    for vector in (curve.knots, knots):
+    for vector in (curve.knots, other.knots):
         values, count = np.unique(vector, return_counts=True)
         for value, times in zip(values.tolist(), count.tolist(), strict=True):
             counts[value] = max(times, counts.get(value, 0))
     both = np.repeat(np.array(sorted(counts)), [counts[x] for x in sorted(counts)])
-    difference = (
-        refinement_matrix(curve.degree, curve.knots, both) - refinement_matrix(curve.degree, knots, both)
-    ) @ curve.control_points
-    return float(np.linalg.norm(difference, axis=1).max())
+    one, two = (refinement_matrix(c.degree, c.knots, both) @ c.control_points for c in (curve, other))
+    return float(np.linalg.norm(one - two, axis=1).max())
 
 
 def combined_curves(curves: Sequence[BSplineCurve], matrix: SparseMatrix) -> tuple[BSplineCurve, ...]:

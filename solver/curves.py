@@ -13,8 +13,8 @@ from solver.knots import reversed_knots
 from solver.refinement import (
     elevated_knots,
     elevation_matrix,
+    piece_matrix,
     refinement_matrix,
-    restriction_matrix,
     snapped,
     with_knots,
 )
@@ -65,8 +65,11 @@ def insert_curve_knots(curve: BSplineCurve, knots: ArrayLike) -> BSplineCurve:
 
 
 def restrict_curve(curve: BSplineCurve, start: float, end: float) -> BSplineCurve:
-    """Return the piece of the curve over [start, end]."""
-    matrix, knots = restriction_matrix(curve.degree, curve.knots, start, end)
+    """Return the piece of the curve over [start, end].
+
+    An end within 1e-12 of the domain of a knot means that knot: the piece takes no sliver of the neighbouring span.
+    """
+    matrix, knots = piece_matrix(curve.degree, curve.knots, start, end)
     return replace(curve, knots=knots, control_points=matrix @ curve.control_points)
 
 

@@ -20,8 +20,8 @@ from solver.refinement import (
     clamp_knots,
     elevated_knots,
     elevation_matrix,
+    piece_matrix,
     refinement_matrix,
-    restriction_matrix,
     snapped,
     with_knots,
 )
@@ -255,14 +255,14 @@ def split_v(surface: S, v: float) -> tuple[S, S]:
 
 
 def _restrict_u(surface: S, start: float, end: float) -> S:
-    matrix, knots = restriction_matrix(surface.degree_u, surface.knots_u, start, end)
+    matrix, knots = piece_matrix(surface.degree_u, surface.knots_u, start, end)
     return _with_u(surface, surface.degree_u, knots, matrix)
 
 
 def _restrict_v(surface: S, start: float, end: float) -> S:
     if isinstance(surface, SemiStructuredSurface):
         return replace(surface, control_curves=tuple(restrict_curve(c, start, end) for c in surface.control_curves))
-    matrix, knots = restriction_matrix(surface.degree_v, surface.knots_v, start, end)
+    matrix, knots = piece_matrix(surface.degree_v, surface.knots_v, start, end)
     return _with_v(surface, surface.degree_v, knots, matrix)
 
 

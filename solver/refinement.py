@@ -177,6 +177,31 @@ def restriction_matrix(degree: int, knots: FloatArray, start: float, end: float)
     return blossom_matrix(degree, knots, piece[:n], _windows(piece, degree, n)), piece
 
 
+def piece_matrix(degree: int, knots: FloatArray, start: float, end: float) -> tuple[SparseMatrix, FloatArray]:
+    """Return what `restriction_matrix` does, with ends that mean the knots within 1e-12 of the domain of them.
+
+    The piece then begins and ends at such a knot, called `start` or `end`: a span of the width of rounding, which has
+    no reliable derivatives, is not left behind.
+
+    Examples
+    --------
+    >>> piece_matrix(1, np.array([0, 0, 0.1 + 0.2, 1, 1]), 0.3, 1.0)[1]
+    array([0.3, 0.3, 1. , 1. ])
+    """
+    first, last = float(knots[degree]), float(knots[-degree - 1])
+    if not first <= start < end <= last:
+        raise KnotError(f"range [{start}, {end}]: expected a range of positive length within [{first}, {last}]")
+    tolerance = MERGE_TOLERANCE * (last - first)
+    inner = knots[(knots > first) & (knots < last)]
+    own_start = float(max(inner[np.abs(inner - start) <= tolerance], default=start))
+    own_end = float(min(inner[np.abs(inner - end) <= tolerance], default=end))
+    if not own_start < own_end:
+        own_start, own_end = start, end
+    matrix, piece = restriction_matrix(degree, knots, own_start, own_end)
+    piece[: degree + 1], piece[-degree - 1 :] = start, end
+    return matrix, piece
+
+
 def clamp_knots(degree: int, knots: ArrayLike, control_points: ArrayLike) -> tuple[FloatArray, FloatArray]:
     """Return clamped knots and control points of the same spline over its domain [t_p, t_n].
 
@@ -238,7 +263,9 @@ def snapped(value: float, knots: FloatArray) -> float:
 
 
 def with_knots(degree: int, knots: FloatArray, more: FloatArray, name: str) -> FloatArray:
-    """Return the clamped vector with further knots in it; one that nearly equals a knot means that knot.
+    """Return the clamped vector with further knots in it.
+
+    One within 1e-12 of the domain of a knot, or of another inserted before it, means that one.
 
     Raises
     ------
@@ -250,7 +277,11 @@ def with_knots(degree: int, knots: FloatArray, more: FloatArray, name: str) -> F
     >>> with_knots(2, np.array([0, 0, 0, 1, 1, 1.0]), np.array([0.5, 0.5]), "knots")
     array([0. , 0. , 0. , 0.5, 0.5, 1. , 1. , 1. ])
     """
-    inserted = np.array([snapped(value, knots) for value in more.tolist()])
+    # A value may also mean one inserted before it, to the same tolerance; the ends stay first and last for `snapped`.
+    known, inserted = knots, np.empty(len(more))
+    for i, value in enumerate(more.tolist()):
+        inserted[i] = snapped(value, known)
+        known = np.insert(known, 1, inserted[i])
     outside = ~((inserted > knots[0]) & (inserted < knots[-1]))
     if outside.any():
         i = int(np.argmax(outside))
