@@ -10,9 +10,9 @@ if its two sides agree. A mixed derivative may be taken v first or u first; it i
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import partial
-from typing import TypeVar
+from typing import Generic, TypeVar
 
 import numpy as np
 
@@ -24,16 +24,18 @@ from solver.knots import derivative_matrix, derivative_points
 from solver.operations import swap_directions
 from solver.surfaces import BSplineCurve, BSplineSurface, SemiStructuredSurface
 
-# One-sided derivatives closer than this fraction of the largest control point of the derivative are one: what is left
-# of a removable knot after rounding. Rounding of the input itself is allowed on top.
+# One-sided derivatives closer than this fraction of themselves are one: what rounding leaves of a removable knot.
+# Rounding of the input, as far as the differences at that knot enlarge it, is allowed on top.
 JUMP_TOLERANCE = 1e-10
-# Eight roundings of a coordinate: what the differences of one stencil may collect.
+# Eight roundings of the largest coordinate: what a control point may carry.
 ROUNDING = 8 * float(np.finfo(float).eps)
 
 Row = TypeVar("Row")
 Spline = TypeVar("Spline")
-# One order of differentiation: the spline and the rounding that its control points carry, before and after.
-Step = Callable[[Spline, float], tuple[Spline, float]]
+Rounding = TypeVar("Rounding")
+# One order of differentiation: the spline and the rounding that each of its control points carries (for the rows of a
+# semi-structured surface: one such array each), before and after.
+Step = Callable[[Spline, Rounding], tuple[Spline, Rounding]]
 
 
 def derivative_curve(curve: BSplineCurve, order: int = 1) -> BSplineCurve:
@@ -53,7 +55,8 @@ def derivative_curve(curve: BSplineCurve, order: int = 1) -> BSplineCurve:
     """
     check_orders(order=order)
     step = partial(_curve_step, name=f"derivative of order {order}")
-    return _repeated(curve, ROUNDING * _largest(curve.control_points), [step] * order)
+    slack = np.full(len(curve.control_points), ROUNDING * _largest(curve.control_points))
+    return _repeated(curve, slack, [step] * order)
 
 
 def surface_derivative(surface: BSplineSurface, du: int, dv: int) -> BSplineSurface:
@@ -71,7 +74,7 @@ def surface_derivative(surface: BSplineSurface, du: int, dv: int) -> BSplineSurf
             "surface: rational; its derivative is not a spline of lower degree, use evaluate(u, v, du, dv)"
         )
     name = f"derivative ({du}, {dv})"
-    slack = ROUNDING * _largest(surface.control_points)
+    slack = np.full(surface.control_points.shape[:2], ROUNDING * _largest(surface.control_points))
     return _mixed(surface, slack, [partial(_net_step_u, name=name)] * du, [partial(_net_step_v, name=name)] * dv)
 
 
@@ -88,11 +91,14 @@ def semistructured_derivative(surface: SemiStructuredSurface, du: int, dv: int) 
     """
     check_orders(du=du, dv=dv)
     name = f"derivative ({du}, {dv})"
-    slack = ROUNDING * max(_largest(c.control_points) for c in surface.control_curves)
+    rounding = ROUNDING * max(_largest(c.control_points) for c in surface.control_curves)
+    slack = [np.full(len(c.control_points), rounding) for c in surface.control_curves]
     return _mixed(surface, slack, [partial(_rows_step_u, name=name)] * du, [partial(_rows_step_v, name=name)] * dv)
 
 
-def _mixed(surface: Spline, slack: float, steps_u: list[Step[Spline]], steps_v: list[Step[Spline]]) -> Spline:
+def _mixed(
+    surface: Spline, slack: Rounding, steps_u: list[Step[Spline, Rounding]], steps_v: list[Step[Spline, Rounding]]
+) -> Spline:
     try:
         return _repeated(surface, slack, steps_v + steps_u)
     except InputError:
@@ -101,65 +107,89 @@ def _mixed(surface: Spline, slack: float, steps_u: list[Step[Spline]], steps_v: 
         return _repeated(surface, slack, steps_u + steps_v)
 
 
-def _repeated(spline: Spline, slack: float, steps: list[Step[Spline]]) -> Spline:
+def _repeated(spline: Spline, slack: Rounding, steps: list[Step[Spline, Rounding]]) -> Spline:
     for step in steps:
         spline, slack = step(spline, slack)
     return spline
 
 
-def _curve_step(curve: BSplineCurve, slack: float, name: str) -> tuple[BSplineCurve, float]:
+def _curve_step(curve: BSplineCurve, slack: FloatArray, name: str) -> tuple[BSplineCurve, FloatArray]:
     points = derivative_points(curve.degree, curve.knots, curve.control_points)
-    slack *= _gain(curve.degree, curve.knots)
-    limit = JUMP_TOLERANCE * _largest(points) + slack
-    degree, knots, rows = _continuous(
-        curve.degree - 1, curve.knots[1:-1], list(points), _distance, limit=limit, name=name, letter="v"
-    )
+    jumps = _Jumps(_distances, np.linalg.norm(points, axis=-1), _spread(curve.degree, curve.knots, slack), name, "v")
+    degree, knots, rows, slack = _continuous(curve.degree - 1, curve.knots[1:-1], list(points), jumps)
     return BSplineCurve(degree, knots, np.stack(rows)), slack
 
 
-def _net_step_u(surface: BSplineSurface, slack: float, name: str, letter: str = "u") -> tuple[BSplineSurface, float]:
-    points = derivative_points(surface.degree_u, surface.knots_u, surface.control_points)
-    slack *= _gain(surface.degree_u, surface.knots_u)
-    limit = JUMP_TOLERANCE * _largest(points) + slack
-    degree, knots, rows = _continuous(
-        surface.degree_u - 1, surface.knots_u[1:-1], list(points), _distance, limit=limit, name=name, letter=letter
-    )
+def _net_step_u(
+    surface: BSplineSurface, slack: FloatArray, name: str, letter: str = "u"
+) -> tuple[BSplineSurface, FloatArray]:
+    p, knots = surface.degree_u, surface.knots_u
+    points = derivative_points(p, knots, surface.control_points)
+    jumps = _Jumps(_distances, np.linalg.norm(points, axis=-1), _spread(p, knots, slack), name, letter)
+    degree, knots, rows, slack = _continuous(p - 1, knots[1:-1], list(points), jumps)
     return replace(surface, degree_u=degree, knots_u=knots, control_points=np.stack(rows)), slack
 
 
-def _net_step_v(surface: BSplineSurface, slack: float, name: str) -> tuple[BSplineSurface, float]:
-    derivative, slack = _net_step_u(swap_directions(surface), slack, name, "v")
-    return swap_directions(derivative), slack
+def _net_step_v(surface: BSplineSurface, slack: FloatArray, name: str) -> tuple[BSplineSurface, FloatArray]:
+    derivative, turned = _net_step_u(swap_directions(surface), slack.T, name, "v")
+    return swap_directions(derivative), turned.T
 
 
-def _rows_step_u(surface: SemiStructuredSurface, slack: float, name: str) -> tuple[SemiStructuredSurface, float]:
+def _rows_step_u(
+    surface: SemiStructuredSurface, slack: list[FloatArray], name: str
+) -> tuple[SemiStructuredSurface, list[FloatArray]]:
     p, knots = surface.degree_u, surface.knots_u
     curves = list(combined_curves(surface.control_curves, derivative_matrix(p, knots, 1)))
-    slack *= _gain(p, knots)
-    limit = JUMP_TOLERANCE * max(_largest(c.control_points) for c in curves) + slack
-    p, knots, curves = _continuous(p - 1, knots[1:-1], curves, _curve_distance, limit=limit, name=name, letter="u")
-    return SemiStructuredSurface(p, knots, tuple(curves)), slack
+    sizes = np.array([_largest(c.control_points) for c in curves])
+    # Rows are combined over common knots, so that of a row only the largest rounding is known.
+    spread = _spread(p, knots, np.array([row.max() for row in slack]))
+    jumps = _Jumps(_curve_distance, sizes, spread, name, "u")
+    p, knots, curves, rounding = _continuous(p - 1, knots[1:-1], curves, jumps)
+    each = [np.full(len(c.control_points), x) for c, x in zip(curves, rounding, strict=True)]
+    return SemiStructuredSurface(p, knots, tuple(curves)), each
 
 
-def _rows_step_v(surface: SemiStructuredSurface, slack: float, name: str) -> tuple[SemiStructuredSurface, float]:
-    rows = [_curve_step(c, slack, f"{name}, row {i}") for i, c in enumerate(surface.control_curves)]
-    return replace(surface, control_curves=tuple(curve for curve, _ in rows)), max(slack for _, slack in rows)
+def _rows_step_v(
+    surface: SemiStructuredSurface, slack: list[FloatArray], name: str
+) -> tuple[SemiStructuredSurface, list[FloatArray]]:
+    rows = [
+        _curve_step(curve, own, f"{name}, row {i}")
+        for i, (curve, own) in enumerate(zip(surface.control_curves, slack, strict=True))
+    ]
+    return replace(surface, control_curves=tuple(curve for curve, _ in rows)), [own for _, own in rows]
+
+
+@dataclass(frozen=True, eq=False)
+class _Jumps(Generic[Row]):
+    """What decides whether rows on either side of a knot are one.
+
+    `distance` takes two rows; `size` and `slack` hold the size and the rounding of each row (axis 0), or of each
+    control point of each row. All is local: a narrow span elsewhere, with its large numbers, allows nothing here.
+    """
+
+    distance: Callable[[Row, Row], FloatArray]
+    size: FloatArray
+    slack: FloatArray
+    name: str
+    letter: str
+
+    def check(self, left: int, right: int, value: float, one: Row, other: Row) -> None:
+        jump = self.distance(one, other)
+        limit = JUMP_TOLERANCE * np.maximum(self.size[left], self.size[right]) + self.slack[left] + self.slack[right]
+        if np.any(jump > limit):
+            raise InputError(
+                f"{self.name}: it, or one of lower order, jumps by {np.max(jump):.3g} at {self.letter} = {value}; "
+                f"split_{self.letter} the surface there and differentiate the pieces"
+            )
 
 
 def _continuous(
-    degree: int,
-    knots: FloatArray,
-    rows: list[Row],
-    distance: Callable[[Row, Row], float],
-    *,
-    limit: float,
-    name: str,
-    letter: str,
-) -> tuple[int, FloatArray, list[Row]]:
+    degree: int, knots: FloatArray, rows: list[Row], jumps: _Jumps[Row]
+) -> tuple[int, FloatArray, list[Row], FloatArray]:
     """Return the same spline with inner multiplicities of at most the degree, and a degree of at least 1.
 
     At a knot of higher multiplicity two rows are the limits from either side; where they agree one of them goes, with
-    the rows between, whose basis functions have no support.
+    the rows between, whose basis functions have no support. The last array is the rounding of the rows that stay.
 
     Raises
     ------
@@ -172,34 +202,29 @@ def _continuous(
         if count <= degree:
             continue
         left, right = start - 1, start + count - degree - 1
-        jump = distance(rows[left], rows[right])
-        if jump > limit:
-            raise InputError(
-                f"{name}: it, or one of lower order, jumps by {jump:.3g} at {letter} = {value}; "
-                f"split_{letter} the surface there and differentiate the pieces"
-            )
+        jumps.check(left, right, value, rows[left], rows[right])
         keep_rows[left + 1 : right + 1] = False
         keep_knots[start : start + count - degree] = False
-    rows = [row for row, kept in zip(rows, keep_rows, strict=True) if kept]
+    rows, slack = [row for row, kept in zip(rows, keep_rows, strict=True) if kept], jumps.slack[keep_rows]
     knots = knots[keep_knots]
     if degree == 0:
-        return 1, np.repeat(knots, 2), rows * 2
-    return degree, knots, rows
+        return 1, np.repeat(knots, 2), rows * 2, np.repeat(slack, 2, axis=0)
+    return degree, knots, rows, slack
 
 
-def _gain(degree: int, knots: FloatArray) -> float:
-    """Return the most by which control points of the derivative can exceed those of the spline."""
-    return float(np.abs(derivative_matrix(degree, knots, 1)).sum(axis=1).max())
+def _spread(degree: int, knots: FloatArray, slack: FloatArray) -> FloatArray:
+    """Return the rounding of the control points of the derivative, from that of the spline along axis 0."""
+    return np.asarray(np.abs(derivative_matrix(degree, knots, 1)) @ slack)
 
 
 def _largest(points: FloatArray) -> float:
     return float(np.linalg.norm(points, axis=-1).max())
 
 
-def _distance(a: FloatArray, b: FloatArray) -> float:
-    return _largest(a - b)
+def _distances(a: FloatArray, b: FloatArray) -> FloatArray:
+    return np.asarray(np.linalg.norm(a - b, axis=-1))
 
 
-def _curve_distance(a: BSplineCurve, b: BSplineCurve) -> float:
+def _curve_distance(a: BSplineCurve, b: BSplineCurve) -> FloatArray:
     """Bound the distance between two curves by that of their control points over common knots."""
-    return 0.0 if a is b else _distance(*compatible_curves([a, b]).control_points)
+    return np.zeros(1) if a is b else _distances(*compatible_curves([a, b]).control_points)
