@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Literal, TypeAlias, get_args
 
 import numpy as np
@@ -10,7 +11,8 @@ import numpy as np
 from solver.arrays import FloatArray
 from solver.de_boor import surface_points
 from solver.errors import EdgeError
-from solver.surfaces import Surface
+from solver.operations import swap_directions
+from solver.surfaces import BSplineSurface, Surface
 
 Edge: TypeAlias = Literal["u0", "u1", "v0", "v1"]
 
@@ -43,13 +45,23 @@ class Base:
         """The range of the parameter that runs along the edge."""
         return self.surface.domain[1 if self.edge[0] == "u" else 0]
 
+    @cached_property
+    def _rows_along(self) -> tuple[Surface, bool]:
+        """The surface with v along the edge if it is a B-spline surface, and whether v is.
+
+        The referee evaluates every row in v first: there must be few rows, not many that are short.
+        """
+        if self.edge[0] == "v" and isinstance(self.surface, BSplineSurface):
+            return swap_directions(self.surface), True
+        return self.surface, self.edge[0] == "u"
+
     def derivative(self, s: FloatArray, across: int, along: int) -> FloatArray:
         """Referee's derivative at parameters s along the edge, shape (K, 3), in the surface's own parameters."""
-        constant = 0 if self.edge[0] == "u" else 1
-        at = np.full_like(s, self.surface.domain[constant][int(self.edge[1])])
-        if constant == 0:
-            return surface_points(self.surface, at, s, across, along)
-        return surface_points(self.surface, s, at, along, across)
+        at = np.full_like(s, self.surface.domain[0 if self.edge[0] == "u" else 1][int(self.edge[1])])
+        surface, v_is_along = self._rows_along
+        if v_is_along:
+            return surface_points(surface, at, s, across, along)
+        return surface_points(surface, s, at, along, across)
 
     def breakpoints_along(self) -> FloatArray:
         """Return breakpoints of the parameter that runs along the edge."""

@@ -71,8 +71,10 @@ def _homogeneous(surface: BSplineSurface, u: FloatArray, v: FloatArray, du: int,
     net = surface.control_points
     if surface.weights is not None:
         net = np.concatenate([net * surface.weights[..., None], surface.weights[..., None]], axis=2)
-    rows = np.stack([curve_points(surface.degree_v, surface.knots_v, row, v, dv) for row in net], axis=1)
-    return curve_points(surface.degree_u, surface.knots_u, rows, u, du)
+    n_u, n_v, d = net.shape
+    # All rows are curves over the same knots: one curve in n_u d dimensions.
+    rows = curve_points(surface.degree_v, surface.knots_v, net.transpose(1, 0, 2).reshape(n_v, n_u * d), v, dv)
+    return curve_points(surface.degree_u, surface.knots_u, rows.reshape(len(v), n_u, d), u, du)
 
 
 def surface_points(
