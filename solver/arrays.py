@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import reprlib
+from dataclasses import fields
+from numbers import Real
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -15,26 +17,75 @@ FloatArray: TypeAlias = NDArray[np.float64]
 SparseMatrix: TypeAlias = Any
 
 
-def finite_array(values: ArrayLike, ndim: int, name: str, error: type[InputError]) -> FloatArray:
-    """Return a read-only float64 copy of `values`, refused if not numeric, of another dimension, or not finite.
+def finite_array(values: ArrayLike, ndim: int | None, name: str, error: type[InputError]) -> FloatArray:
+    """Return a read-only float64 copy of `values`, refused if not real, of another dimension, or not finite.
+
+    `ndim` None takes any dimension of at least 1.
 
     Raises
     ------
     InputError
         Of the class `error`; the message names the first index at fault.
     """
-    try:
-        array = np.array(values, dtype=np.float64, order="C")
-    except (TypeError, ValueError, OverflowError):
-        raise error(_fault(values, ndim, name)) from None
-    if array.ndim != ndim:
-        raise error(f"{name}: has {array.ndim} dimension(s), expected {ndim}")
+    array = real_array(values, name, error, ndim)
+    if array.ndim != ndim and (ndim is not None or array.ndim == 0):
+        raise error(f"{name}: has {array.ndim} dimension(s), expected {'at least 1' if ndim is None else ndim}")
     if not np.isfinite(array).all():
         index = tuple(np.argwhere(~np.isfinite(array))[0].tolist())
         where = ", ".join(map(str, index))
         raise error(f"{name}[{where}]: found {array[index]}, expected a finite number")
     array.setflags(write=False)
     return array
+
+
+def real_array(values: ArrayLike, name: str, error: type[InputError], ndim: int | None = None) -> FloatArray:
+    """Return a float64 copy of `values`, refused if they are not real numbers in a rectangular array."""
+    try:
+        if isinstance(values, np.ndarray | np.generic) and np.iscomplexobj(values):
+            raise error(f"{name}: found complex numbers, expected real ones")
+        return np.array(values, dtype=np.float64, order="C")
+    except (TypeError, OverflowError):
+        pass
+    except ValueError as reason:
+        if isinstance(reason, InputError):
+            raise
+    if ndim is None:
+        raise error(f"{name}: found {reprlib.repr(values)}, not an array of real numbers")
+    raise error(_fault(values, ndim, name))
+
+
+def real_number(value: object, name: str, error: type[InputError]) -> float:
+    """Return a real number as a float (it may be NaN or infinite); True, strings and arrays are refused."""
+    if not isinstance(value, bool) and isinstance(value, Real):
+        try:
+            return float(value)
+        except OverflowError:
+            pass
+    raise error(f"{name}: found {reprlib.repr(value)}, expected a real number")
+
+
+def whole_number(value: object, name: str, least: int, error: type[InputError]) -> int:
+    """Return an integer of at least `least`; True, floats and strings are refused."""
+    if isinstance(value, int | np.integer) and not isinstance(value, bool) and value >= least:
+        return int(value)
+    raise error(f"{name}: found {reprlib.repr(value)}, expected a whole number of at least {least}")
+
+
+def require(value: object, name: str, *kinds: type) -> None:
+    """Refuse a value that is none of the classes.
+
+    Raises
+    ------
+    InputError
+    """
+    if not isinstance(value, kinds):
+        expected = " or a ".join(kind.__name__ for kind in kinds)
+        raise InputError(f"{name}: found a {type(value).__name__}, expected a {expected}")
+
+
+def rebuilt(value: Any) -> tuple[Any, ...]:
+    """Return what `__reduce__` needs so that copies are made by the constructor: checked, and read-only again."""
+    return type(value), tuple(getattr(value, field.name) for field in fields(value))
 
 
 def _fault(values: Any, ndim: int, name: str) -> str:

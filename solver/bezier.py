@@ -16,12 +16,12 @@ from dataclasses import dataclass
 from functools import lru_cache
 from itertools import pairwise
 from math import comb
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from solver.arrays import FloatArray, finite_array
+from solver.arrays import FloatArray, finite_array, real_array, real_number, rebuilt, require
 from solver.errors import ControlPointError, InputError, OptionError
 from solver.knots import clamped
 from solver.surfaces import BSplineCurve, BSplineSurface, SemiStructuredSurface, Surface
@@ -65,12 +65,17 @@ class BezierFunction:
         if len(coefficients) == 0:
             raise InputError("coefficients: found none, expected at least one")
         object.__setattr__(self, "coefficients", coefficients)
+        for end in ("start", "end"):
+            object.__setattr__(self, end, real_number(getattr(self, end), end, InputError))
         if not (np.isfinite([self.start, self.end]).all() and self.start < self.end):
             raise InputError(f"start, end: found {self.start}, {self.end}, expected finite start < end")
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        return rebuilt(self)
+
     def evaluate(self, t: ArrayLike) -> FloatArray:
         """Evaluate at t, any shape, by de Casteljau's triangle."""
-        x = (np.asarray(t, dtype=np.float64) - self.start) / (self.end - self.start)
+        x = (real_array(t, "t", InputError) - self.start) / (self.end - self.start)
         level = [np.full(x.shape, c) for c in self.coefficients]
         while len(level) > 1:
             level = [(1 - x) * a + x * b for a, b in pairwise(level)]
@@ -200,6 +205,7 @@ def trim_bezier(
         ("bottom", bottom, u_range, v_range),
         ("top", top, u_range, v_range),
     ):
+        require(side, name, BezierFunction)
         _check_side(name, side, along, across)
     _check_outline(patch, left, right, bottom, top)
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from solver.arrays import FloatArray, SparseMatrix
+from solver.arrays import FloatArray, SparseMatrix, real_number, require
 from solver.curves import restrict_curve
 from solver.errors import OptionError
 from solver.knots import MERGE_TOLERANCE, clamped, inner_knots
@@ -81,6 +81,7 @@ def convert_to_bspline(surface: SemiStructuredSurface, tolerance: float = MERGE_
     >>> conversion.surface.knots_v, conversion.control_points_added, conversion.change
     (array([0. , 0. , 0.5, 1. , 1. ]), 1, 0.0)
     """
+    require(surface, "surface", SemiStructuredSurface)
     same = compatible_curves(surface.control_curves, tolerance)
     result = BSplineSurface(surface.degree_u, same.degree, surface.knots_u, same.knots, same.control_points)
     return Conversion(result, surface.n_control_points, result.n_control_points, same.knot_shift, same.change)
@@ -94,7 +95,7 @@ def compatible_curves(curves: Sequence[BSplineCurve], tolerance: float = MERGE_T
     OptionError
         A tolerance outside [0, 1).
     """
-    if not 0 <= tolerance < 1:
+    if not 0 <= real_number(tolerance, "tolerance", OptionError) < 1:
         raise OptionError(f"tolerance: found {tolerance}, expected a fraction of the domain in [0, 1)")
     degree = max(curve.degree for curve in curves)
     whole = [_without_slivers(curve, min(tolerance, MERGE_TOLERANCE)) for curve in curves]

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from math import ceil, cos, pi, sin
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from solver.arrays import FloatArray, finite_array
-from solver.errors import ControlPointError, InputError, OptionError
+from solver.arrays import FloatArray, finite_array, is_whole, real_number, require, whole_number
+from solver.errors import ControlPointError, InputError, KnotError, OptionError
 from solver.knots import clamped, uniform_knots
 from solver.operations import elevate_degree
 from solver.refinement import clamp_knots
@@ -38,7 +38,9 @@ def plane(
     array([[1.  , 0.25, 0.  ]])
     """
     o, a, b = (_vector(x, name) for x, name in ((origin, "origin"), (edge_u, "edge_u"), (edge_v, "edge_v")))
-    if not np.linalg.norm(np.cross(a, b)) > 1e-12 * np.linalg.norm(a) * np.linalg.norm(b):
+    # Scaled first: products of very long or short edges would overflow.
+    x, y = (e / (np.abs(e).max() or 1.0) for e in (a, b))
+    if not np.linalg.norm(np.cross(x, y)) > 1e-12 * np.linalg.norm(x) * np.linalg.norm(y):
         raise ControlPointError(f"edge_v: found {b.tolist()}, expected a vector not parallel to edge_u {a.tolist()}")
     knots = clamped([], 1, 0.0, 1.0)
     corners = BSplineSurface(1, 1, knots, knots, np.array([[o, o + b], [o + a, o + a + b]]))
@@ -112,12 +114,14 @@ def skin(curves: Sequence[BSplineCurve], degree_u: int = 3, knots_u: ArrayLike |
     >>> skin(curves).evaluate([0.5], [0.5])
     array([[1.5, 0.5, 0. ]])
     """
+    require(curves, "curves", Iterable)
     rows = tuple(curves)
+    whole_number(degree_u, "degree_u", 1, OptionError)
     if knots_u is None:
         if len(rows) < degree_u + 1:
             raise ControlPointError(f"curves: {len(rows)} for degree {degree_u}, expected at least {degree_u + 1}")
         knots_u = uniform_knots(degree_u, len(rows) - degree_u)
-    return SemiStructuredSurface(degree_u, np.asarray(knots_u, dtype=np.float64), rows)
+    return SemiStructuredSurface(degree_u, finite_array(knots_u, 1, "knots_u", KnotError), rows)
 
 
 def ruled(a: BSplineCurve, b: BSplineCurve) -> BSplineSurface:
@@ -143,6 +147,7 @@ def extrude(curve: BSplineCurve, vector: ArrayLike, degree_u: int = 1) -> BSplin
     >>> extrude(BSplineCurve(1, [0, 0, 1, 1], [[0, 0, 0], [0, 1, 0]]), [2, 0, 0]).evaluate([0.5], [0.5])
     array([[1. , 0.5, 0. ]])
     """
+    require(curve, "curve", BSplineCurve)
     by = _vector(vector, "vector")
     if not by.any():
         raise ControlPointError(f"vector: found {by.tolist()}, expected one that is not zero")
@@ -195,6 +200,7 @@ def revolve(
     >>> cylinder.evaluate([0.5], [0.0]).round(12)
     array([[1.41421356, 1.41421356, 0.        ]])
     """
+    require(curve, "curve", BSplineCurve)
     turn = _radians(angle)
     arcs = ceil(angle / 90.0)
     half = turn / (2 * arcs)
@@ -248,14 +254,16 @@ def revolve_polynomial(
     """
     from scipy.interpolate import make_interp_spline
 
+    require(curve, "curve", BSplineCurve)
     turn = _radians(angle)
-    if not tolerance > 0:
+    if not 0 < real_number(tolerance, "tolerance", OptionError) < np.inf:
         raise OptionError(f"tolerance: found {tolerance}, expected a positive length")
     on_axis, radial, across = _axis_frame(curve.control_points, axis_point, axis_direction)
     radius = float(np.linalg.norm(radial, axis=1).max())
-    spans = max(4, ceil(turn * (5 * radius / (384 * tolerance)) ** 0.25))
-    if spans > 10_000:
-        raise OptionError(f"tolerance: found {tolerance}, would need {spans} spans; expected a larger one")
+    needed = turn * (5 * radius / (384 * tolerance)) ** 0.25
+    if not needed <= 10_000:
+        raise OptionError(f"tolerance: found {tolerance}, would need {needed:.3g} spans; expected a larger one")
+    spans = max(4, ceil(needed))
     u = np.arange(spans + 1) / spans
     angles = u * turn
     circle = np.stack([np.cos(angles), np.sin(angles)], axis=1)
@@ -301,10 +309,10 @@ def _interpolate(data: FloatArray, degree: int, parameters: ArrayLike, name: str
     from scipy.interpolate import make_interp_spline
 
     t = finite_array(parameters, 1, name, InputError)
-    if degree < 1 or len(data) < degree + 1:
+    if not is_whole(degree) or degree < 1 or len(data) < degree + 1:
         raise ControlPointError(
-            f"points: {len(data)} along {name} for degree {degree}, expected a degree of at least 1 and at least "
-            f"{degree + 1} points"
+            f"points: {len(data)} along {name} for degree {degree!r}, expected a degree of at least 1, whole, and more "
+            "points than that"
         )
     if len(t) != len(data):
         raise InputError(f"{name}: {len(t)} parameters, expected {len(data)}")
@@ -316,7 +324,7 @@ def _interpolate(data: FloatArray, degree: int, parameters: ArrayLike, name: str
 
 
 def _radians(angle: float) -> float:
-    if not 0 < angle <= 360:
+    if not 0 < real_number(angle, "angle", OptionError) <= 360:
         raise OptionError(f"angle: found {angle}, expected degrees above 0 and at most 360")
     return angle * pi / 180.0
 
@@ -326,10 +334,13 @@ def _axis_frame(
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return for each point its foot on the axis, the vector from there, and that vector turned by 90 degrees."""
     origin, direction = _vector(axis_point, "axis_point"), _vector(axis_direction, "axis_direction")
-    length = float(np.linalg.norm(direction))
-    if length == 0:
+    longest = float(np.abs(direction).max())
+    # Below, numbers lose digits.
+    if longest < np.finfo(float).tiny:
         raise ControlPointError(f"axis_direction: found {direction.tolist()}, expected a vector that is not zero")
-    unit = direction / length
+    # Scaled first: squares of very long or short vectors would overflow or vanish.
+    unit = direction / longest
+    unit = unit / np.linalg.norm(unit)
     along = (points - origin) @ unit
     on_axis = origin + along[:, None] * unit
     radial = points - on_axis

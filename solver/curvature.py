@@ -18,10 +18,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from solver.arrays import FloatArray
-from solver.errors import InputError
+from solver.arrays import FloatArray, finite_array, real_array, require, whole_number
+from solver.errors import InputError, OptionError
 from solver.operations import bounding_box
-from solver.surfaces import Surface
+from solver.surfaces import BSplineSurface, SemiStructuredSurface, Surface
 
 # A tangent shorter than this fraction of (extent of the surface / length of the parameter range), or an angle between
 # the two tangents below it, counts as zero: some thousand times the rounding of a derivative.
@@ -99,10 +99,10 @@ class LocalGeometry:
         InputError
             Another shape, or a direction along the normal at a regular point.
         """
-        d = np.asarray(direction, dtype=np.float64)
-        if d.ndim == 0 or d.shape[-1] != 3:
-            raise InputError(f"direction: shape {d.shape}, expected (3,) or (..., 3)")
+        d = finite_array(direction, None, "direction", InputError)
         e1, e2 = self._frame
+        if d.shape not in ((3,), e1.shape):
+            raise InputError(f"direction: shape {d.shape}, expected (3,) or {e1.shape}")
         x, y = (np.asarray(np.einsum("...d,...d->...", d, e)) for e in (e1, e2))
         length = np.hypot(x, y)
         if (length <= DEGENERATE * np.linalg.norm(d, axis=-1)).any():
@@ -188,7 +188,9 @@ def isophote_angle(normal: ArrayLike, light: ArrayLike) -> FloatArray:
     >>> isophote_angle([[0, 0, 1], [0, 1, 0]], [0, 0, 2])
     array([ 0., 90.])
     """
-    n, to_light = np.asarray(normal, dtype=np.float64), np.asarray(light, dtype=np.float64)
+    n, to_light = _vectors(normal, "normal"), _vectors(light, "light")
+    if to_light.shape != (3,) or not to_light.any():
+        raise InputError(f"light: found {to_light.tolist()}, expected one vector that is not zero")
     across = np.linalg.norm(np.cross(n, to_light), axis=-1)
     return np.asarray(np.degrees(np.arctan2(across, n @ to_light)))
 
@@ -205,8 +207,11 @@ def zebra(point: ArrayLike, normal: ArrayLike, eye: ArrayLike, stripes: int = 20
     eye : array_like, shape (3,)
         Position of the eye, in model units.
     """
-    p, n = np.asarray(point, dtype=np.float64), np.asarray(normal, dtype=np.float64)
-    view = p - np.asarray(eye, dtype=np.float64)
+    whole_number(stripes, "stripes", 1, OptionError)
+    p, n, at = _vectors(point, "point"), _vectors(normal, "normal"), _vectors(eye, "eye")
+    if at.shape != (3,) or p.shape != n.shape:
+        raise InputError(f"point, normal, eye: shapes {p.shape}, {n.shape}, {at.shape}, expected (..., 3) twice, (3,)")
+    view = p - at
     mirrored = view - 2.0 * _dot(view, n)[..., None] * n
     turn = np.arctan2(mirrored[..., 1], mirrored[..., 0]) / (2.0 * np.pi)
     light = (turn * stripes) % 1.0 < 0.5
@@ -214,6 +219,7 @@ def zebra(point: ArrayLike, normal: ArrayLike, eye: ArrayLike, stripes: int = 20
 
 
 def _geometry(surface: Surface, evaluate: Callable[[int, int], FloatArray]) -> LocalGeometry:
+    require(surface, "surface", BSplineSurface, SemiStructuredSurface)
     p, pu, pv = evaluate(0, 0), evaluate(1, 0), evaluate(0, 1)
     extent = float(np.ptp(bounding_box(surface), axis=0).max())
     least = [DEGENERATE * extent / (end - start) for start, end in surface.domain]
@@ -230,6 +236,13 @@ def _geometry(surface: Surface, evaluate: Callable[[int, int], FloatArray]) -> L
         second_form=_symmetric(*(_dot(evaluate(*order), normal) for order in ((2, 0), (1, 1), (0, 2)))),
         regular=regular,
     )
+
+
+def _vectors(values: ArrayLike, name: str) -> FloatArray:
+    array = real_array(values, name, InputError)
+    if array.ndim == 0 or array.shape[-1] != 3:
+        raise InputError(f"{name}: shape {array.shape}, expected (3,) or (..., 3)")
+    return array
 
 
 def _dot(a: FloatArray, b: FloatArray) -> FloatArray:

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from solver.arrays import FloatArray, finite_array
+from solver.arrays import FloatArray, finite_array, is_whole, real_number, require
 from solver.errors import KnotError, OptionError
 from solver.knots import reversed_knots
 from solver.refinement import (
@@ -29,6 +29,7 @@ def reverse_curve(curve: BSplineCurve) -> BSplineCurve:
     >>> reverse_curve(BSplineCurve(1, [0, 0, 1, 1], [[0, 0, 0], [2, 0, 0]])).evaluate([0.25])
     array([[1.5, 0. , 0. ]])
     """
+    require(curve, "curve", BSplineCurve)
     return replace(curve, knots=reversed_knots(curve.knots), control_points=curve.control_points[::-1])
 
 
@@ -40,6 +41,7 @@ def elevate_curve(curve: BSplineCurve, degree: int) -> BSplineCurve:
     >>> elevate_curve(BSplineCurve(1, [0, 0, 1, 1], [[0, 0, 0], [2, 0, 0]]), 2).control_points[:, 0]
     array([0., 1., 2.])
     """
+    require(curve, "curve", BSplineCurve)
     if degree == curve.degree:
         return curve
     points = elevation_matrix(curve.degree, curve.knots, degree) @ curve.control_points
@@ -58,8 +60,13 @@ def insert_curve_knots(curve: BSplineCurve, knots: ArrayLike) -> BSplineCurve:
     >>> insert_curve_knots(BSplineCurve(1, [0, 0, 1, 1], [[0, 0, 0], [2, 0, 0]]), [0.25]).control_points[:, 0]
     array([0. , 0.5, 2. ])
     """
-    more = finite_array(knots, 1, "knots", KnotError)
-    refined = with_knots(curve.degree, curve.knots, more, "knots")
+    return insert_named(curve, finite_array(knots, 1, "knots", KnotError), "knots")
+
+
+def insert_named(curve: BSplineCurve, more: FloatArray, name: str) -> BSplineCurve:
+    """Return what `insert_curve_knots` does, with the caller's name for the knots in messages."""
+    require(curve, "curve", BSplineCurve)
+    refined = with_knots(curve.degree, curve.knots, more, name)
     points = refinement_matrix(curve.degree, curve.knots, refined) @ curve.control_points
     return replace(curve, knots=refined, control_points=points)
 
@@ -75,7 +82,8 @@ def restrict_curve(curve: BSplineCurve, start: float, end: float) -> BSplineCurv
 
 def split_curve(curve: BSplineCurve, v: float) -> tuple[BSplineCurve, BSplineCurve]:
     """Return the two pieces below and above v, each over its own part of the domain."""
-    at = snapped(v, curve.knots)
+    require(curve, "curve", BSplineCurve)
+    at = snapped(real_number(v, "v", KnotError), curve.knots)
     return restrict_curve(curve, float(curve.knots[0]), at), restrict_curve(curve, at, float(curve.knots[-1]))
 
 
@@ -100,7 +108,7 @@ def set_curve_continuity(curve: BSplineCurve, v: float, continuity: int, toleran
     Raises
     ------
     OptionError
-        A continuity outside 0 .. degree.
+        A continuity outside 0 .. degree, or a tolerance that is negative or not finite.
     KnotError
         v not inside the domain, or the curve is not as smooth as asked.
 
@@ -116,11 +124,14 @@ def set_curve_continuity(curve: BSplineCurve, v: float, continuity: int, toleran
     >>> set_curve_continuity(creased, 0.5, 2).knots
     array([0., 0., 0., 1., 1., 1.])
     """
-    if not 0 <= continuity <= curve.degree:
+    require(curve, "curve", BSplineCurve)
+    if not is_whole(continuity) or not 0 <= continuity <= curve.degree:
         raise OptionError(
-            f"continuity: found {continuity}, expected a whole number from 0 to the degree {curve.degree}"
+            f"continuity: found {continuity!r}, expected a whole number from 0 to the degree {curve.degree}"
         )
-    at = snapped(v, curve.knots)
+    if not 0 <= real_number(tolerance, "tolerance", OptionError) < np.inf:
+        raise OptionError(f"tolerance: found {tolerance}, expected a finite number of at least 0")
+    at = snapped(real_number(v, "v", KnotError), curve.knots)
     if not curve.knots[0] < at < curve.knots[-1]:
         raise KnotError(f"v: found {v}, expected a value inside ({curve.knots[0]}, {curve.knots[-1]})")
     present = int(np.count_nonzero(curve.knots == at))

@@ -8,9 +8,9 @@ from math import comb
 import numpy as np
 from numpy.typing import ArrayLike
 
-from solver.arrays import FloatArray, is_whole
+from solver.arrays import FloatArray, is_whole, real_array
 from solver.errors import InputError, OptionError
-from solver.knots import basis_matrix
+from solver.knots import MERGE_TOLERANCE, basis_matrix
 
 
 def domain_of(knots: FloatArray) -> tuple[float, float]:
@@ -19,19 +19,20 @@ def domain_of(knots: FloatArray) -> tuple[float, float]:
 
 
 def checked_parameters(x: ArrayLike, knots: FloatArray, name: str) -> FloatArray:
-    """Return parameters as an array, shape (K,), refused outside the domain."""
-    try:
-        array = np.atleast_1d(np.asarray(x, dtype=np.float64))
-    except (TypeError, ValueError):
-        raise InputError(f"{name}: not an array of real numbers, expected parameters") from None
+    """Return parameters as an array, shape (K,), refused outside the domain.
+
+    One that is outside by no more than 1e-12 of the domain means the end.
+    """
+    array = np.atleast_1d(real_array(x, name, InputError))
     if array.ndim != 1:
         raise InputError(f"{name}: {array.ndim} dimensions, expected a one-dimensional array of parameters")
     start, end = domain_of(knots)
-    outside = ~((array >= start) & (array <= end))
+    tolerance = MERGE_TOLERANCE * (end - start)
+    outside = ~((array >= start - tolerance) & (array <= end + tolerance))
     if outside.any():
         i = int(np.argmax(outside))
         raise InputError(f"{name}[{i}]: found {array[i]}, expected a parameter in [{start}, {end}]")
-    return array
+    return np.asarray(np.clip(array, start, end))
 
 
 def point_parameters(

@@ -10,7 +10,7 @@ import scipy.sparse as sp
 from numpy.typing import ArrayLike
 from scipy.interpolate import BSpline
 
-from solver.arrays import FloatArray, SparseMatrix, finite_array, is_whole
+from solver.arrays import FloatArray, SparseMatrix, finite_array, is_whole, whole_number
 from solver.errors import KnotError
 
 # Knots closer than this fraction of the domain count as one wherever knot vectors are merged.
@@ -100,8 +100,8 @@ def uniform_knots(degree: int, n_spans: int) -> FloatArray:
     >>> uniform_knots(2, 2)
     array([0. , 0. , 0. , 0.5, 1. , 1. , 1. ])
     """
-    if n_spans < 1:
-        raise KnotError(f"n_spans: found {n_spans}, expected at least 1")
+    whole_number(n_spans, "n_spans", 1, KnotError)
+    whole_number(degree, "degree", 1, KnotError)
     return clamped(np.arange(1, n_spans) / n_spans, degree, 0.0, 1.0)
 
 
@@ -180,6 +180,8 @@ def reversed_knots(knots: FloatArray) -> FloatArray:
 
 def basis_matrix(degree: int, knots: FloatArray, x: FloatArray) -> SparseMatrix:
     """Return the sparse matrix of basis values, shape (len(x), n); right-continuous, left at the end of the domain."""
+    if not len(x):
+        return sp.csr_array((0, len(knots) - degree - 1))
     return BSpline.design_matrix(np.ascontiguousarray(x, dtype=np.float64), knots, degree)
 
 

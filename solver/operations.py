@@ -5,15 +5,17 @@ Every result is the same surface (or its image) in another form; nothing is appr
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from typing import TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from solver.arrays import FloatArray, SparseMatrix, finite_array
+from solver.arrays import FloatArray, SparseMatrix, finite_array, real_array, real_number, require
 from solver.compatible import combined_curves
-from solver.curves import elevate_curve, insert_curve_knots, restrict_curve, reverse_curve
+from solver.curves import elevate_curve, insert_named, restrict_curve, reverse_curve
 from solver.errors import ControlPointError, InputError, KnotError
 from solver.knots import affine_knots, reversed_knots
 from solver.refinement import (
@@ -25,7 +27,7 @@ from solver.refinement import (
     snapped,
     with_knots,
 )
-from solver.surfaces import BSplineSurface, SemiStructuredSurface, Surface
+from solver.surfaces import BSplineCurve, BSplineSurface, SemiStructuredSurface, Surface, named_row
 
 S = TypeVar("S", BSplineSurface, SemiStructuredSurface)
 
@@ -39,6 +41,7 @@ def reverse_u(surface: S) -> S:
     >>> reverse_u(square).evaluate([0.25], [0.5])
     array([[0.75, 0.5 , 0.  ]])
     """
+    require(surface, "surface", BSplineSurface, SemiStructuredSurface)
     knots = reversed_knots(surface.knots_u)
     if isinstance(surface, SemiStructuredSurface):
         return SemiStructuredSurface(surface.degree_u, knots, surface.control_curves[::-1])
@@ -48,6 +51,7 @@ def reverse_u(surface: S) -> S:
 
 def reverse_v(surface: S) -> S:
     """Return the surface run backwards in v over the same domain."""
+    require(surface, "surface", BSplineSurface, SemiStructuredSurface)
     if isinstance(surface, SemiStructuredSurface):
         return replace(surface, control_curves=tuple(reverse_curve(c) for c in surface.control_curves))
     weights = None if surface.weights is None else surface.weights[:, ::-1]
@@ -63,6 +67,7 @@ def swap_directions(surface: Surface) -> BSplineSurface:
     InputError
         A semi-structured surface: its curves run along v by definition.
     """
+    require(surface, "surface", BSplineSurface, SemiStructuredSurface)
     if isinstance(surface, SemiStructuredSurface):
         raise InputError(
             "surface: a semi-structured surface cannot exchange u and v, its control curves run along v; "
@@ -92,17 +97,25 @@ def map_domain(surface: S, u_range: tuple[float, float] | None = None, v_range: 
     >>> map_domain(square, v_range=(0, 10)).evaluate([0.5], [2.5])
     array([[0.5 , 0.25, 0.  ]])
     """
-    for name, given in (("u_range", u_range), ("v_range", v_range)):
-        if given is not None and not (np.isfinite(given).all() and given[0] < given[1]):
-            raise InputError(f"{name}: found {tuple(given)}, expected two finite numbers in ascending order")
-    knots_u = surface.knots_u if u_range is None else affine_knots(surface.knots_u, *u_range)
+    require(surface, "surface", BSplineSurface, SemiStructuredSurface)
+    to_u, to_v = _checked_range(u_range, "u_range"), _checked_range(v_range, "v_range")
+    knots_u = surface.knots_u if to_u is None else affine_knots(surface.knots_u, *to_u)
     if isinstance(surface, SemiStructuredSurface):
         curves = surface.control_curves
-        if v_range is not None:
-            curves = tuple(replace(c, knots=affine_knots(c.knots, *v_range)) for c in curves)
+        if to_v is not None:
+            curves = tuple(replace(c, knots=affine_knots(c.knots, *to_v)) for c in curves)
         return SemiStructuredSurface(surface.degree_u, knots_u, curves)
-    knots_v = surface.knots_v if v_range is None else affine_knots(surface.knots_v, *v_range)
+    knots_v = surface.knots_v if to_v is None else affine_knots(surface.knots_v, *to_v)
     return replace(surface, knots_u=knots_u, knots_v=knots_v)
+
+
+def _checked_range(given: tuple[float, float] | None, name: str) -> tuple[float, float] | None:
+    if given is None:
+        return None
+    values = real_array(given, name, InputError).tolist()
+    if not (isinstance(values, list) and len(values) == 2 and np.isfinite(values).all() and values[0] < values[1]):
+        raise InputError(f"{name}: found {given!r}, expected two finite numbers in ascending order")
+    return values[0], values[1]
 
 
 def transform(surface: S, matrix: ArrayLike, translation: ArrayLike = (0.0, 0.0, 0.0)) -> S:
@@ -127,6 +140,7 @@ def transform(surface: S, matrix: ArrayLike, translation: ArrayLike = (0.0, 0.0,
     >>> transform(square, np.eye(3), [0, 0, 5]).evaluate([0.5], [0.5])
     array([[0.5, 0.5, 5. ]])
     """
+    require(surface, "surface", BSplineSurface, SemiStructuredSurface)
     a = finite_array(matrix, 2, "matrix", InputError)
     t = finite_array(translation, 1, "translation", InputError)
     if t.shape != (3,):
@@ -154,6 +168,7 @@ def bounding_box(surface: Surface) -> FloatArray:
 
 def all_control_points(surface: Surface) -> FloatArray:
     """Return the control points in one array, shape (n_control_points, 3), row after row."""
+    require(surface, "surface", BSplineSurface, SemiStructuredSurface)
     if isinstance(surface, SemiStructuredSurface):
         return np.concatenate([c.control_points for c in surface.control_curves])
     return surface.control_points.reshape(-1, 3)
@@ -176,13 +191,14 @@ def elevate_degree(surface: S, degree_u: int | None = None, degree_v: int | None
     >>> elevate_degree(square, degree_v=3).control_points[0, :, 1]
     array([0.        , 0.33333333, 0.66666667, 1.        ])
     """
+    require(surface, "surface", BSplineSurface, SemiStructuredSurface)
     if degree_u is not None and degree_u != surface.degree_u:
         matrix = elevation_matrix(surface.degree_u, surface.knots_u, degree_u)
         surface = _with_u(surface, degree_u, elevated_knots(surface.knots_u, degree_u - surface.degree_u), matrix)
     if degree_v is None:
         return surface
     if isinstance(surface, SemiStructuredSurface):
-        return replace(surface, control_curves=tuple(elevate_curve(c, degree_v) for c in surface.control_curves))
+        return _each_curve(surface, partial(elevate_curve, degree=degree_v))
     matrix = elevation_matrix(surface.degree_v, surface.knots_v, degree_v)
     return _with_v(surface, degree_v, elevated_knots(surface.knots_v, degree_v - surface.degree_v), matrix)
 
@@ -206,6 +222,7 @@ def insert_knots(surface: S, knots_u: ArrayLike = (), knots_v: ArrayLike = ()) -
            [0.  , 0.25, 0.  ],
            [0.  , 1.  , 0.  ]])
     """
+    require(surface, "surface", BSplineSurface, SemiStructuredSurface)
     more = finite_array(knots_u, 1, "knots_u", KnotError)
     if len(more):
         refined = with_knots(surface.degree_u, surface.knots_u, more, "knots_u")
@@ -215,7 +232,7 @@ def insert_knots(surface: S, knots_u: ArrayLike = (), knots_v: ArrayLike = ()) -
     if not len(more):
         return surface
     if isinstance(surface, SemiStructuredSurface):
-        return replace(surface, control_curves=tuple(insert_curve_knots(c, more) for c in surface.control_curves))
+        return _each_curve(surface, partial(insert_named, more=more, name="knots_v"))
     refined = with_knots(surface.degree_v, surface.knots_v, more, "knots_v")
     matrix = refinement_matrix(surface.degree_v, surface.knots_v, refined)
     return _with_v(surface, surface.degree_v, refined, matrix)
@@ -231,7 +248,8 @@ def split_u(surface: S, u: float) -> tuple[S, S]:
     KnotError
         A value that is not inside the domain.
     """
-    at = snapped(u, surface.knots_u)
+    require(surface, "surface", BSplineSurface, SemiStructuredSurface)
+    at = snapped(real_number(u, "u", KnotError), surface.knots_u)
     start, end = surface.domain[0]
     return _restrict_u(surface, start, at), _restrict_u(surface, at, end)
 
@@ -245,12 +263,14 @@ def split_v(surface: S, v: float) -> tuple[S, S]:
     >>> [piece.domain[1] for piece in split_v(square, 0.25)]
     [(0.0, 0.25), (0.25, 1.0)]
     """
+    require(surface, "surface", BSplineSurface, SemiStructuredSurface)
+    value = real_number(v, "v", KnotError)
     start, end = surface.domain[1]
     if isinstance(surface, SemiStructuredSurface):
         knots = np.unique(np.concatenate([c.knots for c in surface.control_curves]))
-        at = snapped(v, knots)
+        at = snapped(value, knots)
         return _restrict_v(surface, start, at), _restrict_v(surface, at, end)
-    at = snapped(v, surface.knots_v)
+    at = snapped(value, surface.knots_v)
     return _restrict_v(surface, start, at), _restrict_v(surface, at, end)
 
 
@@ -261,9 +281,19 @@ def _restrict_u(surface: S, start: float, end: float) -> S:
 
 def _restrict_v(surface: S, start: float, end: float) -> S:
     if isinstance(surface, SemiStructuredSurface):
-        return replace(surface, control_curves=tuple(restrict_curve(c, start, end) for c in surface.control_curves))
+        return _each_curve(surface, partial(restrict_curve, start=start, end=end))
     matrix, knots = piece_matrix(surface.degree_v, surface.knots_v, start, end)
     return _with_v(surface, surface.degree_v, knots, matrix)
+
+
+def _each_curve(
+    surface: SemiStructuredSurface, change: Callable[[BSplineCurve], BSplineCurve]
+) -> SemiStructuredSurface:
+    curves = []
+    for i, curve in enumerate(surface.control_curves):
+        with named_row(i):
+            curves.append(change(curve))
+    return replace(surface, control_curves=tuple(curves))
 
 
 def _with_u(surface: S, degree: int, knots: FloatArray, matrix: SparseMatrix) -> S:

@@ -14,8 +14,8 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import ArrayLike, NDArray
 
-from solver.arrays import FloatArray, SparseMatrix, finite_array
-from solver.errors import KnotError
+from solver.arrays import FloatArray, SparseMatrix, finite_array, is_whole, whole_number
+from solver.errors import ControlPointError, KnotError
 from solver.knots import MERGE_TOLERANCE, clamped
 
 
@@ -143,8 +143,10 @@ def elevation_matrix(degree: int, knots: FloatArray, new_degree: int) -> SparseM
            [0.5, 0.5],
            [0. , 1. ]])
     """
-    if new_degree < degree:
-        raise KnotError(f"degree: found {new_degree}, expected at least the present degree {degree}")
+    if not is_whole(new_degree) or new_degree < degree:
+        raise KnotError(
+            f"degree: found {new_degree!r}, expected at least the present degree {degree}, as a whole number"
+        )
     matrix = sp.eye_array(len(knots) - degree - 1, format="csr")
     for p in range(degree, new_degree):
         raised = elevated_knots(knots)
@@ -226,6 +228,8 @@ def clamp_knots(degree: int, knots: ArrayLike, control_points: ArrayLike) -> tup
     ------
     KnotError
         Wrong length, decreasing knots, or an empty domain.
+    ControlPointError
+        Control points that are not finite.
 
     Examples
     --------
@@ -235,12 +239,13 @@ def clamp_knots(degree: int, knots: ArrayLike, control_points: ArrayLike) -> tup
            [3.]]))
     """
     vector = finite_array(knots, 1, "knots", KnotError)
-    points = np.asarray(control_points, dtype=np.float64)
+    points = finite_array(control_points, None, "control_points", ControlPointError)
+    whole_number(degree, "degree", 1, KnotError)
     n = len(points)
-    if degree < 1 or n < degree + 1 or len(vector) != n + degree + 1:
+    if n < degree + 1 or len(vector) != n + degree + 1:
         raise KnotError(
             f"knots: {len(vector)} for {n} control points of degree {degree}, expected {n + degree + 1}, "
-            f"a degree of at least 1 and at least {degree + 1} control points"
+            f"and at least {degree + 1} control points"
         )
     steps = np.diff(vector)
     if (steps < 0).any():

@@ -6,16 +6,17 @@ times (derivative) control points; it is right-continuous at inner knots and lef
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TypeAlias, final
+from typing import Any, TypeAlias, final
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from solver.arrays import FloatArray, SparseMatrix, finite_array
-from solver.errors import ControlPointError, InputError
+from solver.arrays import FloatArray, SparseMatrix, finite_array, is_whole, real_number, rebuilt, whole_number
+from solver.errors import ControlPointError, InputError, KnotError, OptionError
 from solver.evaluation import check_orders, checked_parameters, domain_of, local_basis, point_parameters, quotient
 from solver.knots import MERGE_TOLERANCE, basis_matrix, breakpoints, checked_knots, derivative_points, merge_breakpoints
 
@@ -56,6 +57,9 @@ class BSplineCurve:
         object.__setattr__(self, "control_points", points)
         knots = checked_knots(self.knots, self.degree, len(points), f"{self.name}.knots")
         object.__setattr__(self, "knots", knots)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return rebuilt(self)
 
     def evaluate(self, v: ArrayLike, derivative: int = 0) -> FloatArray:
         """Evaluate the curve or a derivative at v, shape (K,); returns shape (K, 3)."""
@@ -120,6 +124,9 @@ class BSplineSurface:
                 raise ControlPointError(f"weights[{i}, {j}]: found {weights[i, j]}, expected a positive number")
             object.__setattr__(self, "weights", weights)
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        return rebuilt(self)
+
     @property
     def domain(self) -> tuple[tuple[float, float], tuple[float, float]]:
         """The ranges of u and v."""
@@ -141,7 +148,9 @@ class BSplineSurface:
         if self.weights is None:
             return self.control_points
         w = self.weights[..., None]
-        return np.concatenate([self.control_points * w, w], axis=2)
+        net = np.concatenate([self.control_points * w, w], axis=2)
+        net.setflags(write=False)
+        return net
 
     def evaluate(self, u: ArrayLike, v: ArrayLike, du: int = 0, dv: int = 0) -> FloatArray:
         """Evaluate the surface or a mixed derivative at the points (u[k], v[k]); returns shape (K, 3)."""
@@ -229,6 +238,10 @@ class SemiStructuredSurface:
     control_curves: tuple[BSplineCurve, ...]
 
     def __post_init__(self) -> None:
+        curves: object = self.control_curves
+        if not isinstance(curves, Iterable):
+            kind = type(curves).__name__
+            raise ControlPointError(f"control_curves: found a {kind}, expected a sequence of BSplineCurve")
         object.__setattr__(self, "control_curves", tuple(self.control_curves))
         object.__setattr__(
             self, "knots_u", checked_knots(self.knots_u, self.degree_u, len(self.control_curves), "knots_u")
@@ -239,6 +252,9 @@ class SemiStructuredSurface:
             found, expected = domain_of(curve.knots), domain_of(self.control_curves[0].knots)
             if found != expected:
                 raise ControlPointError(f"control_curves[{i}]: v-domain {found}, expected that of curve 0, {expected}")
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return rebuilt(self)
 
     @property
     def domain(self) -> tuple[tuple[float, float], tuple[float, float]]:
@@ -303,7 +319,8 @@ class SemiStructuredSurface:
         """Return the same surface with a knot inserted in v-control curve i alone."""
         from solver.curves import insert_curve_knots
 
-        return self._with_curve(i, lambda curve: insert_curve_knots(curve, [v] * times))
+        at = [real_number(v, "v", KnotError)] * whole_number(times, "times", 0, OptionError)
+        return self._with_curve(i, lambda curve: insert_curve_knots(curve, at))
 
     def set_continuity(self, i: int, v: float, continuity: int, tolerance: float = 1e-12) -> SemiStructuredSurface:
         """Return the surface with v-control curve i in a form that is C^continuity at v, and no more.
@@ -317,10 +334,11 @@ class SemiStructuredSurface:
 
     def _with_curve(self, i: int, change: Callable[[BSplineCurve], BSplineCurve]) -> SemiStructuredSurface:
         n = len(self.control_curves)
-        if not 0 <= i < n:
-            raise InputError(f"i: found {i}, expected the index of a v-control curve, 0 to {n - 1}")
+        if not is_whole(i) or not 0 <= i < n:
+            raise InputError(f"i: found {i!r}, expected the index of a v-control curve, 0 to {n - 1}")
         curves = list(self.control_curves)
-        curves[i] = change(curves[i])
+        with named_row(i):
+            curves[i] = change(curves[i])
         return replace(self, control_curves=tuple(curves))
 
     def to_bspline(self, tolerance: float = MERGE_TOLERANCE) -> BSplineSurface:
@@ -345,6 +363,15 @@ class SemiStructuredSurface:
                 known[form] = basis_matrix(curve.degree - dv, curve.knots[dv : len(curve.knots) - dv], v)
             row[:] = known[form] @ derivative_points(curve.degree, curve.knots, curve.control_points, dv)
         return derivative_points(self.degree_u, self.knots_u, values, du)
+
+
+@contextmanager
+def named_row(i: int) -> Iterator[None]:
+    """Put the name of a v-control curve before what is said against it."""
+    try:
+        yield
+    except InputError as error:
+        raise type(error)(f"control_curves[{i}]: {error}") from None
 
 
 Surface: TypeAlias = BSplineSurface | SemiStructuredSurface

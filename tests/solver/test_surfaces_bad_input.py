@@ -89,7 +89,7 @@ def test_curves_of_a_semistructured_surface_are_named():
         ([0.5], [float("nan")], r"v\[0\]: found nan"),
         ([0.5, 0.5], [0.5, 0.5, 0.5], r"v: 3 parameters, expected as many as u has, 2"),
         ([[0.5]], [0.5], r"u: 2 dimensions, expected a one-dimensional"),
-        (["a"], [0.5], r"u: not an array of real numbers"),
+        (["a"], [0.5], r"u: found .'a'., not an array of real numbers"),
     ],
 )
 def test_parameters_are_checked(u, v, message):
