@@ -1,0 +1,94 @@
+"""C2 blends on long contact curves: how time and memory grow, and up to what size an answer can be trusted.
+
+    python benchmarks/long_contacts.py
+
+Both bases have the same number of control points along the contact and knots of their own. The check of a finished
+blend by the slow referee is left aside, as everywhere here.
+"""
+
+from __future__ import annotations
+
+import time
+import tracemalloc
+from dataclasses import dataclass
+
+import numpy as np
+
+from solver import Base, BSplineSurface, ComputationError
+from solver.blending import state_problem
+from solver.knots import clamped, greville, uniform_knots
+
+SIZES = (1_000, 3_162, 10_000, 31_623, 100_000)
+EXPONENT_LIMIT, SECONDS_LIMIT = 1.1, 3.0
+FIXED_SIZES = tuple(1_000 * 2**k for k in range(8))
+
+
+@dataclass(frozen=True)
+class Run:
+    """One solve: control points of each contact curve, seconds, and the peak of what Python and NumPy allocate."""
+
+    n: int
+    seconds: float
+    bytes: int
+
+
+def base(n: int, length: float, side: int) -> Base:
+    """Return a bicubic strip of 4 x n control points, its spans along v between 0.5 and 1.5 of their mean."""
+    spans = np.random.default_rng(side).uniform(0.5, 1.5, n - 3)
+    inner = np.cumsum(spans)[:-1] / spans.sum() * length
+    knots_u, knots_v = uniform_knots(3, 1), clamped(inner, 3, 0, length)
+    x, y = np.meshgrid(greville(knots_u, 3), greville(knots_v, 3), indexing="ij")
+    x = x if side == 0 else -1 - x
+    z = (0.2 + 0.2 * side) * np.sin(2 * np.pi * y / max(length / 100, 1) + x)
+    return Base(BSplineSurface(3, 3, knots_u, knots_v, np.stack([x, y, z], axis=2)), "u0")
+
+
+def solve(a: Base, b: Base) -> float:
+    """Go through the stages of a C2 blend, from the bases to control points and their energy."""
+    problem = state_problem(a, b, continuity="C2").problem
+    points = problem.control_points(*problem.start)
+    return float(problem.form.products(points[None])[0, 0])
+
+
+def run(n: int, length: float, repeats: int = 3) -> Run:
+    """Solve for one pair: the least time of some runs, then memory in a run that is not timed."""
+    bases = [base(n, length, side) for side in (0, 1)]
+    seconds = []
+    for _ in range(repeats):
+        started = time.perf_counter()
+        solve(*bases)
+        seconds.append(time.perf_counter() - started)
+    tracemalloc.start()
+    solve(*bases)
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    return Run(n, min(seconds), peak)
+
+
+def growth() -> list[Run]:
+    """Return a run for each size, mean span 1."""
+    run(10, 7.0)  # what is loaded late
+    return [run(n, n - 3.0) for n in SIZES]
+
+
+def exponent(sizes: list[int], values: list[float]) -> float:
+    """Return the slope of the straight line through the logarithms, by least squares."""
+    return float(np.polyfit(np.log(sizes), np.log(values), 1)[0])
+
+
+def trusted_sizes() -> tuple[int, int | None, str]:
+    """Return, on a fixed domain, the largest size that was solved, the first that was refused, and the refusal."""
+    largest = 0
+    for n in FIXED_SIZES:
+        try:
+            solve(*(base(n, 1.0, side) for side in (0, 1)))
+        except ComputationError as error:
+            return largest, n, str(error)
+        largest = n
+    return largest, None, ""
+
+
+if __name__ == "__main__":
+    for one in growth():
+        print(one)
+    print(*trusted_sizes())
