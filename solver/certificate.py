@@ -23,18 +23,33 @@ class CertificateError(ComputationError):
 
 
 def check_certificate(certificate: Certificate) -> None:
-    """Verify a certificate in exact arithmetic.
+    """Verify in exact arithmetic that the claimed point is a minimum over the box, up to the tolerance.
 
     Raises
     ------
     CertificateError
-        The parts do not tile the box, or one of them does not prove the bound; the message names it.
+        The parts do not tile the box, one of them does not prove the bound, or the value at the point is further above
+        the bound than the tolerance; the message names what is wrong.
 
     Source: J. Garloff, The Bernstein algorithm, Interval Computations 2 (1993), for range bounds.
     """
+    try:
+        _check(certificate)
+    except (ArithmeticError, IndexError, TypeError, ValueError) as error:
+        raise CertificateError(f"certificate: malformed ({error})") from None
+
+
+def _check(certificate: Certificate) -> None:
     _check_tiling(certificate)
     table = [[Fraction(c) for c in row] for row in certificate.coefficients.tolist()]
     bound = Fraction(certificate.bound)
+    point = [Fraction(x) for x in certificate.point]
+    if not all(low <= x <= high for x, (low, high) in zip(point, certificate.box, strict=True)):
+        raise CertificateError(f"certificate: the point {certificate.point} lies outside of the box")
+    if not 0 <= _value(table, point) - bound <= Fraction(certificate.tolerance):
+        raise CertificateError(
+            f"certificate: the value at the point is not within {certificate.tolerance:.1e} above the bound"
+        )
     for leaf in certificate.leaves:
         ends = [_ends(box, part) for box, part in zip(certificate.box, (leaf.x, leaf.y), strict=True)]
         local = _transposed(_local(_transposed(_local(table, *ends[0])), *ends[1]))

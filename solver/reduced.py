@@ -87,12 +87,13 @@ def solve_reduced(problem: BlendProblem) -> ReducedSolution:
         # About its minimum the polynomial has the energy itself as constant term: nothing cancels there.
         table = shape_polynomial(problem, centre)
         scale = max(float(table[0, 0]), ZERO_ENERGY * terms)
-        point, certificate = least_point(table, _box(problem, centre), PROOF_TOLERANCE / 4 * scale)
-        found = _moved(problem, centre, point)
+        certificate = least_point(table, _box(problem, centre), PROOF_TOLERANCE / 4 * scale)
+        found = _moved(problem, centre, certificate.point)
         points = problem.control_points(*found)
         energy = float(problem.form.products(points[None])[0, 0])
         gap = (energy - certificate.bound) / max(energy, ZERO_ENERGY * terms)
-        if gap <= PROOF_TOLERANCE:
+        # A bound above the energy would mean that the polynomial is not the energy.
+        if abs(gap) <= PROOF_TOLERANCE:
             return ReducedSolution(*found, certificate, gap)
         centre = found
     raise ComputationError(

@@ -45,26 +45,33 @@ class Leaf:
 
 @dataclass(frozen=True, eq=False)
 class Certificate:
-    """A proof that a polynomial stays above a bound over a box; `check_certificate` verifies it.
+    """A proof that a point is a global minimum over a box, up to a tolerance; `check_certificate` verifies it.
 
     Attributes
     ----------
     coefficients : ndarray, shape (n + 1, n' + 1)
         [i, j] multiplies x^i y^j; floats taken as exact.
     box : ((float, float), (float, float))
+    point : (float, float)
+        Where the polynomial is claimed to be least.
+    tolerance : float
+        How far the value there may be above the bound.
     bound : float
+        What the polynomial nowhere falls below.
     leaves : tuple of Leaf
         They tile the box.
     """
 
     coefficients: FloatArray
     box: Box
+    point: tuple[float, float]
+    tolerance: float
     bound: float
     leaves: tuple[Leaf, ...]
 
 
-def least_point(coefficients: FloatArray, box: Box, tolerance: float) -> tuple[tuple[float, float], Certificate]:
-    """Return a point where the polynomial is least over the box, and the proof that it is least up to `tolerance`.
+def least_point(coefficients: FloatArray, box: Box, tolerance: float) -> Certificate:
+    """Return a point where the polynomial is least over the box, with the proof that it is least up to `tolerance`.
 
     Parameters
     ----------
@@ -80,16 +87,17 @@ def least_point(coefficients: FloatArray, box: Box, tolerance: float) -> tuple[t
 
     Examples
     --------
-    >>> point, proof = least_point(np.array([[1.0], [0.0], [-2.0], [0.0], [1.0]]), ((-2.0, 3.0), (0.0, 0.0)), 1e-9)
-    >>> round(abs(point[0]), 9), proof.bound
-    (1.0, -1e-09)
+    >>> proof = least_point(np.array([[1.0], [0.0], [-2.0], [0.0], [1.0]]), ((-2.0, 3.0), (0.0, 0.0)), 1e-9)
+    >>> round(abs(proof.point[0]), 9), round(proof.bound, 12)
+    (1.0, -5e-10)
     """
     point = best_of_grid(coefficients, box)
     while True:
-        bound = float(_exact_value(coefficients, point)) - tolerance
+        # Half of the tolerance is for the proof, the rest for the rounding of the bound itself.
+        bound = float(_exact_value(coefficients, point)) - tolerance / 2
         found = _prove(coefficients, box, bound, point)
-        if isinstance(found, Certificate):
-            return point, found
+        if isinstance(found, list):
+            return Certificate(coefficients, box, point, tolerance, bound, tuple(found))
         point = _descend(coefficients, box, found)
 
 
@@ -169,8 +177,8 @@ def _derivative(c: FloatArray, axis: int) -> FloatArray:
     return np.asarray(np.polynomial.polynomial.polyder(c, axis=axis))
 
 
-def _prove(c: FloatArray, box: Box, bound: float, best: tuple[float, float]) -> Certificate | tuple[float, float]:
-    """Return the certificate, or a point where the polynomial is below the bound."""
+def _prove(c: FloatArray, box: Box, bound: float, best: tuple[float, float]) -> list[Leaf] | tuple[float, float]:
+    """Return parts that prove the bound, or a point where the polynomial is below it."""
     threshold = _rational(bound)
     exact = fmpq_mat(*c.shape, [_rational(x) for x in c.ravel().tolist()])
     root, denominator = (
@@ -180,7 +188,7 @@ def _prove(c: FloatArray, box: Box, bound: float, best: tuple[float, float]) -> 
     stack: list[tuple[fmpz_mat, tuple[int, int], tuple[int, int]]] = [(root, (0, 0), (0, 0))]
     for _ in range(_MOST_BOXES):
         if not stack:
-            return Certificate(c, box, bound, tuple(leaves))
+            return leaves
         net, x, y = stack.pop()
         shift = x[1] * (c.shape[0] - 1) + y[1] * (c.shape[1] - 1)
         entries = [int(e) for e in net.entries()]

@@ -10,7 +10,7 @@ from scipy.optimize import brute, minimize
 from scipy.stats import special_ortho_group
 
 from helpers.bases import facing_pair, moved, patch
-from solver import Base, BSplineSurface, ContactError, blend
+from solver import Base, BSplineSurface, ComputationError, ContactError, blend
 from solver.certificate import CertificateError, check_certificate
 from solver.correspondence import Correspondence
 from solver.problem import ProblemOptions, make_problem
@@ -40,7 +40,8 @@ def test_the_proof_holds_and_no_sample_is_below(seed):
     table = random_table(np.random.default_rng(seed))
     box = ((-0.9, 7.0), (-0.5, 3.0))
     tolerance = 1e-9 * table[0, 0]
-    point, certificate = least_point(table, box, tolerance)
+    certificate = least_point(table, box, tolerance)
+    point = certificate.point
     check_certificate(certificate)
     x, y = (np.linspace(*ends, 300) for ends in box)
     samples = np.polynomial.polynomial.polygrid2d(x, y, table)
@@ -54,7 +55,8 @@ def test_the_proof_holds_and_no_sample_is_below(seed):
 
 
 def test_the_global_minimum_of_a_tilted_double_well():
-    point, certificate = least_point(TILTED, ((-2.0, 2.0), (-1.0, 1.0)), 1e-10)
+    certificate = least_point(TILTED, ((-2.0, 2.0), (-1.0, 1.0)), 1e-10)
+    point = certificate.point
     assert point[0] == pytest.approx(-1.0355, abs=1e-4)
     assert point[1] == pytest.approx(0, abs=1e-9)
     check_certificate(certificate)
@@ -72,7 +74,8 @@ def test_the_global_minimum_of_a_tilted_double_well():
     ],
 )
 def test_flat_directions_valleys_ties_and_bounds(table, box):
-    point, certificate = least_point(table, box, 1e-10)
+    certificate = least_point(table, box, 1e-10)
+    point = certificate.point
     check_certificate(certificate)
     x, y = (np.linspace(*ends, 101) for ends in box)
     assert np.polynomial.polynomial.polyval2d(*point, table) <= (
@@ -82,7 +85,7 @@ def test_flat_directions_valleys_ties_and_bounds(table, box):
 
 @pytest.fixture(scope="module")
 def certificate():
-    return least_point(TILTED, ((-2.0, 2.0), (-1.0, 1.0)), 1e-10)[1]
+    return least_point(TILTED, ((-2.0, 2.0), (-1.0, 1.0)), 1e-10)
 
 
 def test_a_bound_that_is_too_high_is_refused(certificate):
@@ -91,6 +94,51 @@ def test_a_bound_that_is_too_high_is_refused(certificate):
         check_certificate(replace(certificate, bound=0.29))
     with pytest.raises(CertificateError):
         check_certificate(replace(certificate, bound=certificate.bound + 1e-9))
+
+
+def test_a_planted_wrong_minimum_is_refused(certificate):
+    # The local minimum, with the bound and the proof of the global one.
+    with pytest.raises(CertificateError, match="value at the point"):
+        check_certificate(replace(certificate, point=(0.9615, 0.0)))
+    with pytest.raises(CertificateError, match="outside of the box"):
+        check_certificate(replace(certificate, point=(5.0, 0.0)))
+    with pytest.raises(CertificateError, match="value at the point"):
+        check_certificate(replace(certificate, bound=-1e9))
+    shrunk = replace(certificate, box=((0.0, 1e-9), (0.0, 1e-9)))
+    with pytest.raises(CertificateError):
+        check_certificate(shrunk)
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"bound": float("nan")},
+        {"box": ((0.0, float("inf")), (0.0, 1.0))},
+        {"point": (0.0,)},
+        {"coefficients": TILTED * np.nan},
+    ],
+)
+def test_a_malformed_certificate_is_refused(certificate, change):
+    with pytest.raises(CertificateError):
+        check_certificate(replace(certificate, **change))
+    leaf = replace(certificate.leaves[0], tangent_at=())
+    with pytest.raises(CertificateError):
+        check_certificate(replace(certificate, leaves=(leaf, *certificate.leaves[1:])))
+
+
+def test_a_bound_above_the_energy_is_no_proof():
+    # Bases that nearly continue each other over a gap that rounding reaches: refused or proved, never a false proof.
+    t = np.linspace(0, 1, 4)
+    u, v = np.meshgrid(t, t, indexing="ij")
+    k = [0, 0, 0, 0, 1, 1, 1, 1]
+    a = BSplineSurface(3, 3, k, k, np.dstack([u, v, 0.2 * u**2]))
+    for gap in (1e-6, 1e-9, 1e-10, 1e-11):
+        b = BSplineSurface(3, 3, k, k, np.dstack([1 + gap + u, v, np.full_like(u, 0.2)]))
+        try:
+            result = blend(Base(a, "u1"), Base(b, "u0"))
+        except ComputationError:
+            continue
+        assert abs(result.proven_gap) <= 1e-10
 
 
 def test_a_missing_part_is_refused(certificate):
