@@ -70,7 +70,7 @@ def page(results: Results) -> str:
         ("blends", "Pairs, edge by edge", table_html(results.blends)),
         ("figures", "Other figures", "".join(_picture(results, name) for name in rest)),
         ("ledger", "Every claim", ledger_html(results.ledger)),
-        ("made", "How this was made", _made(results)),
+        ("how", "How this was made", _made(results)),
     )
     links = "".join(f"<a href='#{name}'>{escape(heading)}</a>" for name, heading, _ in sections)
     body = "".join(f"<section id='{name}'><h2>{escape(h)}</h2>{content}</section>" for name, h, content in sections)

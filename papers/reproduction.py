@@ -22,8 +22,9 @@ from papers.study import Comparisons, Drawing, Example, Study, Table
 from papers.tables import METHODS_NOTE, blends_table, markdown_lines, methods_table, text_lines
 from papers.verification import Ledger
 from solver.errors import FileError
-from solver.io.disk import write_text
+from solver.io.disk import check_output, write_text
 from solver.io.json_text import to_text
+from solver.io.meshes import pyvista_module
 
 # (what is done, how many steps) -> a context that gives a function to be told of each step
 Progress: TypeAlias = Callable[[str, int], AbstractContextManager[Callable[[str], None]]]
@@ -59,9 +60,11 @@ def reproduce(
     Raises
     ------
     FileError
-        The folder cannot be made or written to, or pictures cannot be drawn.
+        The folder cannot be made or written to, or pyvista, which draws the pictures, is not installed.
     """
     folder = _folder(out)
+    # Found now rather than after minutes of work.
+    pyvista_module("reproduce")
     study: Study = importlib.import_module(f"papers.{paper}.study").study()
     ledger = decide(paper)
     show(ledger)
@@ -94,7 +97,7 @@ def draw(drawings: Iterable[Drawing], folder: Path, progress: Progress) -> dict[
     """Draw pictures into files of their names, some at a time; return their paths."""
     paths = {drawing.name: folder / f"{drawing.name}.png" for drawing in drawings}
     # A fresh interpreter for each worker: forking a process with threads is not safe.
-    pool = ProcessPoolExecutor(min(os.cpu_count() or 1, 4), mp_context=get_context("spawn"))
+    pool = ProcessPoolExecutor(min(os.cpu_count() or 1, 4, max(len(paths), 1)), mp_context=get_context("spawn"))
     with progress("drawing", len(paths)) as advance, pool:
         waiting = {pool.submit(drawing.draw, paths[drawing.name]): drawing.name for drawing in drawings}
         for done in as_completed(waiting):
@@ -169,4 +172,5 @@ def _folder(out: str) -> Path:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise FileError(f"{out}: cannot be made: {error.strerror or error}; give another folder") from error
+    check_output(folder / "index.html")
     return folder

@@ -118,7 +118,7 @@ def blends_table(chosen: Iterable[tuple[str, Comparison]]) -> Table:
         rows.append(tuple(map(cell, values)))
     columns = tuple(zip(_SIDE_HEAD, *rows, strict=True))
     note = "Contact is judged by the de Boor referee; gap in model units, the curvature jump relative."
-    return Table("blends", "Blends, measured", columns[0], columns[1:], note)
+    return Table("edges", "Blends, measured", columns[0], columns[1:], note)
 
 
 def text_lines(table: Table) -> list[str]:

@@ -6,12 +6,12 @@
     layout(location = 0) in vec3 position;  // 0 to 1 within the box of the model
     layout(location = 1) in float bend;     // mean curvature over its limit
     layout(location = 2) in vec3 normal;
-    uniform mat3 turn; uniform vec3 middle, box; uniform vec2 scale, shift; uniform float size;
+    uniform mat3 turn; uniform vec3 middle, box; uniform vec2 scale, shift; uniform float size, lift;
     out vec3 n, p; out float h;
     void main() {
       p = turn * (position * box - middle);
       n = turn * normal; h = bend;
-      gl_Position = vec4(p.xy * scale + shift, -p.z * 0.25, 1.0);
+      gl_Position = vec4(p.xy * scale + shift, -p.z * 0.25 - lift, 1.0);
       gl_PointSize = size;
     }`;
   const FRAGMENT = `#version 300 es
@@ -121,8 +121,6 @@
       gl.clearColor(1, 1, 1, 1);
       gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
       gl.enable(gl.DEPTH_TEST);
-      gl.enable(gl.POLYGON_OFFSET_FILL);
-      gl.polygonOffset(1, 1);
       gl.uniformMatrix3fv(at("turn"), true, pose.turn.flat());
       gl.uniform3fv(at("middle"), model.middle);
       gl.uniform2fv(at("shift"), pose.shift);
@@ -134,9 +132,11 @@
       for (const piece of pieces) {
         gl.bindVertexArray(piece.array);
         gl.uniform1i(at("mode"), MODES[mode]);
+        gl.uniform1f(at("lift"), 0);
         gl.uniform3fv(at("paint"), piece.paint);
         gl.drawElements(gl.TRIANGLES, piece.triangles, gl.UNSIGNED_INT, 0);
         gl.uniform1i(at("mode"), 3);
+        gl.uniform1f(at("lift"), 0.002);  // edges lie on top of their own surface
         gl.uniform3f(at("paint"), 0.12, 0.12, 0.12);
         gl.drawElements(gl.LINES, piece.lines, gl.UNSIGNED_INT, 4 * piece.triangles);
       }

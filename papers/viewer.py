@@ -166,8 +166,8 @@ def viewer_html(model: Model) -> str:
     limit = curvature_limit((*model.bases, model.blends[0]))
     modes = (("shaded", "shaded"), ("curvature", "mean curvature"), ("zebra", "zebra"))
     buttons = "".join(f"<button type='button' data-mode='{mode}'>{text}</button>" for mode, text in modes)
-    # `</` would end the script element.
-    data = json.dumps(packed(model), allow_nan=False).replace("</", "<\\/")
+    # No text may end the script element.
+    data = json.dumps(packed(model), allow_nan=False).replace("<", "\\u003c")
     return f"""<div class="viewer" id="view-{escape(model.name)}">
 <div class="bar"><label>blend <select>{options}</select></label><span class="modes">{buttons}</span>
 <label><input type="checkbox"> control points</label><button type="button" data-reset>reset</button></div>

@@ -2,6 +2,8 @@ import textwrap
 
 import pytest
 
+from helpers.small_report import small_results
+
 PRINTED = '''
 """A made-up paper: the sum of the first n numbers, once right and once wrong."""
 
@@ -61,10 +63,27 @@ def made_up_paper(tmp_path):
     """Return a function that writes the made-up paper, with the verdict recorded for its wrong formula."""
 
     def write(recorded="FAILS", claims=CLAIMS):
-        folder = tmp_path / "madeup"
-        folder.mkdir(exist_ok=True)
-        (folder / "printed.py").write_text(textwrap.dedent(PRINTED))
-        (folder / "claims.py").write_text(textwrap.dedent(claims).replace("Verdict.RECORDED", f"Verdict.{recorded}"))
-        return folder
+        return write_made_up_paper(tmp_path, recorded, claims)
 
     return write
+
+
+@pytest.fixture(scope="session")
+def made_up_paper_once(tmp_path_factory):
+    """Return the folder of the made-up paper, for tests that only read it."""
+    return write_made_up_paper(tmp_path_factory.mktemp("paper"))
+
+
+@pytest.fixture(scope="session")
+def small_report(made_up_paper_once, tmp_path_factory):
+    """Return what the small study came to, and what its progress was told."""
+    steps = {}
+    return small_results(made_up_paper_once, tmp_path_factory.mktemp("report"), steps), steps
+
+
+def write_made_up_paper(parent, recorded="FAILS", claims=CLAIMS):
+    folder = parent / "madeup"
+    folder.mkdir(exist_ok=True)
+    (folder / "printed.py").write_text(textwrap.dedent(PRINTED))
+    (folder / "claims.py").write_text(textwrap.dedent(claims).replace("Verdict.RECORDED", f"Verdict.{recorded}"))
+    return folder

@@ -1,0 +1,59 @@
+"""A report that takes seconds: the made-up paper, two examples, six methods, and pictures that are plain colours."""
+
+from contextlib import contextmanager
+from functools import partial
+from pathlib import Path
+
+from PIL import Image
+
+from papers.baselines.registry import method
+from papers.lin2014.findings import findings
+from papers.lin2014.section5 import example
+from papers.lin2014.study import pair, tables
+from papers.reproduction import collect
+from papers.study import Drawing, Example, Study
+from papers.verification import verify
+
+METHODS = (
+    "paper-as-printed", "paper-corrected", "semistructured-c2", "semistructured-reduced", "hartmann-inside",
+    "bloor-wilson-4",
+)  # fmt: skip
+
+
+def colored(color, size, path: Path):
+    Image.new("RGB", size, color).save(path)
+
+
+def fails(path: Path):
+    raise RuntimeError(f"cannot draw {path.name}")
+
+
+def small_study(*more: Drawing) -> Study:
+    drawings = (
+        Drawing("wide", "a wide <picture>", partial(colored, (200, 30, 30), (2400, 800))),
+        Drawing("other", "another one", partial(colored, (30, 30, 200), (300, 400))),
+        *more,
+    )
+    made = pair("made")
+    examples = (
+        Example(example(6), ("A note with <angle> brackets & more.",), ("wide",)),
+        Example(example(10)),
+        Example(made.task, made.notes),
+    )
+    return Study(examples, drawings, tables, findings, "What a reader must know.")
+
+
+@contextmanager
+def told(steps, doing, total):
+    """A progress that writes down what it is told."""
+    done = []
+    yield done.append
+    steps[doing] = (len(done), total)
+
+
+def small_results(paper: Path, folder: Path, steps=None, study=None):
+    """Decide the made-up paper in a folder and run the small study."""
+    ledger = verify(str(paper), workers=1)
+    chosen = [method(name) for name in METHODS]
+    progress = partial(told, {} if steps is None else steps)
+    return collect(ledger, study or small_study(), folder, chosen, progress, "semispline reproduce small")
