@@ -14,6 +14,8 @@ from solver.surfaces import BSplineSurface, Surface
 
 # Samples in each span: enough that the normal of a smooth cubic span turns by a few degrees between neighbours.
 _PER_SPAN = 8
+# Spans that are worked on at once.
+_SPANS_AT_ONCE = 1024
 
 
 @dataclass(frozen=True)
@@ -47,15 +49,23 @@ def measure_regularity(surface: Surface) -> Regularity:
     >>> measure_regularity(flat)
     Regularity(least_area_ratio=1.0, largest_turn_degrees=0.0, proved_area_ratio=1.0)
     """
-    u, v = (_samples(x) for x in surface.breakpoints)
-    cross = np.cross(surface.evaluate_grid(u, v, 1, 0), surface.evaluate_grid(u, v, 0, 1))
-    area = np.linalg.norm(cross, axis=2)
-    if area.min() <= 1e-14 * area.max():
-        return Regularity(0.0, 180.0, None)
-    normal = cross / area[..., None]
-    turn = max(_turn(normal[:-1], normal[1:]), _turn(normal[:, :-1], normal[:, 1:]))
-    proved = area_bound(surface) / float(area.mean())
-    return Regularity(float(area.min() / area.mean()), turn, proved if proved > 0 else None)
+    u_breaks, v_breaks = surface.breakpoints
+    u = _samples(u_breaks)
+    least, largest, total, count, turn = np.inf, 0.0, 0.0, 0, 0.0
+    # Part by part along v: a long surface has more samples than memory should hold at once.
+    for at in range(0, len(v_breaks) - 1, _SPANS_AT_ONCE):
+        v = _samples(v_breaks[at : at + _SPANS_AT_ONCE + 1])
+        cross = np.cross(surface.evaluate_grid(u, v, 1, 0), surface.evaluate_grid(u, v, 0, 1))
+        area = np.linalg.norm(cross, axis=2)
+        least, largest = min(least, float(area.min())), max(largest, float(area.max()))
+        if least <= 1e-14 * largest:
+            return Regularity(0.0, 180.0, None)
+        total, count = total + float(area.sum()), count + area.size
+        normal = cross / area[..., None]
+        turn = max(turn, _turn(normal[:-1], normal[1:]), _turn(normal[:, :-1], normal[:, 1:]))
+    mean = total / count
+    proved = area_bound(surface) / mean
+    return Regularity(least / mean, turn, proved if proved > 0 else None)
 
 
 def _turn(n1: FloatArray, n2: FloatArray) -> float:
@@ -78,11 +88,17 @@ def area_bound(surface: Surface) -> float:
     spline = surface if isinstance(surface, BSplineSurface) else surface.to_bspline()
     if spline.weights is not None:
         return -np.inf
-    p, q = spline.degree_u, spline.degree_v
     pieces = _bezier_pieces(spline)
-    widths = [np.diff(breaks) for breaks in spline.breakpoints]
-    by_u = p * np.diff(pieces, axis=2) / widths[0][:, None, None, None, None]
-    by_v = q * np.diff(pieces, axis=3) / widths[1][:, None, None, None]
+    u_widths, v_widths = (np.diff(breaks) for breaks in spline.breakpoints)
+    parts = (slice(at, at + _SPANS_AT_ONCE) for at in range(0, len(v_widths), _SPANS_AT_ONCE))
+    return min(_least_height(pieces[:, part], u_widths, v_widths[part]) for part in parts)
+
+
+def _least_height(pieces: FloatArray, u_widths: FloatArray, v_widths: FloatArray) -> float:
+    """Return the least Bernstein coefficient of (P_u x P_v) . n over pieces of these widths."""
+    p, q = pieces.shape[2] - 1, pieces.shape[3] - 1
+    by_u = p * np.diff(pieces, axis=2) / u_widths[:, None, None, None, None]
+    by_v = q * np.diff(pieces, axis=3) / v_widths[:, None, None, None]
     cross = _bernstein_cross(by_u, by_v)
     normal = cross.mean(axis=(2, 3))
     length = np.linalg.norm(normal, axis=2)
