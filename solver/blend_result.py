@@ -28,7 +28,7 @@ class BlendResult:
     alpha2, beta2 : float or None
         Of (2.1) and (2.2), the bases in their own parameters; 1 for C1 and C2, None for C0 and G0.
     alpha2_bounds, beta2_bounds : (float, float) or None
-        The admissible box; None where there is no such unknown.
+        The admissible box; None where there is no such unknown, and for method bfgs, which knows no bounds.
     active_bounds : tuple of str
         Which bounds stopped the search, such as "alpha2 lower".
     flipped : bool
@@ -45,6 +45,8 @@ class BlendResult:
         What a user should look at: folds, creases.
     iterations : int
         Of the nonlinear solver; 0 where there is none.
+    status : str or None
+        The nonlinear solver's own word on how it ended.
     kkt_residual : float or None
         Largest entry of the gradient of the Lagrangian, scaled; only for method casadi.
     certificate : Certificate or None
@@ -74,6 +76,7 @@ class BlendResult:
     regularity: Regularity
     warnings: tuple[str, ...]
     iterations: int
+    status: str | None
     kkt_residual: float | None
     certificate: Certificate | None
     proven_gap: float | None

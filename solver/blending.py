@@ -15,7 +15,7 @@ from solver.blend_result import BlendResult
 from solver.certificate import check_certificate
 from solver.closing import snapped_seam
 from solver.continuity import Contact, check_regular_edge, measure_contact
-from solver.correspondence import Correspondence, Flip, correspond
+from solver.correspondence import Correspondence, Flip, correspond, is_closed
 from solver.errors import ContactError, FoldError, OptionError
 from solver.gram import thin_plate_energy
 from solver.knots import inner_knots
@@ -31,6 +31,9 @@ Shape: TypeAlias = float | Literal["free", "natural"]
 
 # A normal that turns this far between neighbouring samples has met a fold.
 FOLD_TURN = 90.0
+# An area element this far below its mean is as good as a fold.
+PINCH = 1e-3
+_LEAST_ALPHA = 1e-100
 
 
 def blend(
@@ -137,7 +140,7 @@ def blend(
         check_certificate(found.certificate)
     seam = _seam(surface, problem)
     regularity = measure_regularity(surface)
-    warnings = _warnings(surface, regularity)
+    warnings = _warnings(surface, regularity) + _seam_warning(a, b)
     if strict and warnings:
         raise FoldError(f"{'; '.join(warnings)}; try other middle curves, alpha='natural', or without strict")
     return BlendResult(
@@ -147,8 +150,8 @@ def blend(
         energy=energy,
         alpha2=None if sides[0].order == 0 else found.a,
         beta2=None if sides[1].order == 0 else found.b,
-        alpha2_bounds=problem.bounds[0] if problem.free[0] else None,
-        beta2_bounds=problem.bounds[1] if problem.free[1] else None,
+        alpha2_bounds=problem.bounds[0] if problem.free[0] and found.bounded else None,
+        beta2_bounds=problem.bounds[1] if problem.free[1] and found.bounded else None,
         active_bounds=_active_bounds(problem, found),
         flipped=matched.flipped,
         seam_shift=matched.shift,
@@ -158,6 +161,7 @@ def blend(
         regularity=regularity,
         warnings=warnings,
         iterations=found.iterations,
+        status=found.status,
         kkt_residual=found.kkt_residual,
         certificate=found.certificate,
         proven_gap=found.proven_gap,
@@ -202,10 +206,11 @@ def state_problem(
     middle_knots: Sequence[Sequence[float]] | None = None,
 ) -> StatedProblem:
     """State the problem that `blend` solves; arguments and errors are those of `blend`."""
-    pair: tuple[Continuity, Continuity] = (continuity, continuity) if isinstance(continuity, str) else continuity
-    if len(pair) != 2:
-        raise OptionError(f"continuity: found {pair!r}, expected one of C0..G2 or a pair of them")
-    if len(box) != 2 or not 0 < box[0] <= box[1] < np.inf:
+    pair = (continuity, continuity) if isinstance(continuity, str) else continuity
+    if not isinstance(pair, tuple | list) or len(pair) != 2:
+        raise OptionError(f"continuity: found {continuity!r}, expected one of C0..G2 or a pair of them")
+    ends = box if isinstance(box, tuple | list) and all(isinstance(end, int | float) for end in box) else ()
+    if len(ends) != 2 or not 0 < ends[0] <= ends[1] < np.inf:
         raise OptionError(f"box: found {box!r}, expected (low, high) with 0 < low <= high")
     options = ProblemOptions(
         middle_curves, degree_u, _checked_shape(alpha), box, v_scale, u_knots=u_knots, middle_knots=middle_knots
@@ -231,13 +236,17 @@ class _Found:
     certificate: Certificate | None = None
     proven_gap: float | None = None
     constraint_rank: Callable[[], tuple[int, int]] | None = None
+    status: str | None = None
+    bounded: bool = True
 
 
 def _checked_shape(alpha: Shape | tuple[Shape, Shape]) -> tuple[Shape, Shape]:
     """Return "free", "natural" or alpha^2 for both sides."""
-    pair = alpha if isinstance(alpha, tuple) else (alpha, alpha)
+    pair = tuple(alpha) if isinstance(alpha, tuple | list) else (alpha, alpha)
     for value in pair:
-        if value not in ("free", "natural") and not (isinstance(value, int | float) and 0 < value < np.inf):
+        number = isinstance(value, int | float) and not isinstance(value, bool)
+        # Its square must be a number too.
+        if value not in ("free", "natural") and not (number and _LEAST_ALPHA <= float(value) <= 1 / _LEAST_ALPHA):
             raise OptionError(f"alpha: found {value!r}, expected free, natural or a positive number")
     if len(pair) != 2:
         raise OptionError(f"alpha: found {len(pair)} values, expected one or a pair")
@@ -271,11 +280,19 @@ def _shape_parameters(problem: BlendProblem, method: Method) -> _Found:
         from solver.nlp import solve_constrained
 
         local = solve_constrained(problem)
-        return _Found(local.a, local.b, method, local.iterations, local.kkt_residual, constraint_rank=local.rank)
+        return _Found(
+            local.a,
+            local.b,
+            method,
+            local.iterations,
+            local.kkt_residual,
+            constraint_rank=local.rank,
+            status=local.status,
+        )
     from solver.quasi_newton import solve_quasi_newton
 
     rough = solve_quasi_newton(problem)
-    return _Found(rough.a, rough.b, method, rough.iterations)
+    return _Found(rough.a, rough.b, method, rough.iterations, status=rough.status, bounded=False)
 
 
 def _surface(
@@ -299,7 +316,7 @@ def _active_bounds(problem: BlendProblem, found: _Found) -> tuple[str, ...]:
     for name, is_free, value, (low, high) in zip(
         ("alpha2", "beta2"), problem.free, (found.a, found.b), problem.bounds, strict=True
     ):
-        if is_free:
+        if is_free and found.bounded:
             # An interior-point method stops a little inside of a bound.
             active += [f"{name} lower"] * (value <= low * (1 + 1e-6)) + [f"{name} upper"] * (value >= high * (1 - 1e-6))
     return tuple(active)
@@ -348,12 +365,22 @@ def _warnings(surface: SemiStructuredSurface, regularity: Regularity) -> tuple[s
         found.append(
             f"the blend folds: its normal turns by {regularity.largest_turn_degrees:.0f} degrees between samples"
         )
+    elif regularity.least_area_ratio < PINCH:
+        found.append(f"the blend is pinched: its area element falls to {regularity.least_area_ratio:.1e} of the mean")
     creases = sorted({float(v) for c in surface.control_curves for v, n in _multiplicities(c) if n >= c.degree})
     if creases:
         found.append(
             f"the blend may be creased at v = {', '.join(f'{v:g}' for v in creases)}: knots of full multiplicity"
         )
     return tuple(found)
+
+
+def _seam_warning(a: Base, b: Base) -> tuple[str, ...]:
+    """Return a warning where one contact curve is closed and the other is open."""
+    if is_closed(a) == is_closed(b):
+        return ()
+    which = "a" if is_closed(a) else "b"
+    return (f"contact curve {which} is closed, the other is open: the blend is open along the seam of {which}",)
 
 
 def _multiplicities(curve: BSplineCurve) -> list[tuple[float, int]]:

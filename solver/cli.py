@@ -62,6 +62,13 @@ def blend_command(
     v_scale: Annotated[
         str, typer.Option(metavar="SCALE", help="Length of v in the energy: paper (as it is), unit or length.")
     ] = "paper",
+    u_knots: Annotated[
+        str | None, typer.Option(metavar="K1,K2,...", help="Inner knots in u, in (0, 1); uniform if left out.")
+    ] = None,
+    middle_knots: Annotated[
+        list[str] | None,
+        typer.Option(metavar="K1,K2,...", help="Inner knots of a middle curve, in v of edge A; once for each curve."),
+    ] = None,
     strict: Annotated[bool, typer.Option("--strict", help="Refuse a blend that folds or may be creased.")] = False,
     report: Annotated[str | None, typer.Option(metavar="FILE", help="JSON with energy, alpha, beta, contact.")] = None,
 ) -> None:
@@ -89,6 +96,8 @@ def blend_command(
             alpha=(_shape(alpha), _shape(alpha if alpha_b is None else alpha_b)),
             box=box,
             v_scale=cast(Any, v_scale),
+            u_knots=None if u_knots is None else _knots("--u-knots", u_knots),
+            middle_knots=[_knots("--middle-knots", text) for text in middle_knots] if middle_knots else None,
             strict=strict,
         )
     with ExitStack() as stack:
@@ -240,6 +249,7 @@ def report_record(result: BlendResult) -> dict[str, Any]:
         "warnings": list(result.warnings),
         "control_points": result.surface.n_control_points,
         "iterations": result.iterations,
+        "status": result.status,
         "kkt_residual": result.kkt_residual,
         "proven_gap": result.proven_gap,
         "constraint_rank": result.constraint_rank,
@@ -256,6 +266,13 @@ def _shape(text: str) -> Any:
         return float(text)
     except ValueError:
         return text
+
+
+def _knots(option: str, text: str) -> list[float]:
+    try:
+        return [float(part) for part in text.split(",") if part.strip()]
+    except ValueError:
+        raise OptionError(f"{option}: found {text!r}, expected numbers with commas between them") from None
 
 
 def _check_edges(edge_a: str, edge_b: str) -> None:

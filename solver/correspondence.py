@@ -93,7 +93,10 @@ def corresponding(a: Base, b: Base, matched: Correspondence, s: FloatArray) -> F
 
 
 def corresponding_samples(a: Base, b: Base, matched: Correspondence) -> tuple[FloatArray, FloatArray]:
-    """Return parameters along edge a and along edge b that correspond, in every span of both and at the ends."""
+    """Return parameters along edge a and along edge b that correspond, in every span of both and at the ends.
+
+    Where one edge is closed and starts inside the other the ends are left out: the other may have a crease there.
+    """
     start, end = a.range_along
     # Where b's knots lie on edge a: the correspondence backwards.
     b_start, b_end = b.range_along
@@ -101,7 +104,7 @@ def corresponding_samples(a: Base, b: Base, matched: Correspondence) -> tuple[Fl
     on_a = np.sort(start + (1 - t if matched.flipped else t) * (end - start))
     merged = merge_breakpoints(a.breakpoints_along(), np.concatenate([[start], on_a, [end]]))
     inside = (merged[:-1, None] + np.diff(merged)[:, None] * _FRACTIONS).ravel()
-    s_a = np.concatenate([[start], inside, [end]])
+    s_a = inside if matched.shift else np.concatenate([[start], inside, [end]])
     return s_a, corresponding(a, b, matched, s_a)
 
 

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from solver.arrays import FloatArray, finite_array
+from solver.arrays import FloatArray, finite_array, whole_number
 from solver.errors import OptionError
 from solver.gram import Basis
 from solver.knots import breakpoints, checked_knots, clamped, merge_breakpoints, uniform_knots
@@ -35,10 +35,12 @@ def blend_u_basis(degree_u: int, middle_curves: int, inner: Sequence[float] | No
     >>> blend_u_basis(3, 0).knots[4:-4]
     array([0.33333333, 0.66666667])
     """
-    if not isinstance(middle_curves, int) or not 0 <= middle_curves <= MOST_MIDDLE_CURVES:
-        raise OptionError(f"middle_curves: found {middle_curves}, expected a whole number, 0 to {MOST_MIDDLE_CURVES}")
+    middle_curves = whole_number(middle_curves, "middle_curves", 0, OptionError)
+    if middle_curves > MOST_MIDDLE_CURVES:
+        raise OptionError(f"middle_curves: found {middle_curves}, expected at most {MOST_MIDDLE_CURVES}")
+    degree_u = whole_number(degree_u, "degree_u", 1, OptionError)
     rows = 2 * ROWS_PER_SIDE + middle_curves
-    if not isinstance(degree_u, int) or not _LEAST_DEGREE <= degree_u < rows:
+    if not _LEAST_DEGREE <= degree_u < rows:
         raise OptionError(
             f"degree_u: found {degree_u}, expected {_LEAST_DEGREE} to {rows - 1} with {middle_curves} middle curve(s)"
         )
@@ -50,14 +52,21 @@ def blend_u_basis(degree_u: int, middle_curves: int, inner: Sequence[float] | No
     return Basis(degree_u, _clamped_inside(given, degree_u, 0.0, 1.0, "u_knots"))
 
 
-def middle_bases(a: Basis, b: Basis, count: int, given: Sequence[Sequence[float]] | None = None) -> list[Basis]:
+def middle_bases(
+    a: Basis, b: Basis, count: int, given: Sequence[Sequence[float]] | None = None, *, closed: bool = False
+) -> list[Basis]:
     """Return degree and knots of the middle curves: as given, else all of them by `middle_basis`.
+
+    Closed contact curves keep all knots of both: pairs would depend on where the seam is.
 
     Raises
     ------
     OptionError
         Given knots that are not one list of inner knots for each middle curve.
     """
+    if given is None and closed:
+        merged = merge_breakpoints(breakpoints(a.knots), breakpoints(b.knots))
+        return [Basis(a.degree, clamped(merged[1:-1], a.degree, merged[0], merged[-1]))] * count
     if given is None:
         return [middle_basis(a, b)] * count
     if len(given) != count:

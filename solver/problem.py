@@ -24,7 +24,7 @@ ROUNDING_CORRECTION = 1e-12
 TRUSTED_CORRECTION = 1e-8
 _MOST_REFINEMENTS = 20
 # Lengths below this fraction of the model count as zero.
-VANISHING = 1e-12
+VANISHING = 1e-10
 
 VScale: TypeAlias = Literal["paper", "unit", "length"]
 
@@ -265,7 +265,7 @@ def make_problem(a: Side, b: Side, options: ProblemOptions) -> BlendProblem:
     u = blend_u_basis(options.degree_u, options.middle_curves, options.u_knots)
     orders = [seam_order(side.along, side.rows[: side.order + 1]) for side in (a, b)]
     closed = min(orders)
-    middle = middle_bases(a.along, b.along, options.middle_curves, options.middle_knots)
+    middle = middle_bases(a.along, b.along, options.middle_curves, options.middle_knots, closed=closed >= 0)
     if closed >= 0 and options.middle_knots is None:
         middle = [with_least_size(basis, 2 * closed + 2) for basis in middle]
     rows = ((a.along,) * ROWS_PER_SIDE) + tuple(middle) + ((b.along,) * ROWS_PER_SIDE)

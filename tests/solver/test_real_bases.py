@@ -256,3 +256,46 @@ def test_a_degenerate_corner_does_not_stop_parametric_contact():
         assert result.contact_a.gap < 1e-14
     with pytest.raises(EdgeError, match="edge u0: no normal"):
         blend(a, b, continuity="G1")
+
+
+def square_tube(size, heights, corner=0):
+    """Degree 1 along v, closed, creased at its corners; the seam is at one of them."""
+    corners = np.array([(1, 0), (0, 1), (-1, 0), (0, -1)], dtype=float)
+    ring = np.roll(corners, -corner, axis=0)
+    ring = size * np.vstack([ring, ring[:1]])
+    rows = [np.column_stack([ring, np.full(5, z)]) for z in np.linspace(*heights, 4)]
+    return BSplineSurface(3, 1, [0, 0, 0, 0, 1, 1, 1, 1], [0, 0, 0.25, 0.5, 0.75, 1, 1], np.array(rows))
+
+
+@pytest.mark.parametrize("corner", [0, 1, 2])
+def test_closed_and_creased(corner):
+    a, b = square_tube(1.0, (0.0, 1.0)), square_tube(0.7, (-1.5, -2.5), corner)
+    result = blend(Base(a, "u0"), Base(b, "u0"))
+    assert result.contact_b.angle_degrees < 1e-9
+    # The tube has corners of 90 degrees, also at its seam; the blend has no others.
+    assert result.regularity.largest_turn_degrees < 120
+    assert result.seam.gap < 1e-13
+
+
+@pytest.mark.parametrize("v_scale", ["unit", "length"])
+@pytest.mark.parametrize("seam", [0.1, 0.4])
+def test_order_of_closed_bases_does_not_matter(v_scale, seam):
+    a = Base(cylinder(8, 1.0, (0.0, 1.0)), "u0")
+    b = Base(cylinder(6, 0.7, (-1.5, -2.5), seam=seam), "u0")
+    one, other = blend(a, b, v_scale=v_scale), blend(b, a, v_scale=v_scale)
+    # A shift is moved onto a knot within 1e-4 of the domain; what remains of the energy is of second order in it.
+    energies = [thin_plate_energy(map_domain(r.surface, v_range=(0.0, 1.0))) for r in (one, other)]
+    assert energies[0] == pytest.approx(energies[1], rel=1e-7)
+
+
+def test_a_closed_and_an_open_contact_curve_are_warned_of():
+    a, b = cylinder(7, 1.0, (0.0, 1.0)), patch(np.random.default_rng(0), degrees=(3, 3), counts=(4, 7))
+    b = BSplineSurface(3, 3, b.knots_u, b.knots_v, b.control_points + np.array([0, 0, -3.0]))
+    assert any("closed, the other is open" in w for w in blend(Base(a, "u0"), Base(b, "u0")).warnings)
+
+
+def test_a_pinched_blend_is_warned_of():
+    k = [0, 0, 1, 1]
+    a = BSplineSurface(1, 1, k, k, [[[0, 0, 0], [0, 1, 0]], [[1, 0, 0], [1, 1, 0]]])
+    b = BSplineSurface(1, 1, k, k, [[[3, 0, 0.5], [3, 1, 0.5]], [[4, 0, 0.5], [4, 1, 0.5]]])
+    assert any("pinched" in w for w in blend(Base(a, "u1"), Base(b, "u0"), alpha=0.02).warnings)
