@@ -24,12 +24,11 @@ from numpy.typing import ArrayLike
 from solver.arrays import FloatArray, finite_array, real_array, real_number, rebuilt, require
 from solver.errors import ControlPointError, InputError, OptionError
 from solver.knots import clamped
+from solver.outline import crossing_sides, signed_area
 from solver.surfaces import BSplineCurve, BSplineSurface, SemiStructuredSurface, Surface
 
 # Ends of neighbouring sides of a hole may differ by this fraction of the domain: rounding of decimal input.
 CORNER_TOLERANCE = 1e-12
-# Points per side at which the outline of a hole is tested for crossing itself.
-OUTLINE_SAMPLES = 64
 
 
 @dataclass(frozen=True, eq=False)
@@ -130,7 +129,9 @@ def divide_bezier(
     lower, upper : SemiStructuredSurface
         The parts with smaller and with larger v (or u). The first parameter runs across in [0, 1], the second one
         along the cut, in the patch's own parameter. Curve s has degree m + s k in `lower`, m + (n - s) k in `upper`
-        (n + s k and so on where u is divided).
+        (n + s k and so on where u is divided). Since the first parameter runs across, a part of a cut along
+        v = f(u) has its two parameters exchanged: its normal P_u x P_v is opposite to that of the patch (one of a cut
+        along u = f(v) keeps it).
 
     Raises
     ------
@@ -179,13 +180,15 @@ def trim_bezier(
     dict
         ``left``, ``right``, ``bottom``, ``top``: `SemiStructuredSurface`, parameters as in `divide_bezier`, the second
         one over the interval of that side. ``lower left``, ``lower right``, ``upper right``, ``upper left``:
-        `BSplineSurface`, in the parameters of the patch. Neighbours share their edges.
+        `BSplineSurface`, in the parameters of the patch. Neighbours share their edges. The normals of
+        ``bottom`` and ``top`` are opposite to those of the patch, the other six keep them.
 
     Raises
     ------
     InputError
         The patch is rational or has inner knots; a side leaves the domain or touches its boundary; two sides do not
-        meet in their corner; the outline of the hole crosses itself (tested at 64 points per side).
+        meet in their corner; two sides cross, touch, or leave their
+        corner in one direction (decided by subdivision, not by samples); the outline is inside out.
 
     Source: Fig. 3 of the paper; the tiling is proved in `derivations.trimming`.
 
@@ -321,13 +324,15 @@ def _check_outline(
     patch: BSplineSurface, left: BezierFunction, right: BezierFunction, bottom: BezierFunction, top: BezierFunction
 ) -> None:
     """Refuse a hole whose sides do not meet in the corners or cross each other."""
-    (u0, u1), (v0, v1) = patch.domain
-    size = np.array([u1 - u0, v1 - v0])
+    low, high = np.array(patch.domain).T
+    size = high - low
 
     def outline(side: BezierFunction, axis: int) -> FloatArray:
-        t = np.linspace(side.start, side.end, OUTLINE_SAMPLES)
-        points = (t, side.evaluate(t)) if axis == 0 else (side.evaluate(t), t)
-        return np.asarray(np.stack(points, axis=1) / size)
+        """Control points in the unit square; a graph over `axis`."""
+        values = side.coefficients if len(side.coefficients) > 1 else np.repeat(side.coefficients, 2)
+        along = np.linspace(side.start, side.end, len(values))
+        points = (along, values) if axis == 0 else (values, along)
+        return np.asarray((np.stack(points, axis=1) - low) / size)
 
     # Counterclockwise; each side ends where the next one starts.
     sides = {
@@ -338,33 +343,17 @@ def _check_outline(
     }
     names = list(sides)
     for one, other in zip(names, names[1:] + names[:1], strict=True):
-        end, start = sides[one][-1] * size, sides[other][0] * size
-        if (np.abs(end - start) > CORNER_TOLERANCE * size).any():
-            raise InputError(
-                f"{one}, {other}: found ends at {tuple(map(float, end))} and {tuple(map(float, start))} "
-                "in (u, v), expected one common corner"
-            )
-    polygon = np.concatenate([side[:-1] for side in sides.values()])
-    if _crosses_itself(polygon) or _signed_area(polygon) <= 0:
-        raise InputError("left, right, bottom, top: the outline of the hole crosses itself, expected a simple loop")
-
-
-def _signed_area(polygon: FloatArray) -> float:
-    x, y = polygon.T
-    return float(np.sum(x * np.roll(y, -1) - y * np.roll(x, -1)) / 2)
-
-
-def _crosses_itself(polygon: FloatArray) -> bool:
-    """Tell whether two segments of a closed polygon cross properly."""
-    start, end = polygon, np.roll(polygon, -1, axis=0)
-
-    def turn(a: FloatArray, b: FloatArray, c: FloatArray) -> FloatArray:
-        d, e = b - a, c - a
-        return np.asarray(d[..., 0] * e[..., 1] - d[..., 1] * e[..., 0])
-
-    a, b = start[:, None], end[:, None]
-    # Signed areas of segment i with both ends of segment j. A proper crossing separates the ends both ways; areas
-    # below 1e-14 of the unit square are rounding on segments in line with each other.
-    one, other = turn(a, b, start[None]), turn(a, b, end[None])
-    separated = (one * other < 0) & (np.minimum(np.abs(one), np.abs(other)) > 1e-14)
-    return bool(np.any(separated & separated.T))
+        end, start = sides[one][-1], sides[other][0]
+        if (np.abs(end - start) > CORNER_TOLERANCE).any():
+            found = [tuple((low + x * size).round(12).tolist()) for x in (end, start)]
+            raise InputError(f"{one}, {other}: found ends at {found[0]} and {found[1]} in (u, v), expected one corner")
+    crossing = crossing_sides(sides)
+    if crossing:
+        raise InputError(
+            f"{crossing[0]}, {crossing[1]}: they cross or touch outside a common corner, expected a hole whose outline "
+            "is a simple loop with no angle of 0"
+        )
+    if signed_area(sides) <= 0:
+        raise InputError(
+            "left, right, bottom, top: found the outline inside out, expected left and bottom below the others"
+        )

@@ -214,7 +214,7 @@ curved = BezierFunction([0.4, 0.99, 0.99, 0.2], 0.3, 0.8)
             InputError,
             "inner knots",
         ),
-        (lambda: trim_bezier(patch, **(SIDES | {"bottom": curved})), InputError, "crosses itself"),
+        (lambda: trim_bezier(patch, **(SIDES | {"bottom": curved})), InputError, "bottom, top: they cross or touch"),
         (
             lambda: trim_bezier(patch, **(SIDES | {"left": BezierFunction([0.3, 0.1, 0.26], 0.4, 0.6)})),
             InputError,
