@@ -10,6 +10,8 @@ Discrete B-splines and subdivision techniques, 1980 (the Oslo algorithm).
 
 from __future__ import annotations
 
+from bisect import bisect_left
+
 import numpy as np
 import scipy.sparse as sp
 from numpy.typing import ArrayLike, NDArray
@@ -282,19 +284,25 @@ def with_knots(degree: int, knots: FloatArray, more: FloatArray, name: str) -> F
     >>> with_knots(2, np.array([0, 0, 0, 1, 1, 1.0]), np.array([0.5, 0.5]), "knots")
     array([0. , 0. , 0. , 0.5, 0.5, 1. , 1. , 1. ])
     """
-    # A value may also mean one inserted before it, to the same tolerance; the ends stay first and last for `snapped`.
-    known, inserted = knots, np.empty(len(more))
+    # A value may also mean one inserted before it, to the same tolerance.
+    tolerance = MERGE_TOLERANCE * float(knots[-1] - knots[0])
+    known, inserted = np.unique(knots).tolist(), np.array(more, dtype=np.float64)
     for i, value in enumerate(more.tolist()):
-        inserted[i] = snapped(value, known)
-        known = np.insert(known, 1, inserted[i])
+        at = bisect_left(known, value)
+        nearest = min(known[max(at - 1, 0) : at + 1], key=lambda knot: abs(knot - value))
+        if abs(nearest - value) <= tolerance:
+            inserted[i] = nearest
+        else:
+            known.insert(at, value)
     outside = ~((inserted > knots[0]) & (inserted < knots[-1]))
     if outside.any():
         i = int(np.argmax(outside))
         raise KnotError(f"{name}[{i}]: found {more[i]}, expected a value inside ({knots[0]}, {knots[-1]})")
     refined = np.sort(np.concatenate([knots, inserted]))
-    for value in np.unique(inserted).tolist():
-        total = int(np.count_nonzero(refined == value))
-        if total > degree:
-            i = int(np.argmax(inserted == value))
-            raise KnotError(f"{name}[{i}]: knot {value} would have multiplicity {total}, expected at most {degree}")
+    values, counts = np.unique(refined, return_counts=True)
+    total = counts[np.searchsorted(values, inserted)]
+    if (total > degree).any():
+        value = float(inserted[total > degree].min())
+        i = int(np.argmax(inserted == value))
+        raise KnotError(f"{name}[{i}]: knot {value} would have multiplicity {total[i]}, expected at most {degree}")
     return refined
