@@ -8,13 +8,14 @@ from html import escape
 from math import ceil, floor, log10
 
 from papers.baselines.comparison import Comparison
-from papers.tables import cell, reached
+from papers.tables import reached
 
 _WIDTH, _HEIGHT = 640, 300
 _LEFT, _RIGHT, _TOP, _BOTTOM = 70, 20, 14, 44
 _COLORS = {"G2": "#2b7a3b", "G1": "#d99a00", "G0": "#b5651d", "none": "#b03a2e"}
 # Methods closer than this on paper share a mark.
 _NEAR = 15.0
+_TICKS = 7
 
 
 @dataclass
@@ -56,15 +57,11 @@ def energy_chart(comparisons: Sequence[Comparison]) -> str:
     for value in upwards.ticks():
         y = upwards.place(value)
         parts.append(f"<line x1='{_LEFT}' x2='{_WIDTH - _RIGHT}' y1='{y:.1f}' y2='{y:.1f}' class='grid'/>")
-        parts.append(f"<text x='{_LEFT - 6}' y='{y + 4:.1f}' text-anchor='end'>{cell(value)}</text>")
+        parts.append(f"<text x='{_LEFT - 6}' y='{y + 4:.1f}' text-anchor='end'>{_round(value)}</text>")
     for mark in marks:
         label = ", ".join(map(str, mark.numbers))
         parts.append(f"<circle cx='{mark.x:.1f}' cy='{mark.y:.1f}' r='5' fill='{mark.color}'/>")
-        end = mark.x > _WIDTH - 120
-        anchor, dx = ("end", -8) if end else ("start", 8)
-        parts.append(
-            f"<text x='{mark.x + dx:.1f}' y='{mark.y + 4:.1f}' text-anchor='{anchor}' class='mark'>{label}</text>"
-        )
+        parts.append(f"<text {_beside(mark)} class='mark'>{label}</text>")
     parts.append(
         f"<text x='{(_LEFT + _WIDTH - _RIGHT) / 2}' y='{_HEIGHT - 8}' text-anchor='middle'>control points</text>"
     )
@@ -74,6 +71,20 @@ def energy_chart(comparisons: Sequence[Comparison]) -> str:
     )
     title = escape(f"Energy against control points: {comparisons[0].task.title}")
     return f"<svg viewBox='0 0 {_WIDTH} {_HEIGHT}' role='img' aria-label='{title}' class='chart'>{''.join(parts)}</svg>"
+
+
+def _beside(mark: _Mark) -> str:
+    """Return where the numbers of a mark stand: on its right, above where they are many, left near the border."""
+    if len(mark.numbers) > 2:
+        return f"x='{mark.x - 5:.1f}' y='{mark.y - 9:.1f}' text-anchor='start'"
+    if mark.x > _WIDTH - 120:
+        return f"x='{mark.x - 8:.1f}' y='{mark.y + 4:.1f}' text-anchor='end'"
+    return f"x='{mark.x + 8:.1f}' y='{mark.y + 4:.1f}' text-anchor='start'"
+
+
+def _round(value: float) -> str:
+    """Return a tick in few letters: 1.5e6 rather than 1500000."""
+    return f"{value:.3g}".replace("e+0", "e")
 
 
 class _Axis:
@@ -94,7 +105,7 @@ class _Axis:
             powers = range(floor(self.low), ceil(self.high) + 1)
             found = [s * 10.0**k for k in powers for s in steps if self.low <= log10(s * 10.0**k) <= self.high]
             if len(found) >= 3:
-                return found[:: max(1, len(found) // 6)]
+                return found[:: -(-len(found) // _TICKS)]
         return []
 
 

@@ -16,7 +16,7 @@ from papers.baselines.comparison import Comparison
 from papers.baselines.contacts import oriented_bases
 from papers.chart import LEGEND, energy_chart
 from papers.ledger import Verdict
-from papers.report import counts_text, ledger_html
+from papers.report import ledger_html
 from papers.study import Comparisons, Example, Finding, Study, Table
 from papers.tables import METHODS_NOTE, cell, methods_table, reached
 from papers.verification import Ledger
@@ -183,12 +183,9 @@ def _inlined(path: Path) -> tuple[str, int, int]:
 
 
 def _made(results: Results) -> str:
-    rows = "".join(
-        f"<tr><th>{escape(name)}</th><td>{escape(text)}</td></tr>" for name, text in results.environment.items()
-    )
-    return f"""<p>{escape(counts_text(results.ledger))}</p>
-<p>To repeat it: <code>{escape(results.command)}</code>, or <code>make report</code> in a checkout, which installs the
-exact versions of <code>constraints.txt</code> first. No random number is drawn anywhere in this run, so there is no
-seed to set; numbers are the same at every run on one machine, times aside. <code>numbers.json</code> and
+    versions = "".join(f"<li>{escape(name)} <b>{escape(text)}</b></li>" for name, text in results.environment.items())
+    return f"""<p>To repeat it: <code>{escape(results.command)}</code>, or <code>make report</code> in a checkout, which
+installs the exact versions of <code>constraints.txt</code> first. No random number is drawn anywhere in this run, so
+there is no seed to set; numbers are the same at every run on one machine, times aside. <code>numbers.json</code> and
 <code>report.md</code> beside this page hold all of them, and the pictures for print.</p>
-<div class="scroll"><table>{rows}</table></div>"""
+<ul class="versions">{versions}</ul>"""
