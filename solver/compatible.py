@@ -176,7 +176,8 @@ def _change(curve: BSplineCurve, other: BSplineCurve) -> float:
 def combined_curves(curves: Sequence[BSplineCurve], matrix: SparseMatrix) -> tuple[BSplineCurve, ...]:
     """Return one curve for each row of a sparse matrix: the linear combination of the curves with its weights.
 
-    Each result has the knots of the curves that take part in it, and no others.
+    Each result has the knots of the curves that take part in it, and no others; those of different curves within 1e-12
+    of the domain are one.
     """
     result = []
     for i in range(matrix.shape[0]):

@@ -7,6 +7,10 @@ Degenerate points (P_u x P_v vanishes: a pole, a collapsed edge, a cusp) have no
 the normal and every curvature are NaN, without a warning; `first_form` is still given. Nothing is replaced by a
 neighbouring value.
 
+Next to such points digits are lost, and `regular` does not say so. Where P_u has the fraction r of its size elsewhere
+(a pole at distance r), its direction is known to some 1e-16 / r and curvatures to some 1e-16 / r^2 of themselves, or
+1e-15 / r^2 for rational surfaces: on a sphere five digits remain at r = 1e-5, none at r = 3e-8.
+
 Source: M. do Carmo, Differential Geometry of Curves and Surfaces, ch. 2 and 3.
 """
 
@@ -26,6 +30,8 @@ from solver.surfaces import BSplineSurface, SemiStructuredSurface, Surface
 # A tangent shorter than this fraction of (extent of the surface / length of the parameter range), or an angle between
 # the two tangents below it, counts as zero: some thousand times the rounding of a derivative.
 DEGENERATE = 1e-12
+# Principal curvatures closer than this fraction of the greater are one.
+UMBILIC = 1e-10
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,10 +84,14 @@ class LocalGeometry:
     def principal_directions(self) -> FloatArray:
         """Unit tangent vectors of the principal curvatures, in their order, shape (..., 2, 3).
 
-        At an umbilic point, where every direction is one, the first is that of P_u.
+        At an umbilic point, where every direction is one, the first is that of P_u. A point is umbilic where the two
+        curvatures differ by less than 1e-10 of the greater; next to degenerate points rounding may exceed that.
         """
         s = self._orthonormal_form
-        angle = 0.5 * np.arctan2(2 * s[..., 0, 1], s[..., 0, 0] - s[..., 1, 1])[..., None]
+        twist, spread = 2 * s[..., 0, 1], s[..., 0, 0] - s[..., 1, 1]
+        # Rounding alone must not choose a direction; NaN stays.
+        umbilic = np.hypot(twist, spread) <= UMBILIC * np.abs(s).max(axis=(-2, -1))
+        angle = np.where(umbilic, 0.0, 0.5 * np.arctan2(twist, spread))[..., None]
         e1, e2 = self._frame
         return np.stack([np.cos(angle) * e1 + np.sin(angle) * e2, np.cos(angle) * e2 - np.sin(angle) * e1], axis=-2)
 

@@ -1,7 +1,8 @@
 """Derivatives of surfaces as surfaces: exact, over the fewest knots, refused where they do not exist.
 
 A u-derivative of a semi-structured surface takes differences of neighbouring rows, so it is semi-structured again:
-row i of the du-th derivative combines the rows i .. i + du and needs the union of their knots, no others.
+row i of the du-th derivative combines the rows i .. i + du and needs the union of their knots, no others. Knots of
+different rows that are closer than 1e-12 of the v-domain become one there (`convert_to_bspline` reports such a change).
 
 Orders are taken one by one, and each must be continuous: where the first derivative jumps there is no second one, even
 if its two sides agree. A mixed derivative may be taken v first or u first; it is refused if neither way exists.

@@ -1,6 +1,9 @@
 """Exact operations on whole surfaces: reversal, swapping, affine maps, knots, degree, splitting, bounds.
 
-Every result is the same surface (or its image) in another form; nothing is approximated beyond rounding.
+Every result is the same surface (or its image) in another form; nothing is approximated beyond rounding. Where rows of
+a semi-structured surface are combined (elevation in u, knots in u, split_u), those knots of different rows that are
+closer than 1e-12 of the v-domain become one: points move by no more than 1e-12 of the v-domain times the largest
+v-derivative, and `convert_to_bspline` reports such a change.
 """
 
 from __future__ import annotations
@@ -178,7 +181,7 @@ def elevate_degree(surface: S, degree_u: int | None = None, degree_v: int | None
     """Return the same surface with higher degrees; None keeps one.
 
     Exact for inner knots of any multiplicity, and for rational surfaces. In a semi-structured surface each v-control
-    curve is raised to `degree_v`.
+    curve is raised to `degree_v`; `degree_u` combines rows, whose knots within 1e-12 of the v-domain become one.
 
     Raises
     ------
@@ -207,7 +210,8 @@ def insert_knots(surface: S, knots_u: ArrayLike = (), knots_v: ArrayLike = ()) -
     """Return the same surface with knots inserted; a knot is repeated to insert it several times.
 
     A value within 1e-12 of the domain of a knot means that knot. In a semi-structured surface `knots_v` go into every
-    curve (`insert_curve_knots` and `SemiStructuredSurface.insert_knot` change one alone).
+    curve (`insert_curve_knots` and `SemiStructuredSurface.insert_knot` change one alone); `knots_u` combine rows, whose
+    knots within 1e-12 of the v-domain become one.
 
     Raises
     ------
@@ -241,7 +245,8 @@ def insert_knots(surface: S, knots_u: ArrayLike = (), knots_v: ArrayLike = ()) -
 def split_u(surface: S, u: float) -> tuple[S, S]:
     """Return the two pieces below and above u, each over its own part of the domain.
 
-    A value within 1e-12 of the domain of a knot means that knot.
+    A value within 1e-12 of the domain of a knot means that knot. Rows of a semi-structured surface are combined; their
+    knots within 1e-12 of the v-domain become one.
 
     Raises
     ------

@@ -182,3 +182,16 @@ LINE = BSplineCurve(1, UNIT, [[2, 0, 0], [2, 0, 5]])
 def test_input_that_makes_no_surface_is_refused(call, error, message):
     with pytest.raises(error, match=message):
         call()
+
+
+@pytest.mark.parametrize("far", [1e3, 1e6])
+def test_the_stated_error_holds_far_from_the_origin(far):
+    curve = BSplineCurve(2, ARC.knots, ARC.control_points + far)
+    result = revolve_polynomial(curve, [far, far, far], [0, 0, 1], 90.0, 1e-12)
+    u, v = (x.ravel() for x in np.meshgrid(np.linspace(0, 1, 300), np.linspace(0, 1, 5)))
+    profile, turn = on_curve(ARC, v), np.radians(90) * u
+    exact = np.column_stack([profile[:, 0] * np.cos(turn), profile[:, 0] * np.sin(turn), profile[:, 2]])
+    # The profile itself is rounded where it is shifted: half an eps of its coordinates, for three of them.
+    off = np.linalg.norm(surface_points(result.surface, u, v) - far - exact, axis=1).max()
+    assert off <= result.error
+    assert result.error <= 1e-12 + 100 * np.finfo(float).eps * far

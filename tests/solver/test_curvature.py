@@ -249,3 +249,41 @@ def test_a_semistructured_sphere_like_patch_is_measured_directly():
     surface = SemiStructuredSurface(3, [0, 0, 0, 0, 1, 1, 1, 1], curves)
     u, v = points()
     close(mean_curvature(surface, u, v), mean_curvature(surface.to_bspline(), u, v))
+
+
+@pytest.mark.parametrize("surface", [octant(3.0), octant(1e-3), turned([(2 * a, 2 * b, w) for a, b, w in QUARTER])])
+def test_at_umbilics_the_first_direction_is_that_of_the_first_tangent(surface):
+    u, v = points(200, below=0.95)
+    geometry = local_geometry(surface, u, v)
+    along = geometry.tangent_u / np.linalg.norm(geometry.tangent_u, axis=1)[:, None]
+    assert np.abs(geometry.principal_directions[:, 0] - along).max() <= 1e-15
+
+
+def test_a_point_that_is_nearly_umbilic_has_its_own_directions():
+    # Curvatures 2 and 2 + 4e-6 at the origin, the greater along y, P_u along x.
+    x, y = np.meshgrid([-1, 0, 1], [-1, 0, 1], indexing="ij")
+    square = np.array([1, -1, 1])
+    surface = BSplineSurface(2, 2, BEZIER_2, BEZIER_2, np.dstack([x, y, square[:, None] + (1 + 2e-6) * square[None]]))
+    directions = local_geometry(surface, [0.5], [0.5]).principal_directions[0]
+    assert np.abs(np.abs(directions) - [[0, 1, 0], [1, 0, 0]]).max() <= 1e-9
+
+
+@pytest.mark.parametrize("away", [1e-2, 1e-4, 1e-6])
+def test_the_digits_lost_next_to_a_pole_are_those_that_are_stated(away):
+    u = np.linspace(0.05, 0.95, 40)
+    geometry = local_geometry(octant(1.0), u, [1 - away])
+    assert geometry.regular.all()
+    error = np.abs(np.abs(geometry.mean) - 1).max()
+    # "Some" 1e-15 / r^2: within a factor of ten, and lost indeed.
+    assert error <= 1e-14 / away**2
+    assert error > 1e-20 / away**2
+
+
+@pytest.mark.parametrize(("width", "regular"), [(1e-13, False), (1e-11, True)])
+def test_the_limit_of_degenerate_points(width, regular):
+    # A strip of extent 1 over the unit square: |P_u| is its width; and two tangents at that angle.
+    strip = [[[0, 0, 0], [0, 1, 0]], [[width, 0, 0], [width, 1, 0]]]
+    slanted = [[[0, 0, 0], [0, 1, 0]], [[width, 1, 0], [width, 2, 0]]]
+    for net in (strip, slanted):
+        surface = BSplineSurface(1, 1, BEZIER_1, BEZIER_1, net)
+        assert local_geometry(surface, [0.5], [0.5]).regular.tolist() == [regular]

@@ -117,3 +117,40 @@ def test_a_knot_next_to_an_end_becomes_the_end_on_conversion(near):
         assert near in convert_to_bspline(surface, tolerance).surface.knots_v
     wide = convert_to_bspline(between([1e-3], [0.5]), 0.01)
     assert wide.surface.knots_v[4:-4].tolist() == [1e-3, 0.5]
+
+
+@pytest.mark.parametrize("tolerance", [1e-4, 1e-7])
+def test_removal_is_decided_within_a_factor_of_three_of_the_tolerance(tolerance):
+    smooth = set_curve_continuity(curve_over([0.2, 0.8]), 0.5, 0)
+    extent = np.ptp(smooth.control_points, axis=0).max()
+    at = int(np.argmin(np.linalg.norm(smooth.control_points - smooth.evaluate([0.5]), axis=1)))
+    # How far the point at the crease is from its place on the nearest smooth curve, when raised by 1: by least squares
+    # over the ones that refining the smooth curve reaches, all of them here.
+    kept = curve_over([0.2, 0.8])
+    rise = np.zeros(len(smooth.control_points))
+    rise[at] = 1.0
+    columns = []
+    for i in range(len(kept.control_points)):
+        unit = BSplineCurve(3, kept.knots, np.eye(len(kept.control_points))[i][:, None] * [0, 0, 1.0])
+        columns.append(insert_curve_knots(unit, [0.5] * 3).control_points[:, 2])
+    matrix = np.column_stack(columns)
+    free = [i for i in range(matrix.shape[1]) if np.count_nonzero(matrix[:, i]) > 1]
+    miss = np.abs(matrix[:, free] @ np.linalg.lstsq(matrix[:, free], rise, rcond=None)[0] - rise).max()
+    for share, fits in ((0.5, True), (2.0, False)):
+        height = share * tolerance * extent / miss
+        creased = BSplineCurve(3, smooth.knots, smooth.control_points + np.outer(rise, [0, 0, height]))
+        if fits:
+            assert inner(set_curve_continuity(creased, 0.5, 3, tolerance)) == [0.2, 0.8]
+        else:
+            with pytest.raises(KnotError, match="would move by"):
+                set_curve_continuity(creased, 0.5, 3, tolerance)
+
+
+@pytest.mark.parametrize("degree", [1, 3])
+def test_the_bound_of_a_merged_knot_is_met_within_a_factor_of_ten(degree):
+    rows = [curve_over([0.3], degree, 0), curve_over([0.31], degree, 1)]
+    surface = SemiStructuredSurface(1, UNIT, rows)
+    conversion = convert_to_bspline(surface, 0.02)
+    u, v = np.ones(4000), np.linspace(0, 1, 4000)
+    moved = np.linalg.norm(surface_points(conversion.surface, u, v) - surface_points(surface, u, v), axis=1).max()
+    assert moved <= conversion.change <= 10 * moved
