@@ -57,6 +57,9 @@ def test_pieces_of_a_curve_leave_no_sliver(degree):
     curve = curve_over([*[0.3] * degree, *[near] * degree, 0.6], degree)
     low, high = split_curve(curve, 0.3)
     assert (inner(low), inner(high)) == ([], [0.6])
+    for side in (-1, 1):
+        low, high = split_curve(curve, np.nextafter(0.6, side * np.inf))
+        assert (low.knots[-1], high.knots[0]) == (0.6, 0.6)
     # Farther than the tolerance, a knot stays.
     assert inner(restrict_curve(curve, 0.3 - 2e-12, 1.0)) == inner(curve)
     assert inner(restrict_curve(curve, 0.0, 0.3 - 0.9e-12)) == []
