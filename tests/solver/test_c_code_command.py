@@ -14,7 +14,7 @@ from solver.io.json_files import StoredProblem, write_json_surface, write_proble
 
 K = [0.0, 0.0, 1.0, 1.0]
 FLOOR = BSplineSurface(1, 1, K, K, [[[0, 0, 0], [0, 1, 0]], [[1, 0, 0], [1, 1, 0]]])
-RATIONAL = BSplineSurface(1, 1, K, K, FLOOR.control_points, np.ones((2, 2)))
+RATIONAL = BSplineSurface(1, 1, K, K, FLOOR.control_points, [[1, 2], [1, 1]])
 FILES = ["README.md", "blend.c", "blend.h"]
 
 
