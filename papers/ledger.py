@@ -184,17 +184,21 @@ class Counterexample:
         What the claim gives there, and what is true.
     own : str
         The smallest instance within the paper's own setting, where that is another one.
+    also : str
+        One more instance.
     """
 
     values: tuple[tuple[str, str], ...]
     printed: str
     true: str
     own: str = ""
+    also: str = ""
 
     def __str__(self) -> str:
         where = ", ".join(f"{name} = {value}" for name, value in self.values)
         also = f"; in the paper's own setting {self.own}" if self.own else ""
-        return f"{where}: printed {self.printed}, true {self.true}{also}"
+        more = f"; {self.also}" if self.also else ""
+        return f"{where}: printed {self.printed}, true {self.true}{also}{more}"
 
 
 @dataclass(frozen=True)
@@ -287,6 +291,25 @@ class Paper:
             if claim.id == identifier:
                 return claim
         raise LedgerError(f"claim: found {identifier!r}, expected one of {', '.join(c.id for c in self.claims)}")
+
+
+def decided_cases(check: Check, formula: Formula | None) -> Iterator[Case]:
+    """Yield the cases of a check, and refuse an answer that contradicts itself.
+
+    Raises
+    ------
+    CheckFailedError
+        A case is neither true nor false, is true and leaves a residual, or is false and leaves none.
+    """
+    for case in check.cases(formula):
+        if not isinstance(case.true, bool):
+            raise CheckFailedError(f"no answer for {case.label}: found {case.true!r}, expected True or False")
+        if case.residual is not None and case.true != bool(case.residual == 0):
+            raise CheckFailedError(
+                f"{case.label}: found {case.true} with residual {case.residual}, expected True with 0 or none, False "
+                "with one that is not 0"
+            )
+        yield case
 
 
 def paper_names() -> list[str]:
@@ -418,3 +441,5 @@ def _missing_evidence(claim: Claim) -> Iterator[str]:
             yield f"fails without {', '.join(missing)}"
         if claim.correction and not claim.correction.parts:
             yield "fails with a correction that has no proof"
+        if claim.correction and not claim.correction.statement.strip():
+            yield "fails with a correction that says nothing, expected what is true instead"

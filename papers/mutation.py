@@ -6,6 +6,7 @@ that does not is listed with the written reason why it says the same as the form
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import pairwise, zip_longest
@@ -14,7 +15,7 @@ from typing import Any
 import sympy as sp
 from sympy.core.function import AppliedUndef
 
-from papers.ledger import Case, Formula, Part
+from papers.ledger import Case, Formula, Part, decided_cases
 
 
 @dataclass(frozen=True)
@@ -47,11 +48,14 @@ class MutationResult:
         All mutants, and the survivors with a written reason.
     survivors : tuple of str
         Mutants that the check did not notice and that nobody explained.
+    undefined : int
+        Mutants that were noticed since they divide by zero.
     """
 
     tried: int
     explained: int
     survivors: tuple[str, ...]
+    undefined: int = 0
 
 
 def mutants(formula: Formula) -> list[Mutant]:
@@ -80,28 +84,42 @@ def mutants(formula: Formula) -> list[Mutant]:
 
 
 def try_mutants(part: Part) -> MutationResult:
-    """Try every mutant of a part's formula against the part's own check."""
+    """Try every mutant of a part's formula against the part's own check.
+
+    A probe only saves time: of the mutants that it tells apart, the first ones of each kind are put to the check too.
+    """
     formula = part.formula
     if formula is None:
         return MutationResult(0, 0, ())
     check = part.check
     original: list[Case] | None = None
     probed = check.probe(formula) if check.probe else None
-    tried, explained, survivors = 0, 0, []
+    tried, explained, undefined, survivors = 0, 0, 0, []
+    probed_of_kind: Counter[str] = Counter()
     for mutant in mutants(formula):
         tried += 1
         changed = Formula(mutant.relation, formula.variables, formula.assumptions)
-        if check.probe and check.probe(changed) != probed:
-            continue
-        if original is None:
-            original = list(check.cases(formula))
-        if _differs(original, check.cases(changed)):
+        try:
+            if check.probe and check.probe(changed) != probed:
+                probed_of_kind[mutant.kind] += 1
+                if probed_of_kind[mutant.kind] > _PROBED_AND_CHECKED:
+                    continue
+            if original is None:
+                original = list(decided_cases(check, formula))
+            if _differs(original, decided_cases(check, changed)):
+                continue
+        except ZeroDivisionError:
+            undefined += 1
             continue
         if mutant.text in formula.equivalent:
             explained += 1
         else:
             survivors.append(f"{mutant.kind}: {mutant.text}")
-    return MutationResult(tried, explained, tuple(survivors))
+    return MutationResult(tried, explained, tuple(survivors), undefined)
+
+
+# How many mutants of a kind go to the check itself although a probe has told them apart.
+_PROBED_AND_CHECKED = 2
 
 
 def _differs(original: list[Case], other: Any) -> bool:

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator
 from html import escape
 from typing import TYPE_CHECKING, Any
 
-from papers.ledger import Claim, Consequence, Formula, Verdict
+from papers.ledger import Claim, Consequence, Formula, Strength, Verdict
 from papers.mathml import latex, mathml
 from papers.verification import Decision, Ledger, ReadingDecision
 
@@ -15,6 +15,8 @@ if TYPE_CHECKING:
 
 # Below this a measured miss is rounding: the referee's own limits are 1e-9 degrees and 1e-9 of the curvature.
 NOISE = 1e-9
+# How a measurement is named that was repeated with the correction.
+_CORRECTED = " with the corrected formula"
 
 _COLORS = {
     Verdict.HOLDS: "green",
@@ -35,20 +37,32 @@ def evidence_text(decision: Decision) -> str:
 def _reading_text(reading: ReadingDecision) -> str:
     kind = "proof" if reading.proof else "instances"
     label = f"[{reading.label}: {reading.verdict}] " if reading.label else ""
-    return f"{label}{reading.strength.value}, {kind} ({reading.cases} cases): {reading.method}"
+    cases = f"{reading.cases} case{'s' if reading.cases > 1 else ''}"
+    return f"{label}{reading.strength.text}, {kind}, {cases}: {reading.method}"
 
 
 def consequence_text(consequence: Consequence | None) -> str:
     """Return a measured consequence in one sentence."""
     if consequence is None:
         return ""
-    seen = {name: value for name, value in consequence.measured.items() if abs(value) >= NOISE}
-    zero = [name for name in consequence.measured if name not in seen]
-    measured = ", ".join(f"{name} {value:.3g}" for name, value in seen.items())
+    measured = {name: value for name, value in consequence.measured.items() if not name.endswith(_CORRECTED)}
+    corrected = {name: value for name, value in consequence.measured.items() if name.endswith(_CORRECTED)}
+    seen = [f"{name} {value:.3g}" for name, value in measured.items() if abs(value) >= NOISE]
+    zero = [name.partition(" [")[0] for name, value in measured.items() if abs(value) < NOISE]
+    left = [f"{name} {value:.3g}" for name, value in corrected.items() if abs(value) >= NOISE]
+    parts = [", ".join(seen + left)] if seen or left else []
     if zero:
-        measured += f"{', ' if measured else ''}0 (below 1e-9): {', '.join(zero)}"
+        parts.append(f"nothing but rounding in {_listed(zero)}")
+    if corrected and not left:
+        what = ("this is" if len(corrected) == 1 else "all of these are") if seen else "it is"
+        parts.append(f"with the corrected formula {what} rounding")
+    says = "; ".join(parts)
     judges = "; ".join(f"{name}: {says}" for name, says in consequence.judges.items())
-    return f"{consequence.text}: {measured}." + (f" {judges}." if judges else "")
+    return f"{consequence.text}: {says}." + (f" {judges}." if judges else "")
+
+
+def _listed(names: list[str]) -> str:
+    return names[0] if len(names) == 1 else f"{', '.join(names[:-1])} and {names[-1]}"
 
 
 def ledger_record(ledger: Ledger) -> dict[str, Any]:
@@ -136,7 +150,11 @@ def _short_evidence(claim: Claim, decision: Decision) -> str:
     if not decision.readings:
         return claim.reason
     strength = max(reading.strength for reading in decision.readings)
-    return f"{strength.text}{', proved' if decision.proved else ''}"
+    if strength is not Strength.RATIONAL or not decision.proved:
+        return f"{strength.text}{', proved' if decision.proved else ''}"
+    if decision.verdict is Verdict.FAILS and not all(reading.proof for reading in decision.readings):
+        return "disproved by an exact rational instance"
+    return "proved by exact rational arithmetic"
 
 
 def _mutants(decision: Decision) -> str:
@@ -169,6 +187,7 @@ def ledger_markdown(ledger: Ledger) -> str:
         *counts_text(ledger).splitlines(),
         "",
         *([ledger.paper.legend, ""] if ledger.paper.legend else []),
+        *_changed(ledger),
         *_erratum(ledger),
         *_section(ledger, Verdict.HOLDS_IF, "True only under an unstated condition", _conditional_lines),
         *_section(ledger, Verdict.AMBIGUOUS, "Can be read in more than one way", _ambiguous_lines),
@@ -180,6 +199,8 @@ def ledger_markdown(ledger: Ledger) -> str:
     ]
     for claim, decision in zip(ledger.paper.claims, ledger.decisions, strict=True):
         verdict = str(decision.verdict) if decision.verdict else f"no answer: {decision.problem}"
+        if decision.verdict is not decision.recorded:
+            verdict = f"**CHANGED** {verdict} (recorded: {decision.recorded})"
         evidence = _short_evidence(claim, decision)
         lines.append("| " + " | ".join(map(_cell, (claim.id, claim.statement, verdict, evidence))) + " |")
     return "\n".join(lines) + "\n"
@@ -194,6 +215,16 @@ def _pairs(ledger: Ledger, verdict: Verdict) -> list[tuple[Claim, Decision]]:
     return [(claim, decision) for claim, decision in pairs if decision.verdict is verdict]
 
 
+def _changed(ledger: Ledger) -> Iterator[str]:
+    changed = [decision for decision in ledger.decisions if decision.verdict is not decision.recorded]
+    if changed:
+        yield from ("## Changed: found now is not what is recorded", "")
+        for decision in changed:
+            found = decision.verdict or f"no answer ({decision.problem})"
+            yield f"- **{decision.id}**: found {found}, recorded {decision.recorded}."
+        yield ""
+
+
 def _erratum(ledger: Ledger) -> Iterator[str]:
     yield from ("## Erratum", "")
     for claim, decision in _pairs(ledger, Verdict.FAILS):
@@ -206,9 +237,10 @@ def _erratum(ledger: Ledger) -> Iterator[str]:
 def _failure_lines(claim: Claim, decision: Decision) -> Iterator[tuple[str, str]]:
     formulas = "; ".join(_code(f.relation) for f in claim.formulas)
     yield "Printed:", claim.statement + (f" {formulas}" if formulas else "")
-    residual = residual_of(decision)
-    left = "false" if residual is None else f"printed minus true leaves {_code(residual)}"
-    yield "Residual:", f"{left} ({decision.false_case})."
+    yield (
+        "Residual:",
+        "; ".join(_residual_text(reading, len(decision.readings) > 1) for reading in decision.readings) + ".",
+    )
     yield "Smallest counterexample:", decision.counterexample + "."
     corrected = "; ".join(_code(f.relation) for f in _corrected_formulas(claim))
     correction = decision.correction
@@ -216,6 +248,13 @@ def _failure_lines(claim: Claim, decision: Decision) -> Iterator[tuple[str, str]
     yield "Correct:", f"{_correction_text(claim)} {corrected}{proof}"
     remark = f" {claim.remark}" if claim.remark else ""
     yield "What it does:", consequence_text(decision.consequence) + remark
+
+
+def _residual_text(reading: ReadingDecision, labelled: bool) -> str:
+    label = f"read with {reading.label}: " if labelled else ""
+    if reading.residual is None:
+        return f"{label}violated by {reading.false_case} (compared: {reading.method})"
+    return f"{label}printed minus true leaves {_code(reading.residual)} ({reading.false_case})"
 
 
 def _code(relation: Any) -> str:

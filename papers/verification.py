@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterator
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from contextlib import contextmanager
 from dataclasses import dataclass
+from math import isfinite
 from multiprocessing import get_context
 from typing import Any
 
@@ -22,6 +23,7 @@ from papers.ledger import (
     Reading,
     Strength,
     Verdict,
+    decided_cases,
     load_paper,
 )
 from papers.mutation import MutationResult, try_mutants
@@ -140,17 +142,20 @@ def decide(claim: Claim, time_limit: float = TIME_LIMIT) -> Decision:
         with _limited(time_limit):
             readings = tuple(_decide_reading(reading) for reading in claim.readings)
             verdict = _combined(readings)
-            if verdict is Verdict.FAILS:
-                found = claim.counterexample() if claim.counterexample else None
-                if found is None:
-                    raise CheckFailedError("the search found no counterexample, expected one for a claim that fails")
+            if claim.counterexample:
+                found = claim.counterexample()
+                if found is None or not found.values:
+                    raise CheckFailedError("the search found no counterexample, expected one with its values")
                 counterexample = str(found)
             if claim.correction:
                 correction = _decide_reading(Reading(claim.correction.parts))
                 if correction.verdict is not Verdict.HOLDS:
                     raise CheckFailedError(f"the correction {correction.verdict}, expected a formula that holds")
+                if not correction.true_case:
+                    raise CheckFailedError("the correction has no true instance, expected at least one")
             if claim.consequence:
                 consequence = claim.consequence()
+            _require_evidence(verdict, readings, counterexample, consequence)
             mutation = _mutation(claim)
     except VacuousError as error:
         verdict, problem, vacuous = None, str(error), True
@@ -169,6 +174,25 @@ def decide(claim: Claim, time_limit: float = TIME_LIMIT) -> Decision:
         mutation,
         time.perf_counter() - started,
     )
+
+
+def _require_evidence(
+    verdict: Verdict,
+    readings: tuple[ReadingDecision, ...],
+    counterexample: str,
+    consequence: Consequence | None,
+) -> None:
+    """Raise `CheckFailedError` where a verdict lacks what it has to stand on, whatever the record promised."""
+    if verdict is Verdict.FAILS and not counterexample and all(reading.residual is None for reading in readings):
+        raise CheckFailedError("fails with neither residual nor counterexample, expected one of them")
+    if consequence is not None:
+        numbers = consequence.measured.values()
+        if not consequence.text.strip() or not numbers or not all(isfinite(number) for number in numbers):
+            raise CheckFailedError(
+                f"the consequence measured {dict(consequence.measured)}, expected a text and finite numbers"
+            )
+    if verdict is Verdict.HOLDS_IF and not all(reading.true_case and reading.false_case for reading in readings):
+        raise CheckFailedError("holds-if without an instance on each side of its condition")
 
 
 @contextmanager
@@ -193,13 +217,10 @@ def _limited(seconds: float) -> Iterator[None]:
 def _decide_reading(reading: Reading) -> ReadingDecision:
     cases: list[Case] = []
     for part in reading.parts:
-        found = list(part.check.cases(part.formula))
+        found = list(decided_cases(part.check, part.formula))
         if not found:
             raise VacuousError(f"no instance satisfies the assumptions of: {part.check.method}")
         cases += found
-    unknown = [case.label for case in cases if case.true is None]
-    if unknown:
-        raise CheckFailedError(f"no answer for {', '.join(unknown[:3])}")
     wrong = [case for case in cases if not case.true]
     right = [case for case in cases if case.true]
     # The residual shown is that of the paper's own setting where it has one.
@@ -246,7 +267,10 @@ def _mutation(claim: Claim) -> MutationResult:
     parts: tuple[Part, ...] = claim.parts + (claim.correction.parts if claim.correction else ())
     results = [try_mutants(part) for part in parts]
     return MutationResult(
-        sum(r.tried for r in results), sum(r.explained for r in results), tuple(s for r in results for s in r.survivors)
+        sum(r.tried for r in results),
+        sum(r.explained for r in results),
+        tuple(s for r in results for s in r.survivors),
+        sum(r.undefined for r in results),
     )
 
 
@@ -274,6 +298,7 @@ class Ledger:
             "changed": sum(d.verdict is not d.recorded for d in self.decisions),
             "mutants": sum(d.mutation.tried for d in self.decisions),
             "mutants_equivalent": sum(d.mutation.explained for d in self.decisions),
+            "mutants_undefined": sum(d.mutation.undefined for d in self.decisions),
             "mutants_survived": sum(len(d.mutation.survivors) for d in self.decisions),
         }
 

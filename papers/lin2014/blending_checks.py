@@ -77,10 +77,11 @@ def layout_cases(formula: Formula | None) -> Iterator[Case]:
     for k in range(2, 8):
         admitted = [m for m in range(1, 12) if relation.subs({pr.k: k, pr.m: m})]
         unsound = [m for m in admitted if m - 2 <= 2 or m + 1 < k]
-        label = f"k = {k}" + (f", m = {unsound[0]}" if unsound else "")
-        # The residual tells bounds apart that admit different m.
-        residual = sp.Integer(len(admitted))
-        yield Case(label, not unsound, own=k == CUBIC, meets=k >= CUBIC, residual=residual)
+        if k < CUBIC:
+            label = f"k = {k}" + (f", m = {unsound[0]}" if unsound else "")
+            yield Case(label, not unsound, own=False, meets=False)
+        for m in admitted if k >= CUBIC else ():
+            yield Case(f"k = {k}, m = {m}", m not in unsound, own=k == CUBIC)
 
 
 def u_length_instances() -> Iterator[tuple[str, dict[Any, Any], bool]]:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from papers.ledger import Claim, Reading, Strength
+from collections.abc import Iterator
+
+from papers.ledger import Case, Claim, Reading, Strength
 from papers.lin2014 import blending_checks as blending
 from papers.lin2014 import figure_checks as figures
 from papers.lin2014 import printed as pr
@@ -10,9 +12,18 @@ from papers.lin2014.claims_3_conditions import TRUE_3_1
 from papers.lin2014.contact_checks import row_check
 from papers.lin2014.property_checks import proved, question
 from papers.lin2014.records import ambiguous, holds, holds_if, not_checkable, part
+from papers.lin2014.spline_checks import count_check, knot_count_instances
 
 _RELATED = "Section 1.1"
 _OTHERS = "a statement on other publications, which are not here"
+
+
+def _different_counts() -> Iterator[Case]:
+    """Yield layouts of the paper whose curves have different numbers of knots."""
+    yield Case("Fig. 1", len(set(pr.FIGURE_1_COUNTS)) > 1)
+    for figure, pair in figures.CONTACTS.items():
+        yield Case(figure, len({len(pr.KNOTS[name]) for name in pair}) == 2)
+
 
 CLAIMS: tuple[Claim, ...] = (
     holds("sec-0.undisturbed", "Abstract", "Both bases are met exactly without changing them.",
@@ -30,8 +41,15 @@ CLAIMS: tuple[Claim, ...] = (
     holds_if("sec-1.rolling-ball", _RELATED, "A rolling-ball blend meets its bases with G1 at the most.",
              "the curvature of the base across the contact is not that of the ball",
              part(question(figures.circle_cases, "curvature of a circle and of the base"))),
-    holds("sec-1.quintic", _RELATED, "A Bezier curve across that meets both bases with two derivatives is quintic.",
-          part(proved(figures.hermite_cases, "rank of the six end conditions, degrees 2 to 7", Strength.EACH_ORDER))),
+    ambiguous("sec-1.quintic", _RELATED, "For G2, a Bezier curve across must be quintic.",
+              Reading((part(proved(figures.hermite_cases, "rank of the six end conditions, degrees 2 to 7",
+                                   Strength.EACH_ORDER)),),
+                      label="for a method that prescribes two derivatives at both ends, as for C2"),
+              Reading((part(question(figures.quartic_cases, "points, tangents and curvatures at both ends, exactly")),),
+                      label="for G2 as such, which prescribes points, tangents and curvatures"),
+              remark="G2 leaves the lengths of the end derivatives free: the quartic with the control points (0,0), "
+              "(1/2,0), (5/3,1/3), (2,1/2), (2,1) has horizontal and vertical end tangents and curvature 1 at both "
+              "ends."),
     holds("sec-1.cubic", _RELATED, "A cubic blend with inner knots does the same.",
           part(proved(figures.cubic_cases, "determinant of the end derivatives", Strength.EACH_ORDER))),
     holds("sec-1.hartmann-contact", _RELATED, "Hartmann's combination of two bases is G^n.",
@@ -52,5 +70,20 @@ CLAIMS: tuple[Claim, ...] = (
     not_checkable("sec-1.point-based", _RELATED, "T-splines and semi-regular splines are point-based.",
                   "a way to look at a representation, not a property of it"),
     not_checkable("sec-1.hayes", _RELATED, "Hayes' splines need equal numbers of knots in each vector.", _OTHERS),
+    not_checkable("sec-1.ref-11", _RELATED, "The blends of [11] are hard to write as B-splines.",
+                  "how hard is not measured, and [11] is not here; a polynomial blend of spline bases has an exact "
+                  "B-spline form (sec-2.transformation shows one way)"),
+    not_checkable("sec-1.parametric-blends", "Section 1", "Parametric blends can hardly be made B-splines exactly.",
+                  "which blends are meant is not said; decided for Hartmann's in sec-1.hartmann-nurbs"),
+    not_checkable("sec-1.ball-circular", _RELATED, "A rolling ball leaves a fixed, circular cross-section.",
+                  "what the method is, not a consequence of it; what follows is decided in sec-1.rolling-ball"),
+    not_checkable("sec-1.knot-lines-end", _RELATED, "Knot lines of T-splines and semi-regular splines may end inside.",
+                  _OTHERS + "; for semi-structured surfaces see sec-2.continuity-control"),
+    holds("sec-1.different-counts", _RELATED, "In a semi-structured surface the knot vectors may differ in length.",
+          part(question(_different_counts, "counts of Fig. 1 and of the printed pairs of contact curves"))),
+    holds("sec-1.classical-grid", _RELATED, "In a classical grid all rows, and all columns, have equally many points.",
+          part(count_check(knot_count_instances(pr.n_i, pr.ell), "counting knots and basis functions, orders 1 to 6"),
+               pr.V_LAST),
+          remark="Order and knot vector fix the number of control points, and a classical surface has one of each."),
     not_checkable("sec-1.divided-patches", _RELATED, "[24, 25] did not note how divided patches are built.", _OTHERS),
 )  # fmt: skip

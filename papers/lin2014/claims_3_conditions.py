@@ -9,7 +9,15 @@ from sympy import Eq
 from papers.ledger import Claim, Correction, Formula, Part, Reading, Verdict
 from papers.lin2014 import printed as pr
 from papers.lin2014.consequences import measured_rows
-from papers.lin2014.contact_checks import row_check, row_counterexample, t_ks1, u_before, u_last, w_kr1
+from papers.lin2014.contact_checks import (
+    row_check,
+    row_counterexample,
+    t_ks1,
+    u_before,
+    u_last,
+    unconditional,
+    w_kr1,
+)
 from papers.lin2014.geometry_checks import direction_cases, shape_parameter_cases
 from papers.lin2014.property_checks import proved, question
 from papers.lin2014.records import ambiguous, fails, holds_if, part
@@ -152,8 +160,13 @@ CLAIMS = (
         remark="Two errors in one formula: that of (3.1), and for k other than 4 the index of (2.2).",
     ),
     holds_if("sec-3.sufficient-g1", _WHERE, "For all alpha, beta, (1.1), (1.2), (2.1), (2.2) suffice for G1.",
-             "alpha and beta are not zero",
+             "k = 4 (as (2.2) needs), alpha and beta are not zero, and the bases are regular along their contacts",
+             part(unconditional(row_check("start", 0)), pr.COND_1_1),
+             part(unconditional(row_check("end", 0)), pr.COND_1_2),
+             part(unconditional(row_check("start", 1)), pr.COND_2_1),
+             part(row_check("end", 1), pr.COND_2_2),
              part(question(lambda: shape_parameter_cases(1), "the implicit equation of a base, exact, regularity")),
+             counterexample=partial(row_counterexample, "end", 1, pr.COND_2_2),
              remark="At alpha = 0 rows 0 and 1 of the blend coincide and it has no tangent plane at the contact; "
              "nothing in the method keeps the search away from there (see sec-4.unconstrained)."),
     fails("sec-3.sufficient-g2", _WHERE, "(1.1) to (3.2) together suffice for G2.",

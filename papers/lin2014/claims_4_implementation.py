@@ -137,7 +137,8 @@ CLAIMS: tuple[Claim, ...] = (
           part(_GRAM, pr.EQ_14_PRODUCTS),
           correction=_TRUE_GRAM, counterexample=_gram_counterexample(pr.EQ_14_PRODUCTS), consequence=third_term,
           remark="Decided with products integrated last. C_vv^T C_vv and C_vv^T D_vv are right, as (11) shows: P_uv "
-          "and P_vv do not meet there. With the printed term A is not symmetric."),
+          "and P_vv do not meet there. With the printed term A is not symmetric. One letter of an index: it may be a "
+          "misprint, or a misread of the scan."),
     fails("sec-4.cvv-indices", _WHERE, "In C_vv row 3 ends with b_{3,n_2} and row m-3 with b_{m-3,n_{m-2}}.",
           *(part(Check(_cvv_cases, Strength.RATIONAL, "lengths of rows"), formula) for formula in pr.CVV_LAST),
           correction=Correction("b_{3,n_3} and b_{m-3,n_{m-3}}, as in C_uu and C_uv.",

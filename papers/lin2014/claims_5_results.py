@@ -33,7 +33,7 @@ def _run_as_printed(identifier: str, where: str, statement: str, kind: str, **mo
         part(_exact(figures.parametric_cases(kind, 6), _ROWS)),
         correction=Correction("With (3.1) corrected the contact is C2.",
                               (Part(_exact(figures.true_rows_cases(kind, 6), _DERIVED)),)),
-        counterexample=figures.row_counterexample(kind, 6, parametric=True), **more)  # fmt: skip
+        counterexample=figures.straight_counterexample(6), **more)  # fmt: skip
 
 
 CLAIMS: tuple[Claim, ...] = (
@@ -48,6 +48,13 @@ CLAIMS: tuple[Claim, ...] = (
               Reading((part(question(figures.invisible_cases, "normals and curvatures of plane joins")),), label="C2"),
               remark="Parametric continuity leaves no trace in a picture; with the conditions as printed Figs. 5, 8 "
               "and 9 can be G2 without being C2, and would look the same."),
+    ambiguous("sec-5.mean-curvature", "Section 5", "Mean curvature shows the bending energy of the blends.",
+              Reading((part(proved(figures.bending_cases(saddle=False), "H in the principal curvatures")),),
+                      label="where one principal curvature is zero, such as on planes, cylinders and cones"),
+              Reading((part(proved(figures.bending_cases(saddle=True), "H in the principal curvatures")),),
+                      label="on any surface"),
+              remark="kappa_1^2 + kappa_2^2 = 4 H^2 - 2 K: on a saddle with kappa_2 = -kappa_1 the mean curvature is "
+              "zero, and the energy of section 3 is not."),
     holds("fig-5.knots", "Fig. 5", "Contact curves over {1/2} and {1/3, 2/3}, in bases of 6 x 5 and 6 x 6 points.",
           part(question(figures.knot_cases("fig-5"), _KNOTS))),
     _run_as_printed("fig-5.c2", "Fig. 5", "By the printed conditions, two planar patches are blended C2.", "plane",

@@ -104,7 +104,8 @@ CLAIMS = (
             "The made pair with row 1 by (17) and the first derivatives of the appendix",
         ),
         remark="R lies on w >= w_s and P on u >= 0: with the printed sign the blend runs back over the base. It also "
-        "contradicts (2.1), which has the right sign.",
+        "contradicts (2.1), which has the right sign. Open CASCADE compares tangent planes and curvatures with normals "
+        "up to sign: it does not see a fold, so that its verdict stands beside a normal that turns by 180 degrees.",
     ),
     Claim(
         "eq-18",
@@ -166,7 +167,9 @@ CLAIMS = (
                                 (Part(_derived(1), ROW_1_BY_17), Part(special_check(1), TRUE_17))),
           counterexample=partial(row_counterexample, "start", 1, ROW_1_BY_17),
           consequence=partial(measured_rows, "start", {1: ROW_1_BY_17},
-                              "The made pair with the row that (17) gives")),
+                              "The made pair with the row that (17) gives"),
+          remark="A fold, as for eq-17: Open CASCADE compares normals up to sign and does not see it; the normal, "
+          "followed across the contact, turns by 180 degrees."),
     holds("sec-A.18-gives-3.1", _WHERE, "(18) and the second end derivatives, as printed, give (3.1).",
           part(_derived(2), pr.COND_3_1),
           remark="The step is right; its premise app-d2 is not, and so (3.1) is wrong."),

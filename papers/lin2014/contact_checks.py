@@ -53,6 +53,15 @@ def row_check(side: Side, row: int, *, parametric: bool = False) -> Check:
     )
 
 
+def unconditional(check: Check) -> Check:
+    """Return the check of a part that needs nothing of the condition of its claim: every instance must be true."""
+
+    def cases(formula: Formula | None) -> Iterator[Case]:
+        yield from (replace(case, meets=True) for case in check.cases(formula))
+
+    return replace(check, cases=cases)
+
+
 def derivative_check(surface: Literal["P", "R"], order: int) -> Check:
     """Return the check of an end derivative of the blend or of the base."""
     return Check(

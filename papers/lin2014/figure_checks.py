@@ -237,6 +237,33 @@ def row_counterexample(kind: str, m: int, *, parametric: bool) -> Any:
     return search
 
 
+def straight_counterexample(m: int) -> Any:
+    """Return the search for rows on a straight line at which the printed C2 conditions miss, natural ones first.
+
+    Rows at the Greville abscissae run along the line at constant speed; evenly spaced rows are what a user draws.
+    """
+
+    def search() -> Counterexample | None:
+        missed = []
+        for name, places in (("at the Greville abscissae, constant speed", (0, sp.Rational(1, 3), 1)),
+                             ("evenly spaced", (0, 1, 2))):  # fmt: skip
+            rows = tuple(sp.Matrix([place, 0, 0]) for place in places)
+            spans = (sp.Integer(1), sp.Integer(2))
+            printed, true = _printed_derivatives(rows, m, spans)[1][0], _base_derivatives(rows, spans)[1][0]
+            if printed != true:
+                missed.append((f"R_0, R_1, R_2 = {', '.join(map(str, places))} ({name})", printed, true))
+        if not missed:
+            return None
+        (label, printed, true), *others = missed
+        also = "; ".join(f"with {name} printed {wrong}, true {right}" for name, wrong, right in others)
+        first = str(sp.Rational(1, m - 2))
+        spans_of_r = ("knots of R after w_s", "w_s + 1, w_s + 2")
+        values = (("rows on a line", label), spans_of_r, ("u_1", first), ("alpha", "1"))
+        return Counterexample(values, f"P_uu = {printed}", f"R_ww = {true}", also=also)
+
+    return search
+
+
 def removable_cases() -> Iterator[Case]:
     """Yield coordinate functions over {1/3, 2/3}: can they be written over {1/2}? A spline space decides for all."""
     third, half = Fraction(1, 3), Fraction(1, 2)
@@ -332,11 +359,42 @@ def hermite_cases() -> Iterator[Case]:
         yield Case(f"degree {degree}", bool(rows.rank() == 6) == (degree >= 5))
 
 
+def quartic_cases() -> Iterator[Case]:
+    """Yield a Bezier curve of degree four: true where it misses points, tangents or curvatures that are prescribed.
+
+    Prescribed: from (0, 0) along (1, 0) to (2, 1) along (0, 1), of curvature 1 at both ends.
+    """
+    points = [sp.Matrix(p) for p in ((0, 0), (sp.Rational(1, 2), 0), (sp.Rational(5, 3), sp.Rational(1, 3)),
+                                     (2, sp.Rational(1, 2)), (2, 1))]  # fmt: skip
+    t = sp.Symbol("t")
+    curve = sum((sp.binomial(4, i) * t**i * (1 - t) ** (4 - i) * p for i, p in enumerate(points)), sp.zeros(2, 1))
+    misses = []
+    for end, place, tangent in ((0, (0, 0), (1, 0)), (1, (2, 1), (0, 1))):
+        at, first, second = (curve.diff(t, d).subs(t, end) if d else curve.subs(t, end) for d in range(3))
+        speed = sp.sqrt(first.dot(first))
+        curvature = first.row_join(second).det() / speed**3
+        misses += [*(at - sp.Matrix(place)), *(first / speed - sp.Matrix(tangent)), curvature - 1]
+    label = "the quartic with points (0, 0), (1/2, 0), (5/3, 1/3), (2, 1/2), (2, 1) has all that G2 asks for"
+    yield Case(label, any(sp.simplify(x) != 0 for x in misses))
+
+
 def cubic_cases() -> Iterator[Case]:
     """Yield a cubic with two inner knots or more: six conditions at its ends are independent."""
     for m in (5, 6, 7):
         h = [sp.Rational(1, m - 2), sp.Rational(2, m - 2)]
         yield Case(f"{m + 1} rows", end_derivatives(2, 3, h).det() != 0)
+
+
+def bending_cases(*, saddle: bool) -> Any:
+    """Return the check that kappa_1^2 + kappa_2^2 is 4 H^2: for kappa_2 = 0, or for any principal curvatures."""
+
+    def cases() -> Iterator[Case]:
+        first, second = sp.symbols("kappa_1 kappa_2", real=True)
+        other = second if saddle else sp.Integer(0)
+        residual = sp.expand(first**2 + other**2 - (first + other) ** 2)
+        yield Case("any kappa_2" if saddle else "kappa_2 = 0", bool(residual == 0), residual=residual)
+
+    return cases
 
 
 def circle_cases() -> Iterator[Case]:

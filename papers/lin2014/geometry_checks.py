@@ -107,6 +107,10 @@ def shape_parameter_cases(order: int) -> Iterator[Case]:
         patch = _patch(order, base, functions, condition)
         true = _touches(patch, implicit, order) and _regular(patch)
         yield Case(f"alpha = {alpha}", true, own=alpha != 0, meets=alpha != 0)
+    singular, flat = sp.Matrix([_W**2, _V, 0]), sp.Symbol("z")
+    patch = _patch(order, singular, {pr.p_1: sp.Integer(-1), pr.q_1: sp.Integer(0)}, condition)
+    true = _touches(patch, flat, order) and _regular(patch)
+    yield Case("alpha = 1, a base with R_w = 0 on the contact", true, own=False, meets=False)
 
 
 def direction_cases(sign: int) -> Iterator[Case]:

@@ -30,9 +30,11 @@ def fails(identifier: str, where: str, statement: str, *parts: Part, remark: str
     return Claim(identifier, where, statement, Verdict.FAILS, (Reading(parts),), remark=remark, **evidence)
 
 
-def ambiguous(identifier: str, where: str, statement: str, *readings: Reading, remark: str = "") -> Claim:
+def ambiguous(
+    identifier: str, where: str, statement: str, *readings: Reading, remark: str = "", **evidence: Any
+) -> Claim:
     """Return a record that can be read in more than one way."""
-    return Claim(identifier, where, statement, Verdict.AMBIGUOUS, readings, remark=remark)
+    return Claim(identifier, where, statement, Verdict.AMBIGUOUS, readings, remark=remark, **evidence)
 
 
 def not_checkable(identifier: str, where: str, statement: str, reason: str) -> Claim:

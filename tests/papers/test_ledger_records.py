@@ -65,6 +65,16 @@ def with_formula(formula):
             ),
             "no proof",
         ),
+        (
+            replace(
+                GOOD,
+                verdict=Verdict.FAILS,
+                correction=Correction(" ", (Part(CHECK, FORMULA),)),
+                counterexample=lambda: Counterexample((("x", "1"),), "1", "2"),
+                consequence=lambda: Consequence("a surface", {"gap": 1.0}),
+            ),
+            "says nothing",
+        ),
     ],
 )
 def test_a_bad_record_is_refused(claim, message):

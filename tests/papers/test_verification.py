@@ -9,6 +9,7 @@ import sympy as sp
 from papers.ledger import (
     Case,
     Check,
+    CheckFailedError,
     Claim,
     Consequence,
     Correction,
@@ -37,7 +38,7 @@ def claim_of(*cases, verdict=Verdict.HOLDS, condition="", proof=False):
 TRUE, FALSE = Case("a", True), Case("b", False)
 ELSEWHERE = Case("c", False, own=False, meets=False)
 EVIDENCE = {
-    "correction": Correction("", (Part(check_of(TRUE)),)),
+    "correction": Correction("Something else.", (Part(check_of(TRUE)),)),
     "counterexample": lambda: Counterexample((("n", "2"),), "2", "3"),
     "consequence": lambda: Consequence("a blend", {"gap": 1.0}),
 }
@@ -107,7 +108,7 @@ def test_readings_that_differ_are_ambiguous_and_those_that_agree_are_not():
         (claim_of(replace(TRUE, own=False), ELSEWHERE, condition="k = 4"), "no instance of the paper's own setting"),
         (replace(claim_of(FALSE), **{**EVIDENCE, "counterexample": lambda: None}), "no counterexample"),
         (
-            replace(claim_of(FALSE), **{**EVIDENCE, "correction": Correction("", (Part(check_of(FALSE)),))}),
+            replace(claim_of(FALSE), **{**EVIDENCE, "correction": Correction("Wrong too.", (Part(check_of(FALSE)),))}),
             "correction",
         ),
         (replace(claim_of(TRUE), consequence=lambda: 1 / 0), "ZeroDivisionError"),
@@ -183,7 +184,7 @@ def test_an_equivalent_mutant_needs_its_reason():
     # |x| = |-x|: the sign mutant says the same.
     def cases(formula):
         value = formula.relation.rhs.subs(x, -3)
-        yield Case("x = -3", abs(value) == 3, residual=abs(value))
+        yield Case("x = -3", bool(abs(value) == 3), residual=abs(value) - 3)
 
     check = Check(cases, Strength.RATIONAL, "one value")
     plain = Formula(sp.Eq(y, x), (x, y))
@@ -191,3 +192,70 @@ def test_an_equivalent_mutant_needs_its_reason():
     explained = replace(plain, equivalent={"Eq(y, -x)": "the magnitude is the same"})
     result = try_mutants(Part(check, explained))
     assert (result.survivors, result.explained) == ((), 1)
+
+
+@pytest.mark.parametrize(
+    ("evidence", "problem"),
+    [
+        ({"counterexample": lambda: Counterexample((), "2", "3")}, "expected one with its values"),
+        ({"consequence": lambda: Consequence("a blend", {})}, "finite numbers"),
+        ({"consequence": lambda: Consequence("a blend", {"gap": float("nan")})}, "finite numbers"),
+        ({"consequence": lambda: Consequence(" ", {"gap": 1.0})}, "expected a text"),
+        ({"correction": Correction("Nothing.", (Part(check_of()),))}, "no instance"),
+    ],
+)
+def test_a_failure_without_its_evidence_is_refused(evidence, problem):
+    failing = replace(claim_of(FALSE, verdict=Verdict.FAILS), **EVIDENCE)
+    assert decide(failing).ok
+    decision = decide(replace(failing, **evidence))
+    assert decision.verdict is None
+    assert problem in decision.problem
+
+
+def test_a_made_up_paper_without_evidence_is_refused(made_up_paper):
+    claims = made_up_paper() / "claims.py"
+    text = claims.read_text()
+    assert '{"gap": 0.5}' in text
+    claims.write_text(text.replace('{"gap": 0.5}', "{}"))
+    ledger = verify(str(claims.parent), workers=1)
+    assert not ledger.ok
+    assert "finite numbers" in ledger.decisions[1].problem
+
+
+@pytest.mark.parametrize(
+    "case",
+    [Case("a", True, residual=x), Case("a", False, residual=sp.Integer(0)), Case("a", sp.Eq(x, y)), Case("a", 1)],
+)
+def test_an_answer_that_contradicts_itself_is_refused(case):
+    decision = decide(claim_of(case))
+    assert decision.verdict is None
+    assert "CheckFailedError" not in decision.problem.replace("CheckFailedError: ", "", 1)
+    assert case.label in decision.problem
+    assert not decision.ok
+
+
+def test_a_residual_that_echoes_the_formula_kills_no_mutant():
+    def cases(formula):
+        yield Case("all x", True, residual=formula.relation.rhs)
+
+    part = Part(Check(cases, Strength.SYMBOLIC_ORDER, "nothing"), Formula(sp.Eq(y, 2 * x), (x, y)))
+    with pytest.raises(CheckFailedError, match="residual"):
+        try_mutants(part)
+
+
+def test_a_probe_does_not_stand_for_the_check():
+    """The probe tells all mutants apart, the check none."""
+    check = replace(check_of(TRUE), probe=lambda formula: formula.relation.rhs)
+    result = try_mutants(Part(check, Formula(sp.Eq(y, 2 * x), (x, y))))
+    assert result.survivors
+
+
+def test_a_mutant_that_divides_by_zero_is_noticed():
+    def cases(formula):
+        value = formula.relation.rhs.subs(x, 2)
+        if value == -2:
+            raise ZeroDivisionError
+        yield Case("x = 2", bool(value == 2), residual=value - 2)
+
+    result = try_mutants(Part(Check(cases, Strength.RATIONAL, "one value"), Formula(sp.Eq(y, x), (x, y))))
+    assert (result.undefined, result.survivors) == (1, ())
