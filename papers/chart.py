@@ -74,9 +74,9 @@ def energy_chart(comparisons: Sequence[Comparison]) -> str:
 
 
 def _beside(mark: _Mark) -> str:
-    """Return where the numbers of a mark stand: on its right, above where they are many, left near the border."""
+    """Return where the numbers of a mark stand: on its right, below where they are many, left near the border."""
     if len(mark.numbers) > 2:
-        return f"x='{mark.x - 5:.1f}' y='{mark.y - 9:.1f}' text-anchor='start'"
+        return f"x='{mark.x - 5:.1f}' y='{mark.y + 17:.1f}' text-anchor='start'"
     if mark.x > _WIDTH - 120:
         return f"x='{mark.x - 8:.1f}' y='{mark.y + 4:.1f}' text-anchor='end'"
     return f"x='{mark.x + 8:.1f}' y='{mark.y + 4:.1f}' text-anchor='start'"

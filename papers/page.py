@@ -26,6 +26,8 @@ from papers.viewer import model, viewer_html, viewer_script
 _PICTURE_WIDTH = 1600
 # Findings whose details are shown before anybody asks.
 _OPEN = 3
+# A browser then refuses to fetch anything.
+_NOTHING_FROM_OUTSIDE = "default-src 'none'; img-src data:; style-src 'unsafe-inline'; script-src 'unsafe-inline'"
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,6 +78,7 @@ def page(results: Results) -> str:
     body = "".join(f"<section id='{name}'><h2>{escape(h)}</h2>{content}</section>" for name, h, content in sections)
     return f"""<!DOCTYPE html>
 <html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width, initial-scale=1">
+<meta http-equiv="Content-Security-Policy" content="{_NOTHING_FROM_OUTSIDE}">
 <title>{escape(title)}: claims, examples and rivals</title><style>{_asset("page.css")}</style></head><body>
 <header><h1>{escape(title)} <small>{escape(published.rstrip(")"))}</small></h1>
 <p class="lead">Every printed claim decided, every example run again, every rival measured.

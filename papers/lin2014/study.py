@@ -14,7 +14,7 @@ from papers.lin2014.figures import draw_figure_1, draw_figure_2, draw_trimmed_pa
 from papers.lin2014.findings import AS_PRINTED, CORRECTED, findings, meets_demand
 from papers.lin2014.section5 import DEPARTURES, FIGURES, PRINTED, example
 from papers.study import Comparisons, Drawing, Example, Study, Table
-from papers.tables import cell
+from papers.tables import c2_residual, cell
 from solver import Base, blend
 from solver.plotting import BASE_COLOR, BLEND_COLOR, render
 from solver.sides import Continuity
@@ -124,8 +124,8 @@ def draw_pair(name: str, continuity: Continuity, zebra: bool, path: Path) -> Non
 
 
 _TABLE_1_HEAD = (
-    "example", "what", "model 1", "model 2", "contact met", "curvature jump", "iterations", "seconds", "energy (11)",
-    "mean curvature",
+    "example", "what", "model 1", "model 2", "contact met", "curvature jump", "C2 residual", "iterations", "seconds",
+    "energy (11)", "mean curvature",
 )  # fmt: skip
 
 
@@ -136,8 +136,10 @@ def tables(comparisons: Comparisons) -> tuple[Table, ...]:
         printed = PRINTED[figure]
         sizes = [f"{rows_} × {columns}" for rows_, columns in printed.sizes]
         asked = f"{printed.continuity} (claimed)"
-        values = (printed.iterations, printed.seconds, printed.energy, printed.mean_curvature)
-        rows.append((f"Fig. {figure}", "printed", *sizes, asked, "–", *map(cell, values)))
+        # Digits as they are printed.
+        bends = " to ".join(f"{bend:.4f}" for bend in printed.mean_curvature)
+        numbers = (cell(printed.iterations), f"{printed.seconds:.4f}", f"{printed.energy / 1e6:.2f}e6", bends)
+        rows.append((f"Fig. {figure}", "printed", *sizes, asked, "–", "–", *numbers))
         found = {c.method.name: c for c in comparisons.get(f"figure-{figure}", ())}
         for name, what in ((AS_PRINTED, "ours, formulas as printed"), (CORRECTED, "ours, formulas corrected")):
             if name in found:
@@ -154,7 +156,10 @@ def _table_1_row(comparison: Comparison) -> tuple[str, ...]:
     task, outcome, m = comparison.task, comparison.outcome, comparison.measures
     sizes = [" × ".join(map(str, base.surface.control_points.shape[:2])) for base in (task.a, task.b)]  # type: ignore[union-attr]
     if outcome is None or m is None:
-        return (*sizes, *("–",) * 6)
+        return (*sizes, *("–",) * 7)
     met = f"{task.continuity}: {'yes' if meets_demand(comparison) else 'no'}"
-    values = (m.curvature_jump_relative, outcome.iterations, m.seconds, m.energy, m.mean_curvature_with_bases)
+    values = (
+        m.curvature_jump_relative, c2_residual(m), outcome.iterations, m.seconds, m.energy,
+        m.mean_curvature_with_bases,
+    )  # fmt: skip
     return (*sizes, met, *map(cell, values))

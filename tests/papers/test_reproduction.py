@@ -153,3 +153,25 @@ def test_without_pyvista_it_says_so_before_any_work(tmp_path, monkeypatch):
     assert done.exit_code == 2
     assert "semispline[view]" in done.stderr
     assert "printed claims" not in done.output
+
+
+def test_table_1_shows_the_printed_digits_beside_ours(results):
+    (table,) = results.study.tables(results.comparisons)
+    rows = {(row[0], row[1]): row[2:] for row in table.rows}
+    assert rows["Fig. 5", "printed"] == (
+        "6 × 5",
+        "6 × 6",
+        "C2 (claimed)",
+        "–",
+        "–",
+        "–",
+        "0.4515",
+        "3.09e6",
+        "0.0000 to 0.0817",
+    )
+    assert rows["Fig. 6", "printed"][5:] == ("5", "1.4599", "3.15e6", "0.0000 to 0.2581")
+    assert rows["Fig. 11", "printed"][:2] == ("4 × 10", "5 × 64")
+    assert rows["Fig. 6", "ours, formulas as printed"][:3] == ("5 × 10", "5 × 8", "G2: no")
+    assert rows["Fig. 6", "ours, formulas corrected"][2] == "G2: yes"
+    # Figures that were not run have no row of ours.
+    assert {name for name, what in rows if what != "printed"} == {"Fig. 6", "Fig. 10"}
