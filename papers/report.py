@@ -47,12 +47,13 @@ def consequence_text(consequence: Consequence | None) -> str:
         return ""
     measured = {name: value for name, value in consequence.measured.items() if not name.endswith(_CORRECTED)}
     corrected = {name: value for name, value in consequence.measured.items() if name.endswith(_CORRECTED)}
-    seen = [f"{name} {value:.3g}" for name, value in measured.items() if abs(value) >= NOISE]
-    zero = [name.partition(" [")[0] for name, value in measured.items() if abs(value) < NOISE]
+    # A whole number is a count, and 0 of something is no rounding.
+    zero = [name for name, value in measured.items() if abs(value) < NOISE and not isinstance(value, int)]
+    seen = [f"{name} {value:.3g}" for name, value in measured.items() if name not in zero]
     left = [f"{name} {value:.3g}" for name, value in corrected.items() if abs(value) >= NOISE]
     parts = [", ".join(seen + left)] if seen or left else []
     if zero:
-        parts.append(f"nothing but rounding in {_listed(zero)}")
+        parts.append(f"nothing but rounding in {_listed([name.partition(' [')[0] for name in zero])}")
     if corrected and not left:
         what = ("this is" if len(corrected) == 1 else "all of these are") if seen else "it is"
         parts.append(f"with the corrected formula {what} rounding")

@@ -31,7 +31,7 @@ def _run_as_printed(identifier: str, where: str, statement: str, kind: str, **mo
     return fails(
         identifier, where, statement,
         part(_exact(figures.parametric_cases(kind, 6), _ROWS)),
-        correction=Correction("With (3.1) corrected the contact is C2.",
+        correction=Correction("With (3.1) corrected, by the formula at cond-3.1, the contact is C2.",
                               (Part(_exact(figures.true_rows_cases(kind, 6), _DERIVED)),)),
         counterexample=figures.straight_counterexample(6), **more)  # fmt: skip
 
@@ -71,7 +71,7 @@ CLAIMS: tuple[Claim, ...] = (
           part(question(figures.knot_cases("fig-6"), _KNOTS))),
     fails("fig-6.g2", "Fig. 6", "By the printed conditions, a planar and a curved patch are blended G2.",
           part(_exact(figures.curvature_cases("curved", 6), _ROWS)),
-          correction=Correction("With (3.1) and (3.2) corrected the contact is G2.",
+          correction=Correction("With (3.1) and (3.2) corrected, by the formulas at cond-3.1 and cond-3.2, it is G2.",
                                 (Part(_exact(figures.true_rows_cases("curved", 6), _DERIVED)),)),
           counterexample=figures.row_counterexample("curved", 6, parametric=False),
           consequence=partial(measured_rows, "end", {1: pr.COND_2_2, 2: pr.COND_3_2},
@@ -120,7 +120,7 @@ CLAIMS: tuple[Claim, ...] = (
           part(question(figures.cone_cases, "Table 1, 4 x 10 and 5 x 64"))),
     fails("fig-11.g2", "Fig. 11", "By the printed conditions, a cone and a free form are blended G2, no middle curve.",
           part(_exact(figures.curvature_cases("curved", 5), _ROWS)),
-          correction=Correction("With (3.1) and (3.2) corrected the contact is G2.",
+          correction=Correction("With (3.1) and (3.2) corrected, by the formulas at cond-3.1 and cond-3.2, it is G2.",
                                 (Part(_exact(figures.true_rows_cases("curved", 5), _DERIVED)),)),
           counterexample=figures.row_counterexample("curved", 5, parametric=False),
           consequence=partial(measured_rows, "end", {1: pr.COND_2_2, 2: pr.COND_3_2},

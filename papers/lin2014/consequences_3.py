@@ -83,9 +83,9 @@ def zero_system() -> Consequence:
     curves[3] = replace(curves[3], control_points=np.zeros_like(curves[3].control_points))
     surface = replace(result.surface, control_curves=tuple(curves))
     measured = {
-        "rank of A": float(A.rank()),
-        "rank of B": float(B.rank()),
-        "unknown control points": float(A.rows),
+        "rank of A": int(A.rank()),
+        "rank of B": int(B.rank()),
+        "unknown control points": int(A.rows),
         "energy (11) of the made pair's C2 blend with X = 0": thin_plate_energy(surface),
         "least energy": result.energy,
         "largest displacement": _largest_change(result.surface, surface),

@@ -16,6 +16,7 @@ from papers.lin2014.consequences import made_blend, made_pair, measured_rows, wi
 from papers.lin2014.consequences_3 import COMMON_TERMS, with_normal_equation
 from papers.lin2014.contact_checks import row_check, row_counterexample, t_ks1, u_before, u_last, w_kr1
 from papers.lin2014.exact import Meaning, UndefinedError, clamped, de_boor, interpret
+from papers.lin2014.figure_checks import CONTACTS, knot_cases, quartic_cases, straight_counterexample
 from papers.search import smallest_assignment
 
 ROOT = Path(__file__).parents[2]
@@ -158,3 +159,28 @@ def test_the_paper_has_a_title_and_a_legend():
     assert paper.title.startswith("Semi-structured B-spline")
     assert "h_r" in paper.legend
     assert Path(papers.lin2014.__file__).parent.joinpath("printed.py").is_file()
+
+
+@pytest.mark.parametrize("key", sorted(pr.KNOTS))
+def test_a_knot_lost_from_a_printed_vector_is_noticed(key, monkeypatch):
+    """Each knot left out in turn, and the first inner knot moved past the last: the check of the figure turns false."""
+    figure = next(name for name, keys in CONTACTS.items() if key in keys)
+    knots = pr.KNOTS[key]
+    assert all(case.true for case in knot_cases(figure, (key,))()) == (key != "fig-10.first")
+    wrong = [knots[:i] + knots[i + 1 :] for i in range(len(knots))] + [(*knots[:4], 2, *knots[5:])]
+    for changed in wrong:
+        monkeypatch.setitem(pr.KNOTS, key, changed)
+        assert not all(case.true for case in knot_cases(figure, (key,))()), changed
+
+
+def test_the_quartic_and_rows_on_a_line_at_numbers():
+    """Known answers, worked out by hand: the quartic meets G2 data; printed rows give 8 and 12 for 0 and -3."""
+    assert [case.true for case in quartic_cases()] == [False]
+    found = straight_counterexample(6)()
+    assert (found.printed, found.true) == ("P_uu = 8", "R_ww = 0")
+    assert found.also.endswith("printed 12, true -3")
+    # The base's second derivative once more, from values of exact splines.
+    W = clamped(4, Fraction(1), Fraction(2), start=0, end=3)
+    for rows, wanted in (((0, Fraction(1, 3), 1), 0), ((0, 1, 2), -3)):
+        points = [Fraction(x) for x in rows] + [Fraction(0)] * (len(W) - 7)
+        assert second_derivative(4, W, points) == wanted
