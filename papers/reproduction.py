@@ -107,8 +107,9 @@ def draw(drawings: Iterable[Drawing], folder: Path, progress: Progress) -> dict[
 
 
 def write_report(results: Results, folder: Path) -> None:
-    """Write `numbers.json`, `report.md` and `index.html`."""
+    """Write `numbers.json`, `REPORT.md` for a reader of the paper, `report.md` with every table, and `index.html`."""
     write_text(folder / "numbers.json", to_text(numbers(results)))
+    write_text(folder / "REPORT.md", report_document(results))
     write_text(folder / "report.md", "\n".join(markdown(results)))
     write_text(folder / "index.html", page(results))
 
@@ -141,6 +142,18 @@ def markdown(results: Results) -> list[str]:
     lines += [*markdown_lines(results.blends), "## How this was made", "", f"`{results.command}`", ""]
     lines += [f"- {name}: {text}" for name, text in results.environment.items()]
     return [*lines, "", ledger_markdown(results.ledger)]
+
+
+def report_document(results: Results) -> str:
+    """Return what a reader of the paper wants to know: what the study finds, prior art, and every claim decided.
+
+    Its copy in the paper's folder is what the last study said; numbers that depend on the machine are left out.
+    """
+    lines = [f"# What the study finds: {results.ledger.paper.title.rstrip('.')}", "", results.study.preface, ""]
+    lines += [f"Every statement here was computed by `{results.command}`.", ""]
+    lines += [f"- **{f.short}.** {f.detail}" for f in results.study.findings(results.comparisons)]
+    lines += ["", "Prior art:", "", *(f"- {work}" for work in results.study.prior_art), ""]
+    return "\n".join([*lines, ledger_markdown(results.ledger)])
 
 
 def _edge_by_edge(examples: Iterable[Example], comparisons: Comparisons) -> list[tuple[str, Comparison]]:

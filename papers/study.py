@@ -90,6 +90,8 @@ class Study:
         Comparisons -> findings.
     preface : str
         What a reader must know before any number.
+    prior_art : tuple of str
+        Works to cite beside the paper.
     """
 
     examples: tuple[Example, ...]
@@ -97,3 +99,4 @@ class Study:
     tables: Callable[[Comparisons], tuple[Table, ...]]
     findings: Callable[[Comparisons], tuple[Finding, ...]]
     preface: str = ""
+    prior_art: tuple[str, ...] = ()

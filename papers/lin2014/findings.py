@@ -20,6 +20,7 @@ def findings(comparisons: Comparisons) -> tuple[Finding, ...]:
     """Return what was found; a rival that cannot be used on any example is left out."""
     makers: tuple[Callable[[Comparisons], Iterator[Finding]], ...] = (
         _corrected, _as_printed, _search, _same_knots, _tangent_only, _lower, _hartmann, _bloor_wilson, _tools,
+        _real_pair,
     )  # fmt: skip
     return tuple(finding for make in makers for finding in make(comparisons))
 
@@ -184,6 +185,28 @@ def _tools(comparisons: Comparisons) -> Iterator[Finding]:
             f"{title}, which a user of Python would pick today, is G2 up to rounding in {_of(exact, found)} examples",
             f"Angles up to {angle:.2g} degrees, relative curvature jumps up to {jump:.2g}, "
             f"{_range(size, '.2g')} times the control points.",
+        )
+
+
+def _real_pair(comparisons: Comparisons) -> Iterator[Finding]:
+    """Say what the blends of real CAD surfaces look like, beyond their contact."""
+    for example in (name for name in comparisons if not name.startswith("figure-") and name != "made"):
+        blends = [
+            (contact, by_method(comparisons, method).get(example))
+            for contact, method in (("C2", "semistructured-c2"), ("G2", LEAST))
+        ]
+        shown = [(contact, found[1]) for contact, found in blends if found is not None]
+        if not shown:
+            continue
+        words = "; ".join(
+            f"the {contact} blend {'folds over itself' if m.folds else 'does not fold'}: its normal turns by up to "
+            f"{m.largest_turn_degrees:.0f} degrees between neighbouring samples, its least area element is "
+            f"{m.least_area_ratio:.2g} of the mean"
+            for contact, m in shown
+        )
+        yield Finding(
+            f"On the real pair ({example}) the contact is exact, the shape is not one to build",
+            f"The gap closes to a narrow corner at one end, and there {words}.",
         )
 
 

@@ -26,6 +26,14 @@ PREFACE = (
     "vectors and its model sizes. Energies, times and curvatures can therefore not be compared digit by digit with "
     "Table 1; sizes, knots, the contact that is reached, and the order in which methods stand can."
 )
+PRIOR_ART = (
+    "J. Gravesen, semi-regular B-spline surfaces (generalised lofting): rows over knot vectors of their own.",
+    "X. Yang and J. Zheng, approximate T-spline surface skinning, CAD 44 (2012): one global knot vector and an "
+    "individual one for each row.",
+    "E. Hartmann, parametric G^n blending of curves and surfaces (the paper's [17]); M. Bloor and M. Wilson, blends by "
+    "partial differential equations ([14, 15]); P. Kiciak, bicubic B-spline blending patches with optimized shape, CAD "
+    "43 (2011).",
+)
 
 
 def study() -> Study:
@@ -37,6 +45,7 @@ def study() -> Study:
         tables,
         findings,
         PREFACE,
+        PRIOR_ART,
     )
 
 

@@ -1,0 +1,28 @@
+"""REPORT.md says what the study finds, and the study still finds it."""
+
+from pathlib import Path
+
+import pytest
+
+from papers.baselines.comparison import run
+from papers.baselines.registry import methods
+from papers.lin2014.study import study
+
+STORED = (Path(__file__).parents[2] / "papers" / "lin2014" / "REPORT.md").read_text(encoding="utf-8")
+
+
+def test_the_document_has_findings_prior_art_and_the_ledger():
+    assert STORED.index("What the study finds") < STORED.index("Prior art:") < STORED.index("## Erratum")
+    for work in study().prior_art:
+        assert f"- {work}" in STORED
+
+
+@pytest.mark.slow
+def test_every_finding_is_found_again():
+    everything = study()
+    comparisons = {e.task.name: [run(e.task, method) for method in methods()] for e in everything.examples}
+    found = everything.findings(comparisons)
+    assert len(found) >= 10
+    # The short sentences, with their counts; what is behind them has iteration counts, which differ between machines.
+    for finding in found:
+        assert f"**{finding.short}.**" in STORED
