@@ -15,7 +15,7 @@ from solver.arrays import FloatArray
 from solver.closing import periodic_points, seam_order, with_least_size
 from solver.errors import ComputationError, EdgeError, OptionError
 from solver.gram import Basis, EnergyForm
-from solver.knots import affine_knots, basis_matrix, greville
+from solver.knots import affine_knots, basis_matrix, derivative_points, greville
 from solver.layout import ROWS_PER_SIDE, blend_u_basis, middle_bases
 from solver.sides import Side
 
@@ -301,9 +301,28 @@ def _gap_and_lengths(a: Side, b: Side) -> tuple[float, list[float]]:
         if length < VANISHING:
             raise EdgeError(f"base {name}: the contact curve has zero length; choose another edge")
     gap = float(np.linalg.norm(curves[0] - curves[1], axis=1).mean())
-    if gap < VANISHING:
+    if _largest_distance(curves[0], curves[1], b) < VANISHING:
         raise EdgeError("bases: the contact curves coincide, there is nothing to blend; choose another edge")
     return gap, lengths
+
+
+def _largest_distance(points: FloatArray, samples: FloatArray, side: Side) -> float:
+    """Return how far a point is at most from the contact curve of a side, whatever the curve's parametrisation.
+
+    From the nearest sample on, Gauss-Newton on the parameter finds the foot; far curves need no more than samples.
+    """
+    degree, knots = side.along.degree, side.along.knots
+    distances = np.linalg.norm(points[:, None] - samples, axis=2)
+    if distances.min(axis=1).max() > np.linalg.norm(np.diff(samples, axis=0), axis=1).max():
+        return float(distances.min(axis=1).max())
+    x = knots[0] + (knots[-1] - knots[0]) * distances.argmin(axis=1) / (len(samples) - 1)
+    slopes = derivative_points(degree, knots, side.rows[0])
+    for _ in range(8):
+        off = basis_matrix(degree, knots, x) @ side.rows[0] - points
+        slope = basis_matrix(degree - 1, knots[1:-1], x) @ slopes
+        squared = np.maximum(np.sum(slope**2, axis=1), np.finfo(float).tiny)
+        x = np.clip(x - np.sum(off * slope, axis=1) / squared, knots[0], knots[-1])
+    return float(np.linalg.norm(basis_matrix(degree, knots, x) @ side.rows[0] - points, axis=1).max())
 
 
 def _cross_speed(side: Side, name: str) -> float:

@@ -299,3 +299,15 @@ def test_a_pinched_blend_is_warned_of():
     a = BSplineSurface(1, 1, k, k, [[[0, 0, 0], [0, 1, 0]], [[1, 0, 0], [1, 1, 0]]])
     b = BSplineSurface(1, 1, k, k, [[[3, 0, 0.5], [3, 1, 0.5]], [[4, 0, 0.5], [4, 1, 0.5]]])
     assert any("pinched" in w for w in blend(Base(a, "u1"), Base(b, "u0"), alpha=0.02).warnings)
+
+
+def test_contact_curves_that_coincide_in_another_parametrisation_are_refused():
+    k, k3 = [0, 0, 1, 1], [0, 0, 0, 1, 1, 1]
+    a = BSplineSurface(1, 1, k, k, [[[0, 0, 0], [0, 1, 0]], [[1, 0, 0], [1, 1, 0]]])
+    # The same edge, run through as (v + v^2) / 2.
+    b = BSplineSurface(1, 2, k, k3, [[[x, y, 0] for y in (0, 0.25, 1)] for x in (1, 2)])
+    for flip in ("auto", "no", "yes"):
+        with pytest.raises(EdgeError, match="contact curves coincide"):
+            blend(Base(a, "u1"), Base(b, "u0"), flip=flip)
+    near = BSplineSurface(1, 2, k, k3, b.control_points + np.array([1e-6, 0, 0]))
+    assert blend(Base(a, "u1"), Base(near, "u0")).contact_a.gap < 1e-15
