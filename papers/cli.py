@@ -66,7 +66,8 @@ def reproduce_command(
     out: Annotated[str, typer.Option(metavar="DIR", help="Folder for index.html, pictures and numbers.")] = "report",
 ) -> None:
     """Verify the claims of a paper, run its examples, and write tables, pictures and an HTML report."""
-    from papers.ledger import LedgerError, paper_names
+    from papers.ledger import LedgerError
+    from papers.loading import paper_names
     from papers.reproduction import reproduce
 
     if paper not in paper_names():
@@ -104,7 +105,7 @@ def generate_command(
 
 def decided(name: str) -> Ledger:
     """Decide a paper, with a progress bar where standard error is a terminal."""
-    from papers.ledger import load_paper
+    from papers.loading import load_paper
     from papers.verification import verify
 
     total = len(load_paper(name).claims)

@@ -1,25 +1,18 @@
 """The ledger: what a paper prints, as records that a machine can decide again.
 
-A paper is a folder. Every module `claims*.py` in it has a tuple `CLAIMS`; `printed.py` is the only module in which a
-printed formula can run. Records are checked when they are loaded; `papers.verification` decides them.
+`papers.loading` finds the records of a paper, `papers.record_checks` refuses those that are not well formed,
+`papers.verification` decides them.
 """
 
 from __future__ import annotations
 
-import importlib
-import importlib.util
-import inspect
-import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from enum import IntEnum, StrEnum
-from pathlib import Path
-from types import ModuleType
 from typing import Any
 
 import sympy as sp
 
-from papers.search import smallest_assignment
 from solver.errors import InputError
 
 
@@ -79,6 +72,9 @@ class Formula:
         Chains in which an index or a knot may be mistaken for the next one; the mutation check walks along them.
     equivalent : mapping
         Text of a mutant -> why that mutant says the same as the formula.
+    undecidable : mapping
+        Text of a mutant -> why nothing printed can tell it from the formula; for printed data, such as a knot that no
+        other number of the paper depends on.
     """
 
     relation: Any
@@ -86,6 +82,7 @@ class Formula:
     assumptions: tuple[Any, ...] = ()
     neighbours: tuple[tuple[Any, ...], ...] = ()
     equivalent: Mapping[str, str] = field(default_factory=dict)
+    undecidable: Mapping[str, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -266,6 +263,16 @@ class Claim:
         """The parts of all readings."""
         return tuple(part for reading in self.readings for part in reading.parts)
 
+    @property
+    def correction_parts(self) -> tuple[Part, ...]:
+        """The parts of the correction; none where there is no correction."""
+        return self.correction.parts if self.correction else ()
+
+    @property
+    def corrected_formulas(self) -> tuple[Formula, ...]:
+        """All corrected formulas of the record."""
+        return tuple(part.formula for part in self.correction_parts if part.formula is not None)
+
 
 @dataclass(frozen=True)
 class Paper:
@@ -310,136 +317,3 @@ def decided_cases(check: Check, formula: Formula | None) -> Iterator[Case]:
                 "with one that is not 0"
             )
         yield case
-
-
-def paper_names() -> list[str]:
-    """Return the papers that ship with the package: folders with a `printed.py`."""
-    return sorted(path.parent.name for path in Path(__file__).parent.glob("*/printed.py"))
-
-
-def load_paper(name: str) -> Paper:
-    """Load a paper by its folder name under `papers/`, or by the path of a folder, and check every record.
-
-    Raises
-    ------
-    LedgerError
-        There is no such paper, a module has no CLAIMS, an id occurs twice, or a record is not well formed.
-    """
-    package = _package(name)
-    folder = Path(str(package.__file__)).parent
-    claims: list[Claim] = []
-    for path in sorted(folder.glob("claims*.py")):
-        module = importlib.import_module(f"{package.__name__}.{path.stem}")
-        found = getattr(module, "CLAIMS", None)
-        if not isinstance(found, tuple) or not all(isinstance(c, Claim) for c in found):
-            raise LedgerError(f"{path.name}: CLAIMS is {type(found).__name__}, expected a tuple of Claim")
-        claims += found
-    if not claims:
-        raise LedgerError(f"{folder}: no claims*.py with records, expected at least one")
-    for i, claim in enumerate(claims):
-        if claim.id in {c.id for c in claims[:i]}:
-            raise LedgerError(f"claim {claim.id}: the id occurs twice, expected once")
-        check_record(claim)
-    title, _, legend = inspect.cleandoc(package.__doc__ or folder.name).partition("\n\n")
-    return Paper(name, title.rstrip("."), legend, tuple(claims))
-
-
-def _package(name: str) -> ModuleType:
-    if name in paper_names():
-        return importlib.import_module(f"papers.{name}")
-    folder = Path(name)
-    if not (folder / "printed.py").is_file():
-        known = ", ".join(paper_names())
-        raise LedgerError(f"paper: found {name!r}, expected one of {known}, or a folder with printed.py and claims*.py")
-    folder = folder.resolve()
-    alias = f"_semispline_paper_{folder.name}_{abs(hash(str(folder)))}"
-    if alias not in sys.modules:
-        # A folder is a package even without __init__.py, so that its modules can import `printed` from it.
-        init = folder / "__init__.py"
-        loader_path = init if init.is_file() else folder / "printed.py"
-        spec = importlib.util.spec_from_file_location(alias, loader_path, submodule_search_locations=[str(folder)])
-        if spec is None or spec.loader is None:
-            raise LedgerError(f"paper: {folder} cannot be imported, expected Python modules")
-        module = importlib.util.module_from_spec(spec)
-        sys.modules[alias] = module
-        spec.loader.exec_module(module)
-    return sys.modules[alias]
-
-
-def check_record(claim: Claim) -> None:
-    """Refuse a record that is not well formed.
-
-    Raises
-    ------
-    LedgerError
-        Naming the record, what was found, and what would be right.
-    """
-    for problem in _problems(claim):
-        raise LedgerError(f"claim {claim.id}: {problem}")
-
-
-def _problems(claim: Claim) -> Iterator[str]:
-    if claim.verdict not in list(Verdict):
-        yield f"verdict {claim.verdict!r}, expected one of {', '.join(Verdict)}"
-    if not claim.statement.strip() or not claim.where.strip():
-        yield "statement or place is empty, expected both"
-    for formula in claim.formulas + tuple(p.formula for p in _correction_parts(claim) if p.formula is not None):
-        yield from _formula_problems(formula)
-    for part in claim.parts + _correction_parts(claim):
-        if not part.check.method.strip():
-            yield "a check without a method, expected what is compared with what"
-    yield from _missing_evidence(claim)
-
-
-def _correction_parts(claim: Claim) -> tuple[Part, ...]:
-    return claim.correction.parts if claim.correction else ()
-
-
-def _formula_problems(formula: Formula) -> Iterator[str]:
-    relation = formula.relation
-    if not isinstance(relation, sp.core.relational.Relational):
-        yield f"formula is {relation!r} ({type(relation).__name__}), expected a relation such as Eq"
-        return
-    used = {s for part in (relation, *formula.assumptions) for s in part.free_symbols if isinstance(s, sp.Symbol)}
-    declared = set(formula.variables)
-    if used != declared:
-        undeclared, unused = sorted(map(str, used - declared)), sorted(map(str, declared - used))
-        yield f"free symbols do not match the declared variables: undeclared {undeclared}, unused {unused}"
-    elif formula.assumptions and assumption_instance(formula) is None:
-        yield f"no instance found that satisfies the assumptions {formula.assumptions}, expected at least one"
-
-
-def assumption_instance(formula: Formula) -> dict[sp.Symbol, sp.Rational] | None:
-    """Return the smallest rational instance of the assumptions, or None where a bounded search finds none."""
-    symbols = sorted({s for a in formula.assumptions for s in a.free_symbols}, key=str)
-    tests = [(sorted(a.free_symbols, key=str), a) for a in formula.assumptions]
-    compiled = [(used, sp.lambdify(used, a, "math")) for used, a in tests]
-    return smallest_assignment(symbols, lambda at: all(test(*(at[s] for s in used)) for used, test in compiled))
-
-
-def _missing_evidence(claim: Claim) -> Iterator[str]:
-    verdict = claim.verdict
-    if verdict is Verdict.NOT_CHECKABLE:
-        if not claim.reason.strip():
-            yield "not-checkable without a reason"
-        if claim.readings:
-            yield "not-checkable with readings, expected none"
-        return
-    if claim.reason:
-        yield f"{verdict} with a reason for not being checkable"
-    if not claim.readings or any(not reading.parts for reading in claim.readings):
-        yield f"{verdict} without a check"
-    if verdict is Verdict.AMBIGUOUS and len(claim.readings) < 2:
-        yield f"ambiguous with {len(claim.readings)} reading, expected at least 2"
-    if len(claim.readings) > 1 and not all(reading.label for reading in claim.readings):
-        yield "several readings, one without a label"
-    if verdict is Verdict.HOLDS_IF and not all(reading.condition for reading in claim.readings):
-        yield "holds-if without its condition"
-    if verdict is Verdict.FAILS:
-        missing = [name for name in ("correction", "counterexample", "consequence") if getattr(claim, name) is None]
-        if missing:
-            yield f"fails without {', '.join(missing)}"
-        if claim.correction and not claim.correction.parts:
-            yield "fails with a correction that has no proof"
-        if claim.correction and not claim.correction.statement.strip():
-            yield "fails with a correction that says nothing, expected what is true instead"

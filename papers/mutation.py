@@ -1,14 +1,15 @@
-"""Mutants of a formula: one sign, factor, index, exponent, order or knot changed. A check must notice each.
+"""Mutants of a formula: one sign, factor, index, exponent, limit, number or knot changed. A check must notice each.
 
 A check that would accept a changed formula decides nothing, so every mutant must change what the check finds; one
-that does not is listed with the written reason why it says the same as the formula.
+that does not is listed with the written reason why it says the same as the formula, or why nothing printed tells the
+two apart.
 """
 
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
 from itertools import pairwise, zip_longest
 from typing import Any
 
@@ -16,6 +17,7 @@ import sympy as sp
 from sympy.core.function import AppliedUndef
 
 from papers.ledger import Case, Formula, Part, decided_cases
+from papers.vectors import Knots, Numbers, exchanges, knot_changes, near, number_changes
 
 
 @dataclass(frozen=True)
@@ -25,7 +27,7 @@ class Mutant:
     Attributes
     ----------
     kind : str
-        What was changed: sign, factor, exponent, index, or limit.
+        What was changed: sign, factor, exponent, index, limit, number, or knot.
     relation : sympy.Rel
     """
 
@@ -40,22 +42,45 @@ class Mutant:
 
 @dataclass(frozen=True)
 class MutationResult:
-    """How the mutants of one formula fared.
+    """How the mutants of some formulas fared.
 
     Attributes
     ----------
-    tried, explained : int
-        All mutants, and the survivors with a written reason.
+    kinds : mapping
+        Kind of change -> how many mutants of it were tried.
     survivors : tuple of str
         Mutants that the check did not notice and that nobody explained.
+    equivalent, undecidable : tuple of (str, str)
+        The other survivors, with the written reason: those that say the same as the formula, and those that nothing
+        printed can tell from it.
     undefined : int
         Mutants that were noticed since they divide by zero.
     """
 
-    tried: int
-    explained: int
-    survivors: tuple[str, ...]
+    kinds: Mapping[str, int] = field(default_factory=dict)
+    survivors: tuple[str, ...] = ()
+    equivalent: tuple[tuple[str, str], ...] = ()
+    undecidable: tuple[tuple[str, str], ...] = ()
     undefined: int = 0
+
+    @property
+    def tried(self) -> int:
+        """All mutants."""
+        return sum(self.kinds.values())
+
+    @property
+    def noticed(self) -> int:
+        """Those whose change the check found."""
+        return self.tried - len(self.survivors) - len(self.equivalent) - len(self.undecidable)
+
+    def __add__(self, other: MutationResult) -> MutationResult:
+        return MutationResult(
+            Counter(self.kinds) + Counter(other.kinds),
+            self.survivors + other.survivors,
+            self.equivalent + other.equivalent,
+            self.undecidable + other.undecidable,
+            self.undefined + other.undefined,
+        )
 
 
 def mutants(formula: Formula) -> list[Mutant]:
@@ -74,8 +99,7 @@ def mutants(formula: Formula) -> list[Mutant]:
         expression = relation.args[side]
         if side == 0 and not expression.args:
             continue
-        whole = [("sign", -expression), ("factor", 2 * expression)] if side else []
-        for kind, changed in [*whole, *_variants(expression, neighbours)]:
+        for kind, changed in [*(_whole_variants(expression) if side else ()), *_variants(expression, neighbours)]:
             sides = (relation.args[0], changed) if side else (changed, relation.args[1])
             mutant = relation.func(*sides, evaluate=False)
             if changed != expression and mutant not in found:
@@ -90,14 +114,16 @@ def try_mutants(part: Part) -> MutationResult:
     """
     formula = part.formula
     if formula is None:
-        return MutationResult(0, 0, ())
+        return MutationResult()
     check = part.check
     original: list[Case] | None = None
     probed = check.probe(formula) if check.probe else None
-    tried, explained, undefined, survivors = 0, 0, 0, []
+    survivors: list[Mutant] = []
+    undefined = 0
+    kinds: Counter[str] = Counter()
     probed_of_kind: Counter[str] = Counter()
     for mutant in mutants(formula):
-        tried += 1
+        kinds[mutant.kind] += 1
         changed = Formula(mutant.relation, formula.variables, formula.assumptions)
         try:
             if check.probe and check.probe(changed) != probed:
@@ -106,16 +132,18 @@ def try_mutants(part: Part) -> MutationResult:
                     continue
             if original is None:
                 original = list(decided_cases(check, formula))
-            if _differs(original, decided_cases(check, changed)):
-                continue
+            if not _differs(original, decided_cases(check, changed)):
+                survivors.append(mutant)
         except ZeroDivisionError:
             undefined += 1
-            continue
-        if mutant.text in formula.equivalent:
-            explained += 1
-        else:
-            survivors.append(f"{mutant.kind}: {mutant.text}")
-    return MutationResult(tried, explained, tuple(survivors), undefined)
+    same, open_ = formula.equivalent, formula.undecidable
+    return MutationResult(
+        kinds,
+        tuple(f"{m.kind}: {m.text}" for m in survivors if m.text not in same and m.text not in open_),
+        tuple((m.text, same[m.text]) for m in survivors if m.text in same),
+        tuple((m.text, open_[m.text]) for m in survivors if m.text in open_),
+        undefined,
+    )
 
 
 # How many mutants of a kind go to the check itself although a probe has told them apart.
@@ -137,10 +165,46 @@ def _neighbour_map(chains: tuple[tuple[Any, ...], ...]) -> dict[Any, list[Any]]:
     return near
 
 
-def _variants(expression: Any, near: dict[Any, list[Any]]) -> Iterator[tuple[str, Any]]:
+def _whole_variants(expression: Any) -> Iterator[tuple[str, Any]]:
+    """Yield changes of a whole side."""
+    if isinstance(expression, sp.Tuple):
+        return
+    yield "sign", -expression
+    yield "factor", 2 * expression
+    if expression.is_Integer:
+        yield from (("number", changed) for changed in near(expression))
+
+
+def _data_variants(data: Knots | Numbers) -> Iterator[tuple[str, Any]]:
+    if isinstance(data, Knots):
+        yield from (("knot", changed) for changed in knot_changes(data))
+    else:
+        yield from (("number", changed) for changed in number_changes(data))
+        yield from (("index", changed) for changed in exchanges(data))
+
+
+def _variants(expression: Any, near_by: dict[Any, list[Any]]) -> Iterator[tuple[str, Any]]:
     """Yield (kind, expression with one change), walking through the whole tree."""
-    yield from (("index", other) for other in near.get(expression, []))
-    if isinstance(expression, sp.Add):
+    yield from (("index", other) for other in near_by.get(expression, []))
+    yield from _node_variants(expression)
+    if isinstance(expression, Knots | Numbers | sp.Indexed):
+        return
+    if isinstance(expression, sp.Sum | sp.Integral):
+        for kind, changed in _variants(expression.function, near_by):
+            yield kind, expression.func(changed, *expression.limits)
+        return
+    for i, argument in enumerate(expression.args):
+        for kind, changed in _variants(argument, near_by):
+            yield kind, _with_arg(expression, i, changed)
+
+
+def _node_variants(expression: Any) -> Iterator[tuple[str, Any]]:
+    """Yield changes of one node of the tree."""
+    if isinstance(expression, Knots | Numbers):
+        yield from _data_variants(expression)
+    elif expression.is_Rational and not expression.is_Integer:
+        yield from (("number", changed) for changed in near(expression))
+    elif isinstance(expression, sp.Add):
         for i, term in enumerate(expression.args):
             yield "sign", _with_arg(expression, i, -term)
             yield "factor", _with_arg(expression, i, 2 * term)
@@ -149,26 +213,14 @@ def _variants(expression: Any, near: dict[Any, list[Any]]) -> Iterator[tuple[str
     elif isinstance(expression, sp.Indexed):
         for i in range(1, len(expression.args)):
             yield "index", _with_arg(expression, i, expression.args[i] + 1)
-        return
     elif isinstance(expression, AppliedUndef):
         for i, argument in enumerate(expression.args):
             if argument.is_integer:
                 yield "index", _with_arg(expression, i, argument + 1)
     elif isinstance(expression, sp.Sum):
         yield from _limit_variants(expression)
-        yield from (
-            (kind, sp.Sum(changed, *expression.limits)) for kind, changed in _variants(expression.function, near)
-        )
-        return
     elif isinstance(expression, sp.Integral):
         yield "factor", 2 * expression
-        yield from (
-            (kind, sp.Integral(changed, *expression.limits)) for kind, changed in _variants(expression.function, near)
-        )
-        return
-    for i, argument in enumerate(expression.args):
-        for kind, changed in _variants(argument, near):
-            yield kind, _with_arg(expression, i, changed)
 
 
 def _limit_variants(expression: Any) -> Iterator[tuple[str, Any]]:

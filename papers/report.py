@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator
 from html import escape
 from typing import TYPE_CHECKING, Any
 
-from papers.ledger import Claim, Consequence, Formula, Strength, Verdict
+from papers.ledger import Claim, Consequence, Strength, Verdict
 from papers.mathml import latex, mathml
 from papers.verification import Decision, Ledger, ReadingDecision
 
@@ -91,13 +91,15 @@ def ledger_record(ledger: Ledger) -> dict[str, Any]:
                 "residual": str(residual_of(decision) or ""),
                 "counterexample": decision.counterexample,
                 "corrected": _correction_text(claim),
-                "corrected_formulas": [str(f.relation) for f in _corrected_formulas(claim)],
+                "corrected_formulas": [str(f.relation) for f in claim.corrected_formulas],
                 "consequence": consequence_text(decision.consequence),
                 "measured": dict(decision.consequence.measured) if decision.consequence else {},
                 "remark": claim.remark,
                 "mutants": {
                     "tried": decision.mutation.tried,
-                    "equivalent": decision.mutation.explained,
+                    "kinds": dict(sorted(decision.mutation.kinds.items())),
+                    "equivalent": [{"mutant": m, "reason": why} for m, why in decision.mutation.equivalent],
+                    "undecidable": [{"mutant": m, "reason": why} for m, why in decision.mutation.undecidable],
                     "survivors": list(decision.mutation.survivors),
                 },
                 "seconds": round(decision.seconds, 3),
@@ -120,11 +122,6 @@ def residual_of(decision: Decision) -> Any:
 
 def _correction_text(claim: Claim) -> str:
     return claim.correction.statement if claim.correction else ""
-
-
-def _corrected_formulas(claim: Claim) -> tuple[Formula, ...]:
-    parts = claim.correction.parts if claim.correction else ()
-    return tuple(part.formula for part in parts if part.formula is not None)
 
 
 def ledger_table(ledger: Ledger) -> Table:
@@ -162,8 +159,9 @@ def _mutants(decision: Decision) -> str:
     mutation = decision.mutation
     if not mutation.tried:
         return ""
-    caught = mutation.tried - mutation.explained - len(mutation.survivors)
-    return f"{caught}/{mutation.tried}" + (f" ({mutation.explained} equivalent)" if mutation.explained else "")
+    explained = ((mutation.equivalent, "equivalent"), (mutation.undecidable, "undecidable"))
+    rest = ", ".join(f"{len(found)} {name}" for found, name in explained if found)
+    return f"{mutation.noticed}/{mutation.tried}" + (f" ({rest})" if rest else "")
 
 
 def counts_text(ledger: Ledger) -> str:
@@ -174,7 +172,8 @@ def counts_text(ledger: Ledger) -> str:
         f"{n['printed']} printed claims, {n['decided']} decided, {n['proved']} of them proved or disproved exactly: "
         f"{verdicts}; {n['vacuous']} vacuous, {n['changed']} changed.\n"
         f"Mutants: {n['mutants']} tried, {n['mutants_survived']} survived without a reason, "
-        f"{n['mutants_equivalent']} say the same as the formula (each with its reason)."
+        f"{n['mutants_equivalent']} say the same as the formula and {n['mutants_undecidable']} differ from it in "
+        "printed data that nothing else printed depends on (each with its reason)."
     )
 
 
@@ -243,7 +242,7 @@ def _failure_lines(claim: Claim, decision: Decision) -> Iterator[tuple[str, str]
         "; ".join(_residual_text(reading, len(decision.readings) > 1) for reading in decision.readings) + ".",
     )
     yield "Smallest counterexample:", decision.counterexample + "."
-    corrected = "; ".join(_code(f.relation) for f in _corrected_formulas(claim))
+    corrected = "; ".join(_code(f.relation) for f in claim.corrected_formulas)
     correction = decision.correction
     proof = f" ({_reading_text(correction)})" if correction else ""
     yield "Correct:", f"{_correction_text(claim)} {corrected}{proof}"
@@ -281,7 +280,7 @@ def _conditional_lines(claim: Claim, decision: Decision) -> Iterable[str]:
     if decision.counterexample:
         yield f"Smallest counterexample otherwise: {decision.counterexample}."
     if claim.correction:
-        formulas = "; ".join(_code(f.relation) for f in _corrected_formulas(claim))
+        formulas = "; ".join(_code(f.relation) for f in claim.corrected_formulas)
         yield f"In general: {claim.correction.statement} {formulas}"
 
 
@@ -322,7 +321,7 @@ def _claim_html(claim: Claim, decision: Decision) -> str:
     rows += [("printed", mathml(f.relation)) for f in claim.formulas]
     residual = residual_of(decision)
     rows += [("residual", mathml(residual))] if residual is not None else []
-    rows += [("correct", mathml(f.relation)) for f in _corrected_formulas(claim)]
+    rows += [("correct", mathml(f.relation)) for f in claim.corrected_formulas]
     texts = [
         ("correction", _correction_text(claim)),
         ("counterexample", decision.counterexample),

@@ -19,13 +19,12 @@ from papers.ledger import (
     Claim,
     Consequence,
     Paper,
-    Part,
     Reading,
     Strength,
     Verdict,
     decided_cases,
-    load_paper,
 )
+from papers.loading import load_paper
 from papers.mutation import MutationResult, try_mutants
 
 
@@ -137,7 +136,7 @@ def decide(claim: Claim, time_limit: float = TIME_LIMIT) -> Decision:
     readings: tuple[ReadingDecision, ...] = ()
     verdict, problem, vacuous = None, "", False
     counterexample, correction, consequence = "", None, None
-    mutation = MutationResult(0, 0, ())
+    mutation = MutationResult()
     try:
         with _limited(time_limit):
             readings = tuple(_decide_reading(reading) for reading in claim.readings)
@@ -264,14 +263,7 @@ def _combined(readings: tuple[ReadingDecision, ...]) -> Verdict:
 
 
 def _mutation(claim: Claim) -> MutationResult:
-    parts: tuple[Part, ...] = claim.parts + (claim.correction.parts if claim.correction else ())
-    results = [try_mutants(part) for part in parts]
-    return MutationResult(
-        sum(r.tried for r in results),
-        sum(r.explained for r in results),
-        tuple(s for r in results for s in r.survivors),
-        sum(r.undefined for r in results),
-    )
+    return sum((try_mutants(part) for part in claim.parts + claim.correction_parts), MutationResult())
 
 
 @dataclass(frozen=True)
@@ -297,7 +289,8 @@ class Ledger:
             "vacuous": sum(d.vacuous for d in self.decisions),
             "changed": sum(d.verdict is not d.recorded for d in self.decisions),
             "mutants": sum(d.mutation.tried for d in self.decisions),
-            "mutants_equivalent": sum(d.mutation.explained for d in self.decisions),
+            "mutants_equivalent": sum(len(d.mutation.equivalent) for d in self.decisions),
+            "mutants_undecidable": sum(len(d.mutation.undecidable) for d in self.decisions),
             "mutants_undefined": sum(d.mutation.undefined for d in self.decisions),
             "mutants_survived": sum(len(d.mutation.survivors) for d in self.decisions),
         }

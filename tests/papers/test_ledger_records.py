@@ -18,10 +18,9 @@ from papers.ledger import (
     Reading,
     Strength,
     Verdict,
-    check_record,
-    load_paper,
-    paper_names,
 )
+from papers.loading import load_paper, paper_names
+from papers.record_checks import check_record
 
 x, y = sp.symbols("x y", real=True)
 CHECK = Check(lambda formula: [Case("one", True)], Strength.RATIONAL, "one instance")

@@ -9,7 +9,6 @@ import pytest
 import sympy as sp
 
 import papers.lin2014
-from papers.ledger import load_paper
 from papers.lin2014 import printed as pr
 from papers.lin2014.claims_3_conditions import TRUE_2_2, TRUE_3_1, TRUE_3_2
 from papers.lin2014.consequences import made_blend, made_pair, measured_rows, with_printed_rows
@@ -17,6 +16,7 @@ from papers.lin2014.consequences_3 import COMMON_TERMS, with_normal_equation
 from papers.lin2014.contact_checks import row_check, row_counterexample, t_ks1, u_before, u_last, w_kr1
 from papers.lin2014.exact import Meaning, UndefinedError, clamped, de_boor, interpret
 from papers.lin2014.figure_checks import CONTACTS, knot_cases, quartic_cases, straight_counterexample
+from papers.loading import load_paper
 from papers.search import smallest_assignment
 
 ROOT = Path(__file__).parents[2]

@@ -1,0 +1,85 @@
+"""What makes a record well formed; one that is not is refused when it is loaded."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import sympy as sp
+
+from papers.ledger import Claim, Formula, LedgerError, Verdict
+from papers.search import smallest_assignment
+
+
+def check_record(claim: Claim) -> None:
+    """Refuse a record that is not well formed.
+
+    Raises
+    ------
+    LedgerError
+        Naming the record, what was found, and what would be right.
+    """
+    for problem in _problems(claim):
+        raise LedgerError(f"claim {claim.id}: {problem}")
+
+
+def _problems(claim: Claim) -> Iterator[str]:
+    if claim.verdict not in list(Verdict):
+        yield f"verdict {claim.verdict!r}, expected one of {', '.join(Verdict)}"
+    if not claim.statement.strip() or not claim.where.strip():
+        yield "statement or place is empty, expected both"
+    for formula in claim.formulas + claim.corrected_formulas:
+        yield from _formula_problems(formula)
+    for part in claim.parts + claim.correction_parts:
+        if not part.check.method.strip():
+            yield "a check without a method, expected what is compared with what"
+    yield from _missing_evidence(claim)
+
+
+def _formula_problems(formula: Formula) -> Iterator[str]:
+    relation = formula.relation
+    if not isinstance(relation, sp.core.relational.Relational):
+        yield f"formula is {relation!r} ({type(relation).__name__}), expected a relation such as Eq"
+        return
+    used = {s for part in (relation, *formula.assumptions) for s in part.free_symbols if isinstance(s, sp.Symbol)}
+    declared = set(formula.variables)
+    if used != declared:
+        undeclared, unused = sorted(map(str, used - declared)), sorted(map(str, declared - used))
+        yield f"free symbols do not match the declared variables: undeclared {undeclared}, unused {unused}"
+    elif formula.assumptions and assumption_instance(formula) is None:
+        yield f"no instance found that satisfies the assumptions {formula.assumptions}, expected at least one"
+
+
+def assumption_instance(formula: Formula) -> dict[sp.Symbol, sp.Rational] | None:
+    """Return the smallest rational instance of the assumptions, or None where a bounded search finds none."""
+    symbols = sorted({s for a in formula.assumptions for s in a.free_symbols}, key=str)
+    tests = [(sorted(a.free_symbols, key=str), a) for a in formula.assumptions]
+    compiled = [(used, sp.lambdify(used, a, "math")) for used, a in tests]
+    return smallest_assignment(symbols, lambda at: all(test(*(at[s] for s in used)) for used, test in compiled))
+
+
+def _missing_evidence(claim: Claim) -> Iterator[str]:
+    verdict = claim.verdict
+    if verdict is Verdict.NOT_CHECKABLE:
+        if not claim.reason.strip():
+            yield "not-checkable without a reason"
+        if claim.readings:
+            yield "not-checkable with readings, expected none"
+        return
+    if claim.reason:
+        yield f"{verdict} with a reason for not being checkable"
+    if not claim.readings or any(not reading.parts for reading in claim.readings):
+        yield f"{verdict} without a check"
+    if verdict is Verdict.AMBIGUOUS and len(claim.readings) < 2:
+        yield f"ambiguous with {len(claim.readings)} reading, expected at least 2"
+    if len(claim.readings) > 1 and not all(reading.label for reading in claim.readings):
+        yield "several readings, one without a label"
+    if verdict is Verdict.HOLDS_IF and not all(reading.condition for reading in claim.readings):
+        yield "holds-if without its condition"
+    if verdict is Verdict.FAILS:
+        missing = [name for name in ("correction", "counterexample", "consequence") if getattr(claim, name) is None]
+        if missing:
+            yield f"fails without {', '.join(missing)}"
+        if claim.correction and not claim.correction.parts:
+            yield "fails with a correction that has no proof"
+        if claim.correction and not claim.correction.statement.strip():
+            yield "fails with a correction that says nothing, expected what is true instead"
