@@ -5,18 +5,18 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from fractions import Fraction
 from functools import cache
-from itertools import pairwise
+from itertools import accumulate, pairwise
 from typing import Any
 
 import sympy as sp
 
 from derivations.contact import A, contact_rows
-from derivations.splines import span_symbols
-from papers.ledger import Case, Formula
+from derivations.splines import basis_pieces, end_derivative_step, end_derivatives, span_symbols
+from papers.ledger import Case, Check, Formula, Strength
 from papers.lin2014 import printed as pr
 from papers.lin2014.exact import Meaning, UndefinedError, clamped, de_boor, difference_case, net_ring
-from papers.lin2014.property_checks import contained, union
-from papers.lin2014.spline_checks import functions_on
+from papers.lin2014.property_checks import contact_at_knot, contained, insertion_cases, union
+from papers.lin2014.spline_checks import Counting, domain_ends, functions_on, last_knot
 
 CUBIC = 4
 # The pairs of contact curves whose knots the paper prints; those of Fig. 10 with the fourth zero that is missing.
@@ -40,8 +40,26 @@ def inner_knots(key: str) -> list[Fraction]:
     return [Fraction(int(x.p), int(x.q)) for x in map(sp.Rational, pr.KNOTS[key]) if 0 < x < 1]
 
 
+ORDERS = range(2, 9)
+
+
+@cache
+def _clamped_ends() -> tuple[Case, ...]:
+    """Decide that at a clamped end the first function is 1 and the others 0, for every order and order by order."""
+    first = end_derivatives(2, pr.k - 1, span_symbols(2))[0, :] - sp.Matrix([[1, 0, 0]])
+    step = end_derivative_step(2)[0, :]
+    cases = [Case("every order and knots, by induction", bool(first.is_zero_matrix and step.is_zero_matrix))]
+    for k in ORDERS:
+        (span,) = basis_pieces(k - 1, [0] * k + [1] * k)
+        ends = [[piece.eval(x) for piece in span.pieces] for x in (0, 1)]
+        unit = [int(i == 0) for i in range(k)]
+        cases.append(Case(f"order {k}, without inner knots, both ends", ends == [unit, unit[::-1]], own=k == CUBIC))
+    return tuple(cases)
+
+
 def contact_curve_cases() -> Iterator[Case]:
     """Yield bases: at the clamped end w_s the surface is the curve of its first row over V^r, or V^s."""
+    yield from _clamped_ends()
     for k, length in ((2, 3), (3, 2), (4, 4)):
         across, along = clamped(k, Fraction(1, 3), start=-1, end=2), clamped(length, Fraction(1, 4), Fraction(3, 5))
         rows, columns = len(across) - k, len(along) - length
@@ -53,7 +71,15 @@ def contact_curve_cases() -> Iterator[Case]:
 
 
 def mismatch_cases() -> Iterator[Case]:
-    """Yield pairs of knot vectors: true where no single one of the two carries both contact curves."""
+    """Yield pairs of knot vectors: true where no single one of the two carries both contact curves.
+
+    Where a vector has a knot r-fold and the other one less often, some spline over the first is smooth there to the
+    order k - 1 - r only, and every spline over the second is smoother.
+    """
+    for k in ORDERS:
+        orders = {r: contact_at_knot(k, r) for r in range(1, k)}
+        lost = all(orders[r] == k - 1 - r < orders.get(r - 1, k - 1) for r in orders)
+        yield Case(f"order {k}, a knot that one has more often, anywhere", lost, own=k == CUBIC)
     pairs = {name: printed_pair(name) for name in PRINTED_PAIRS}
     half = Fraction(1, 2)
     pairs["{1/2} and {1/4, 1/2, 3/4}"] = (clamped(4, half), clamped(4, half / 2, half, 3 * half / 2))
@@ -64,16 +90,37 @@ def mismatch_cases() -> Iterator[Case]:
 
 
 def nested_space_cases() -> Iterator[Case]:
-    """Yield printed pairs: the spline space of either vector lies in that of the union of knots."""
+    """Yield that knot insertion changes no spline, and printed pairs: both lie in the space of the union of knots."""
+    yield from insertion_cases()
     for name in PRINTED_PAIRS:
         a, b = printed_pair(name)
         both = union(CUBIC, a, b)
         yield Case(name, contained(CUBIC, a, both) and contained(CUBIC, b, both))
 
 
+def knot_line_cases() -> Iterator[Case]:
+    """Yield that the union of two knot vectors, neither part of the other, is larger than either; printed pairs too."""
+    shared, more, others = sp.symbols("c x y", integer=True, nonnegative=True)
+    # Each has the shared knots and at least one more.
+    a, b = shared + 1 + more, shared + 1 + others
+    both = a + b - shared
+    yield Case("every count of knots", bool((both - a).is_positive and (both - b).is_positive))
+    for name, keys in PRINTED_PAIRS.items():
+        vectors = [set(inner_knots(key)) for key in keys]
+        union_of_knots = set.union(*vectors)
+        yield Case(f"{name}: {len(union_of_knots)} inner knots", all(x < union_of_knots for x in vectors))
+
+
 def layout_cases(formula: Formula | None) -> Iterator[Case]:
     """Decide the bound on m: what it admits has disjoint first and last three curves, and enough rows for order k."""
     relation = _given(formula).relation
+    least = sp.Symbol("m_0", integer=True)
+    over, more = sp.symbols("r s", integer=True, nonnegative=True)
+    # The least m that the bound admits, for k = 4 + r; then s more.
+    (bound,) = sp.solve((relation.lhs - relation.rhs).subs(pr.m, least), least)
+    m, k = bound.subs(pr.k, CUBIC + over) + more, CUBIC + over
+    sound = (m - 5).expand().is_nonnegative and (m + 1 - k).expand().is_nonnegative
+    yield Case("every k >= 4 and every m admitted", bool(sound))
     for k in range(2, 8):
         admitted = [m for m in range(1, 12) if relation.subs({pr.k: k, pr.m: m})]
         unsound = [m for m in admitted if m - 2 <= 2 or m + 1 < k]
@@ -84,16 +131,36 @@ def layout_cases(formula: Formula | None) -> Iterator[Case]:
             yield Case(f"k = {k}, m = {m}", m not in unsound, own=k == CUBIC)
 
 
-def u_length_instances() -> Iterator[tuple[str, dict[Any, Any], bool]]:
+def u_length() -> Counting:
     """Count: the last index of U for m + 1 functions of order k."""
-    for k in range(2, 7):
-        for m in range(k + 1, k + 5):
-            length = next(x for x in range(1, 40) if functions_on(x, k) == m + 1)
-            yield f"k = {k}, m = {m}", {pr.last: length - 1, pr.m: m, pr.k: k}, k == CUBIC
+
+    def instances() -> Iterator[tuple[str, dict[Any, Any], bool]]:
+        for k in range(2, 7):
+            for m in range(k + 1, k + 5):
+                length = next(x for x in range(1, 40) if functions_on(x, k) == m + 1)
+                yield f"k = {k}, m = {m}", {pr.last: length - 1, pr.m: m, pr.k: k}, k == CUBIC
+
+    return Counting({pr.last: last_knot(pr.m, pr.k)}, instances)
 
 
 def uniform_knot_cases(formula: Formula | None) -> Iterator[Case]:
     """Decide u_i: the inner knots divide [0, 1] into equal spans."""
+    relation = _given(formula).relation
+    printed = relation.rhs
+    inner = last_knot(pr.m, pr.k) + 1 - 2 * pr.k
+    # On the left Y(i) itself, or another knot: its distance in i.
+    shift = relation.lhs.args[0] - pr.i
+
+    def knot(i: Any) -> Any:
+        return printed.subs(pr.i, i - shift)
+
+    step = sp.cancel(knot(pr.i + 1) - knot(pr.i) - (knot(pr.i) - knot(pr.i - 1)))
+    for label, residual in (
+        ("every m, k: equal spans", step),
+        ("every m, k: the one before the first is 0", sp.cancel(knot(0))),
+        ("every m, k: the one after the last is 1", sp.cancel(knot(inner + 1) - 1)),
+    ):
+        yield Case(label, bool(residual == 0), residual=residual)
     for k in range(2, 7):
         for m in range(k + 1, k + 5):
             inner = next(x for x in range(1, 40) if functions_on(x, k) == m + 1) - 2 * k
@@ -112,6 +179,9 @@ def _looked_up(values: dict[int, Any], key: int) -> Any:
 def three_row_cases() -> Iterator[Case]:
     """Yield orders: rows 0..2 of the blend are combinations of rows 0..2 of the base, and row 2 needs R_2."""
     every = contact_rows(2, pr.k - 1, span_symbols(2), pr.k_r - 1, span_symbols(2, "H"))
+    over, base_over = sp.symbols("r s", integer=True, nonnegative=True)
+    top = every[2, 2].subs({pr.k: 3 + over, pr.k_r: 3 + base_over})
+    yield Case("every order from 3 on, every knots: R_2 has a factor in row 2", bool(top.is_positive and top.has(A)))
     for k in range(3, 8):
         for k_r in range(3, 8):
             rows = every.subs({pr.k: k, pr.k_r: k_r})
@@ -119,11 +189,41 @@ def three_row_cases() -> Iterator[Case]:
             yield Case(f"orders {k}, {k_r}", bool(rows.shape == (3, 3) and needed), own=k == k_r == CUBIC)
 
 
-def middle_curve_cases() -> Iterator[Case]:
-    """Yield k = 4: with m = k + 1 there is no row between the first and last three, with m = 6 there is just P_3."""
-    for m, middle in ((5, []), (6, [3])):
-        rows = [i for i in range(m + 1) if 2 < i < m - 2]
-        yield Case(f"m = {m}", rows == middle)
+def set_rows(order: int) -> tuple[Any, Any]:
+    """Return the last row that contact of an order sets at u = 0, and the first one at u = 1, for every m.
+
+    The matrix of end derivatives 0 .. n is triangular without a zero on its diagonal: it sets rows 0 .. n, each.
+    """
+    matrix = end_derivatives(order, pr.k - 1, span_symbols(order))
+    diagonal = [sp.factor(matrix[d, d]) for d in range(order + 1)]
+    if not matrix.is_lower or any(entry == 0 for entry in diagonal):
+        raise ValueError(f"end derivatives: found the diagonal {diagonal}, expected a triangular matrix without zero")
+    return sp.Integer(matrix.rows - 1), pr.m - (matrix.rows - 1)
+
+
+_ROWS_SET = "rows that contact of order 2 sets: end derivatives are triangular in them, every order, knots and m"
+
+
+def row_check_of(row: Callable[[Any, Any], Any]) -> Check:
+    """Return the check of the index of a row, which follows from the last and the first row that contact sets."""
+
+    def cases(formula: Formula | None) -> Iterator[Case]:
+        residual = sp.expand(_given(formula).relation.rhs - row(*set_rows(2)))
+        yield Case("every m", bool(residual == 0), residual=residual)
+
+    return Check(cases, Strength.SYMBOLIC_ORDER, _ROWS_SET, proof=True)
+
+
+def middle_count_check(count: int) -> Check:
+    """Return the check of the number m for which contact of order 2 leaves just `count` rows free."""
+
+    def cases(formula: Formula | None) -> Iterator[Case]:
+        at_start, at_end = set_rows(2)
+        (m,) = sp.solve((at_end - 1) - (at_start + 1) + 1 - count, pr.m)
+        residual = _given(formula).relation.rhs - m
+        yield Case(f"rows between {at_start} and {at_end}: {count}", bool(residual == 0), residual=residual)
+
+    return Check(cases, Strength.SYMBOLIC_ORDER, _ROWS_SET, proof=True)
 
 
 @cache
@@ -133,10 +233,13 @@ def merged(name: str) -> tuple[Fraction, ...]:
     return tuple(sorted({*inner_knots(first), *inner_knots(second)}))
 
 
-def paired_cases(last_pair: Callable[[int], int]) -> Callable[[Formula | None], Iterator[Case]]:
-    """Return the check of the averaging rule for i = 1 .. last_pair(n), on the printed vectors."""
+def paired_cases(last_pair: Callable[[Any], Any]) -> Callable[[Formula | None], Iterator[Case]]:
+    """Return the check of the averaging rule for i = 1 .. last_pair(n): for every n, and on the printed vectors."""
 
     def cases(formula: Formula | None) -> Iterator[Case]:
+        half = sp.Symbol("q", integer=True, positive=True)
+        for n in (2 * half, 2 * half + 1):
+            yield _pair_case(_given(formula), n, last_pair(n))
         for name in PRINTED_PAIRS:
             v = merged(name)
             knots = {r + 1: value for r, value in enumerate(v)}
@@ -152,16 +255,42 @@ def paired_cases(last_pair: Callable[[int], int]) -> Callable[[Formula | None], 
     return cases
 
 
+def _pair_case(formula: Formula, n: Any, last: Any) -> Case:
+    """Decide the rule for every i = 1 .. last: the mean of pair i, whose knots exist up to v_n."""
+    relation = formula.relation
+    i = relation.lhs.args[0]
+    # i - 1 pairs stand before pair i.
+    before = 2 * (i - 1)
+    residual = sp.expand(relation.rhs - (pr.x[sp.expand(before + 1)] + pr.x[sp.expand(before + 2)]) / 2)
+    used = [entry.indices[0] for entry in relation.rhs.atoms(sp.Indexed)]
+    missing = [index for index in (x.subs(pr.i, last) for x in used) if not (n - index).is_nonnegative]
+    if residual == 0 and missing:
+        residual = sp.Symbol(f"undefined: v_({missing[0]}) of v_1 .. v_({n})")
+    return Case(f"every pair of v_1 .. v_n, n = {n}", bool(residual == 0), residual=residual)
+
+
 def sliding_cases(_: Formula | None) -> Iterator[Case]:
     """Decide the other reading of "adjacent": (v_i + v_{i+1}) / 2, i = 1 .. n - 1, gives inner knots that increase."""
+    first, gaps = sp.Symbol("v", positive=True), sp.symbols("g_1:3", positive=True)
+    knots = list(accumulate((first, *gaps)))
+    one, other = ((a + b) / 2 for a, b in pairwise(knots))
+    inside = (one - knots[0]).is_positive and (knots[-1] - other).is_positive
+    yield Case("any three neighbours", bool(inside and sp.expand(other - one).is_positive))
     for name in PRINTED_PAIRS:
         v = merged(name)
         means = [(a + b) / 2 for a, b in pairwise(v)]
         yield Case(name, len(means) == len(v) - 1 and means == sorted(set(means)) and means[0] > 0 and means[-1] < 1)
 
 
-def bezier_end_cases() -> Iterator[Case]:
-    """Yield figures: the averaged knots with l-fold v_s and v_e clamp a curve with l more points than inner knots."""
+def bezier_end_cases(formula: Formula | None) -> Iterator[Case]:
+    """Decide how often v_s and v_e stand: so that the curve starts and ends in a control point, all knots in use."""
+    start, end = domain_ends(pr.n, pr.ell)
+    relation = _given(formula).relation
+    # Knots 0 .. start, and those from the end of the domain to the last one.
+    for label, run in (("v_s", start + 1), ("v_e", last_knot(pr.n, pr.ell) - end + 1)):
+        residual = sp.expand(relation.rhs - run)
+        yield Case(f"every order: {label}", bool(residual == 0), residual=residual)
+    yield from _clamped_ends()
     for name in WITH_MIDDLE_CURVE:
         v = merged(name)
         inner = [sum(v[r : r + 2]) / 2 for r in range(0, len(v) - 1, 2)]

@@ -2,16 +2,26 @@
 
 from __future__ import annotations
 
-from papers.ledger import Case, Check, Claim, Correction, Counterexample, Part, Reading, Strength, Verdict
+from papers.ledger import Case, Claim, Correction, Counterexample, Part, Reading, Strength, Verdict
 from papers.lin2014 import printed as pr
 from papers.lin2014 import property_checks as properties
 from papers.lin2014.consequences_2 import one_function_for_all
-from papers.lin2014.property_checks import proof_check, proved, question
-from papers.lin2014.spline_checks import CURVE_CHECK, SURFACE_CHECK, count_check, knot_count_instances
+from papers.lin2014.property_checks import identity_cases, proof_check, proved
+from papers.lin2014.spline_checks import (
+    CURVE_CHECK,
+    SURFACE_CHECK,
+    count_check,
+    curve_instances,
+    knot_count_instances,
+)
 
 _WHERE = "Section 2, definition"
 _PROPERTIES = "Section 2, properties"
-_COUNT = "counting knots and basis functions, orders 1 to 6, by running the recurrence on distinct knots"
+_COUNT = (
+    "the number of functions by induction on the order, for every order and count; orders 1 to 6 by running the "
+    "recurrence on distinct knots"
+)
+_EITHER_ORDER = "what multiplies one control point, summed in either order; triangles in either order at instances"
 
 
 def _figure_1_cases():  # type: ignore[no-untyped-def]
@@ -24,10 +34,15 @@ def _figure_1_cases():  # type: ignore[no-untyped-def]
 
 def _wrong_basis_counterexample() -> Counterexample:
     """Search orders, curves and control points for the smallest at which the family B_{i,l} gives another curve."""
-    for case in CURVE_CHECK.cases(pr.BASIS_OF_CURVE):
+    for case in curve_instances(pr.BASIS_OF_CURVE):
         if not case.true:
             return Counterexample((("instance", case.label),), f"off by {case.residual}", "0")
     raise ValueError("the search found no counterexample")
+
+
+def _domain_cases():  # type: ignore[no-untyped-def]
+    yield from identity_cases("partition of unity")
+    yield from properties.common_domain_cases()
 
 
 CLAIMS = (
@@ -39,7 +54,15 @@ CLAIMS = (
         Verdict.HOLDS_IF,
         (
             Reading(
-                (Part(question(properties.common_domain_cases, "partition of unity of every curve at rational v")),),
+                (
+                    Part(
+                        proved(
+                            _domain_cases,
+                            "partition of unity of every curve on its domain, every order and knots; outside of it a "
+                            "counterexample is enough",
+                        )
+                    ),
+                ),
                 condition="the domain [v^i_{l-1}, v^i_{n_i+1}] of every curve contains [v_s, v_e]",
             ),
         ),
@@ -96,7 +119,20 @@ CLAIMS = (
         "Fig. 1",
         "Seven v-control curves with 5, 5, 5, 7, 6, 6, 6 control points.",
         Verdict.HOLDS,
-        (Reading((Part(question(_figure_1_cases, "counts against Definition 1 and (13) for a bicubic surface")),)),),
+        (
+            Reading(
+                (
+                    Part(
+                        proved(
+                            _figure_1_cases,
+                            "counts against Definition 1 and (13) for a bicubic surface: the claim is on seven "
+                            "printed numbers, and all are checked",
+                            Strength.RATIONAL,
+                        )
+                    ),
+                )
+            ),
+        ),
         remark="Laid out like (13) with one middle curve. With single inner knots, 1 and 2 of them, the rule of "
         "section 3 gives that curve 5 or 6 points, never 7, which the union of the knots gives. The caption does not "
         "say that the rule was used.",
@@ -106,7 +142,7 @@ CLAIMS = (
         "Section 1.1",
         "The semi-structured surface generalises the classical one: with equal knot vectors it is that.",
         Verdict.HOLDS,
-        (Reading((Part(question(properties.same_knots_cases, "triangles in either order, all control points")),)),),
+        (Reading((Part(proved(properties.same_knots_cases, _EITHER_ORDER)),)),),
     ),
     Claim(
         "sec-2.evaluation",
@@ -120,7 +156,7 @@ CLAIMS = (
         "Section 2, evaluation",
         "A classical surface may be evaluated in either order.",
         Verdict.HOLDS,
-        (Reading((Part(question(properties.same_knots_cases, "triangles in either order, all control points")),)),),
+        (Reading((Part(proved(properties.same_knots_cases, _EITHER_ORDER)),)),),
     ),
     Claim(
         "sec-2.convex-hull",
@@ -154,9 +190,18 @@ CLAIMS = (
                 (
                     Part(proof_check("continuity")),
                     Part(
-                        question(properties.continuity_control_cases, "order of contact at knots of each multiplicity")
+                        proved(
+                            properties.continuity_control_cases,
+                            "order of contact at a symbolic knot of each multiplicity, orders 2 to 8",
+                            Strength.EACH_ORDER,
+                        )
                     ),
-                    Part(question(properties.independent_control_cases, "jump of each curve, reach of its u-function")),
+                    Part(
+                        proved(
+                            properties.independent_control_cases,
+                            "what multiplies the jump of one curve; the reach of its u-function by an example",
+                        )
+                    ),
                 )
             ),
         ),
@@ -174,8 +219,8 @@ CLAIMS = (
                     Part(
                         proved(
                             properties.conversion_cases,
-                            "each spline space lies in that of the union of knots, by rank",
-                            Strength.RATIONAL,
+                            "knot insertion by induction on the order, for every order, knots and place of the new "
+                            "knot; spaces over the union of knots by rank",
                         )
                     ),
                 )
@@ -187,18 +232,7 @@ CLAIMS = (
         _PROPERTIES,
         "Partial derivatives of a classical surface are spline surfaces of lower degree.",
         Verdict.HOLDS,
-        (
-            Reading(
-                (
-                    Part(proof_check("derivative")),
-                    Part(
-                        question(
-                            properties.classical_derivative_cases, "differenced control points against derivatives"
-                        )
-                    ),
-                )
-            ),
-        ),
+        (Reading((Part(proof_check("derivative", "u-derivative", instances=properties.classical_derivative_cases)),)),),
         remark="The text points at (1) for the classical surface; (1) is the semi-structured one.",
     ),
     Claim(
@@ -210,17 +244,25 @@ CLAIMS = (
             Reading(
                 (
                     Part(
-                        Check(
-                            lambda _: properties.row_difference_cases(),
-                            Strength.RATIONAL,
-                            "whether a difference of two rows lies in the spline space of either, by rank",
+                        proved(
+                            properties.row_difference_cases,
+                            "smoothness at a symbolic knot that one row alone has, orders 2 to 8; spline spaces by "
+                            "rank",
+                            Strength.EACH_ORDER,
                         )
                     ),
                 ),
                 label="their rows do not fit on the knot vectors V_i",
             ),
             Reading(
-                (Part(question(properties.no_spline_form_cases, "differenced rows over merged knots, exactly")),),
+                (
+                    Part(
+                        proved(
+                            properties.no_spline_form_cases,
+                            "differenced rows over merged knots, for every order and knots; exactly at instances",
+                        )
+                    ),
+                ),
                 label="they have no spline form",
             ),
         ),

@@ -18,8 +18,8 @@ from papers.lin2014.contact_checks import (
     unconditional,
     w_kr1,
 )
-from papers.lin2014.geometry_checks import direction_cases, shape_parameter_cases
-from papers.lin2014.property_checks import proved, question
+from papers.lin2014.objective_checks import direction_check, shape_parameter_cases
+from papers.lin2014.property_checks import proved
 from papers.lin2014.records import ambiguous, fails, holds_if, part
 
 _START_CHAINS = (*pr.COND_3_1.neighbours, (pr.w_kr, w_kr1))
@@ -67,6 +67,12 @@ TRUE_3_2 = Formula(
 )
 
 # The conditions with alpha = beta = 1, printed and true.
+PARAMETRIC_2_1 = Formula(
+    pr.COND_2_1.relation.subs(pr.alpha, 1),
+    tuple(x for x in pr.COND_2_1.variables if x != pr.alpha),
+    pr.COND_2_1.assumptions,
+    pr.COND_2_1.neighbours,
+)
 PARAMETRIC_3_1 = Formula(
     pr.COND_3_1.relation.subs(pr.alpha, 1),
     tuple(x for x in pr.COND_3_1.variables if x != pr.alpha),
@@ -165,7 +171,9 @@ CLAIMS = (
              part(unconditional(row_check("end", 0)), pr.COND_1_2),
              part(unconditional(row_check("start", 1)), pr.COND_2_1),
              part(row_check("end", 1), pr.COND_2_2),
-             part(question(lambda: shape_parameter_cases(1), "the implicit equation of a base, exact, regularity")),
+             part(proved(shape_parameter_cases,
+                         "the normal of the blend for any regular base and alpha; the implicit equation of a base; for "
+                         "alpha = 0 and a singular base an example is enough")),
              counterexample=partial(row_counterexample, "end", 1, pr.COND_2_2),
              remark="At alpha = 0 rows 0 and 1 of the blend coincide and it has no tangent plane at the contact; "
              "nothing in the method keeps the search away from there (see sec-4.unconstrained)."),
@@ -180,9 +188,9 @@ CLAIMS = (
                               "The made pair with rows 1 and 2 as printed, the rest as in the checked G2 blend")),
     ambiguous("sec-3.parametric-c1", "Section 3, parametric continuity",
               "With alpha = beta = 1 the G1 conditions become C1 conditions.",
-              Reading((part(proved(lambda: direction_cases(1), "the chain rule")),),
+              Reading((part(direction_check(1), PARAMETRIC_2_1),),
                       label="in the parameters w of R and u of P as they are, P_u = R_w"),
-              Reading((part(proved(lambda: direction_cases(-1), "the chain rule")),),
+              Reading((part(direction_check(-1), PARAMETRIC_2_1),),
                       label="with R run backwards, P_u = -R_w"),
               remark="At S the parameters run the same way and P_u = S_t."),
     fails("sec-3.parametric-c2", "Section 3, parametric continuity",

@@ -8,18 +8,19 @@ import sympy as sp
 from sympy import Eq
 
 from derivations.contact import contact_rows
+from derivations.splines import span_symbols
 from papers.ledger import Case, Check, Claim, Correction, Counterexample, Formula, Part, Strength
+from papers.lin2014 import blending_checks as blending
 from papers.lin2014 import energy_checks as energy
+from papers.lin2014 import objective_checks as objective
 from papers.lin2014 import printed as pr
 from papers.lin2014.consequences_3 import single_integrals, third_term, vector_lengths, zero_system
 from papers.lin2014.exact import Meaning, difference_case, indexed
-from papers.lin2014.property_checks import proved, question
+from papers.lin2014.property_checks import proved
 from papers.lin2014.records import fails, holds, holds_if, not_checkable, part
 
 _WHERE = "Section 4"
-_GRAM = Check(energy.gram_entry_cases, Strength.RATIONAL,
-              "entries against coefficients of the exact energy, bicubic, printed knots of Fig. 5")  # fmt: skip
-_DEGREE = "degree of the exact energy of a strip after substitution, k = 4, one middle curve"
+_GRAM = objective.GRAM_CHECK
 
 TRUE_14 = Formula(
     Eq(pr.K, pr.A_2 * pr.G_0 + 2 * pr.A_1 * pr.G_1 + pr.A_0 * pr.G_2),
@@ -56,23 +57,21 @@ def _true_entry(label: str) -> Iterator[sp.Rational]:
 
 def _no_middle_cases() -> Iterator[Case]:
     """Yield m = 5: contact of order 2 at both ends sets all six rows; the end derivatives determine each of them."""
-    h, H = sp.symbols("h1 h2", positive=True), sp.symbols("H1 H2", positive=True)
-    rows = contact_rows(2, 3, h, 3, H)
-    yield Case("rows 0, 1, 2 from R, rows 3, 4, 5 from S", energy.free_rows(5, 2) == [] and rows.shape == (3, 3))
-    yield Case("each of them is determined", all(entry.is_finite is not False for entry in rows))
-
-
-def _unknown_cases() -> Iterator[Case]:
-    """Yield m: the rows listed in X, 3 .. m-3, and in N, 0 .. 2 and m-2 .. m, are all rows, each once."""
-    for m in range(5, 11):
-        listed = [*range(3, m - 2), 0, 1, 2, m - 2, m - 1, m]
-        yield Case(f"m = {m}", sorted(listed) == list(range(m + 1)) and energy.free_rows(m, 2) == listed[: m - 5])
+    at_start, at_end = blending.set_rows(2)
+    between = (at_end - at_start - 1).subs(pr.m, 5)
+    yield Case("rows 0, 1, 2 from R, rows 3, 4, 5 from S, for every order and knots", between == 0)
 
 
 def _cvv_cases(formula: Formula | None) -> Iterator[Case]:
     """Decide the last index of rows 3 and m-3 in C_vv, for rows of different lengths."""
     if formula is None:
         raise ValueError("formula: found None, expected a relation")
+    # In (1) the inner sum of row i ends with j = n_i.
+    inner = pr.EQ_1.relation.rhs.atoms(sp.Sum) - {pr.EQ_1.relation.rhs}
+    ends = [total.limits[0][2] for total in inner]
+    row = pr.m - 3 if formula.relation.rhs.has(pr.m) else sp.Integer(3)
+    residual = formula.relation.rhs - ends[0].subs(pr.i, row)
+    yield Case(f"rows of any lengths, row {row}", bool(residual == 0), residual=residual)
     # All lengths differ, so that no two indices are confused.
     for m, sizes in ((6, (4, 5, 6, 7, 8, 9, 10)), (7, (4, 5, 6, 7, 8, 9, 10, 11))):
         row = m - 3 if formula.relation.rhs.has(pr.m) else 3
@@ -82,47 +81,55 @@ def _cvv_cases(formula: Formula | None) -> Iterator[Case]:
 
 
 def _cvv_counterexample() -> Counterexample | None:
-    case = next((c for c in _cvv_cases(pr.CVV_LAST[0]) if not c.true), None)
+    case = next((c for c in _cvv_cases(pr.CVV_LAST[0]) if not c.true and c.residual.is_number), None)
     if case is None:
         return None
     return Counterexample((("rows", case.label),), f"last index off by {case.residual}", "n_3")
 
 
 def _initial_cases() -> Iterator[Case]:
-    """Yield that the rows of a C2 blend are those of a G2 blend with alpha = beta = 1."""
-    h, H = sp.symbols("h1 h2", positive=True), sp.symbols("H1 H2", positive=True)
+    """Yield that the rows of a C2 blend are those of a G2 blend with alpha = beta = 1, for every order and knots."""
+    h, H = span_symbols(2), span_symbols(2, "H")
     a = sp.Symbol("a", positive=True)
-    geometric, parametric = contact_rows(2, 3, h, 3, H, a), contact_rows(2, 3, h, 3, H, 1)
+    geometric, parametric = (contact_rows(2, pr.k - 1, h, pr.k_r - 1, H, shape) for shape in (a, 1))
     yield Case("all rows", (geometric.subs(a, 1) - parametric).applyfunc(sp.cancel).is_zero_matrix)
 
 
-def _zero_system_cases() -> Iterator[Case]:
-    """Yield what (14) needs of A as printed: full rank."""
-    A, _ = energy.printed_system()
-    yield Case(f"{A.rows} unknown control points, rank {A.rank()}", bool(A.rank() == A.rows))
+_CVV = Check(_cvv_cases, Strength.SYMBOLIC_ORDER, "lengths of rows, of any numbers of control points", proof=True)
+# Unknown rows of X, 3 .. m-3.
+FIRST_UNKNOWN, LAST_UNKNOWN = Formula(Eq(pr.first, 3), (pr.first,)), Formula(Eq(pr.last, pr.m - 3), (pr.last, pr.m))
+_A, _B, _X, _N = objective.A_BLOCK, objective.B_BLOCK, objective.X_FREE, objective.N_KNOWN
+_COLUMN = sp.Symbol("s", integer=True)
+# Row r of A X = -B N.
+NORMAL_EQUATION = Formula(
+    Eq(
+        sp.Sum(_A[objective.ROW, _COLUMN] * _X[_COLUMN], (_COLUMN, 0, objective.LAST_FREE)),
+        -sp.Sum(_B[objective.ROW, _COLUMN] * _N[_COLUMN], (_COLUMN, 0, objective.LAST_KNOWN)),
+    ),
+    (*(x.label for x in (_A, _B, _X, _N)), objective.ROW, objective.LAST_FREE, objective.LAST_KNOWN),
+)
 
 
 CLAIMS: tuple[Claim, ...] = (
     holds("sec-4.no-middle-curve", _WHERE, "Without a middle curve C2 contact determines all control points directly.",
-          part(proved(_no_middle_cases, "rows set by the derived contact conditions", Strength.EACH_ORDER)),
+          part(proved(_no_middle_cases, "rows set by the derived contact conditions")),
           remark="By the corrected conditions; nothing is left to minimise."),
     holds("sec-4.quadratic", _WHERE, "After the C1 or C2 conditions are put in, the objective is quadratic.",
-          part(Check(energy.degree_cases(2, False), Strength.RATIONAL, _DEGREE), pr.DEGREE_C),
-          part(Check(energy.degree_cases(1, False), Strength.RATIONAL, _DEGREE), pr.DEGREE_C)),
+          part(objective.degree_check(2, False), pr.DEGREE_C), part(objective.degree_check(1, False), pr.DEGREE_C)),
     holds("sec-4.normal-equation", _WHERE, "Its minimum is found by one linear system, the normal equation.",
-          part(Check(lambda _: energy.positive_definite_cases(2), Strength.RATIONAL,
-                     "pivots of the exact energy matrix of the free rows")),
+          part(objective.NORMAL_EQUATION_CHECK, NORMAL_EQUATION), part(objective.minimum_check(2)),
           remark="The matrix is positive definite, so that there is exactly one solution."),
     holds("sec-4.c1-similarly", _WHERE, "The linear system for C1 conditions is like that for C2.",
-          part(Check(lambda _: energy.positive_definite_cases(1), Strength.RATIONAL,
-                     "pivots of the exact energy matrix of the free rows")),
+          part(objective.NORMAL_EQUATION_CHECK, NORMAL_EQUATION), part(objective.minimum_check(1)),
           remark="Rows 2 and m-2 are unknown too."),
     holds("sec-4.unknowns", _WHERE, "X holds the rows 3, .., m-3, N the rows 0, 1, 2, m-2, m-1, m.",
-          part(question(_unknown_cases, "rows that C2 contact sets and leaves free"))),
+          part(blending.row_check_of(lambda at_start, _: at_start + 1), FIRST_UNKNOWN),
+          part(blending.row_check_of(lambda _, at_end: at_end - 1), LAST_UNKNOWN)),
     fails("eq-14", _WHERE, "A X^T = -B N^T, with A, B and a, b, c as printed, gives the least energy.",
           part(_GRAM, pr.EQ_14),
-          part(question(_zero_system_cases, "rank of A as printed")),
-          part(question(energy.integrals_vanish_cases, "integrals of B_i' and B_i'' of inner rows, orders 3 to 6")),
+          part(proved(objective.zero_system_cases, "entries of A as printed where a_ij = c_ij = 0; its rank")),
+          part(proved(objective.integrals_vanish_cases,
+                      "end values of inner rows, every order and knots; integrals of B_i' and B_i'', orders 3 to 6")),
           correction=_TRUE_GRAM, counterexample=_gram_counterexample(pr.EQ_14), consequence=zero_system,
           remark="B_i' and B_i'' of a row away from the ends integrate to zero, so that a_ij = c_ij = 0 for every "
           "unknown control point, whatever the knots: as printed, (14) says 0 = 0."),
@@ -140,26 +147,26 @@ CLAIMS: tuple[Claim, ...] = (
           "and P_vv do not meet there. With the printed term A is not symmetric. One letter of an index: it may be a "
           "misprint, or a misread of the scan."),
     fails("sec-4.cvv-indices", _WHERE, "In C_vv row 3 ends with b_{3,n_2} and row m-3 with b_{m-3,n_{m-2}}.",
-          *(part(Check(_cvv_cases, Strength.RATIONAL, "lengths of rows"), formula) for formula in pr.CVV_LAST),
+          *(part(_CVV, formula) for formula in pr.CVV_LAST),
           correction=Correction("b_{3,n_3} and b_{m-3,n_{m-3}}, as in C_uu and C_uv.",
-                                tuple(Part(Check(_cvv_cases, Strength.RATIONAL, "lengths of rows"), formula)
+                                tuple(Part(_CVV, formula)
                                       for formula in TRUE_CVV)),
           counterexample=_cvv_counterexample, consequence=vector_lengths,
           remark="Misprints, or misreads by the scan: C_uu and C_uv beside it have the right indices."),
     holds("sec-4.g1-degree", _WHERE, "With the G1 conditions put in, the objective is of degree four.",
-          part(Check(energy.degree_cases(1, True), Strength.RATIONAL, _DEGREE), pr.DEGREE_G1),
+          part(objective.degree_check(1, True), pr.DEGREE_G1),
           remark="In the free control points, alpha and beta together."),
     holds("sec-4.g2-degree", _WHERE, "With the G2 conditions put in, the objective is of degree eight.",
-          part(Check(energy.degree_cases(2, True), Strength.RATIONAL, _DEGREE), pr.DEGREE_G2),
+          part(objective.degree_check(2, True), pr.DEGREE_G2),
           remark="Of degree four in alpha^2 and beta^2, and quadratic in the free control points: once these are "
           "eliminated, a polynomial in two numbers is left. Where R_ww and S_tt vanish the degree is four."),
     holds_if("sec-4.unconstrained", _WHERE, "With the G1 or G2 conditions put in, the problem has no constraint left.",
              "the energy over alpha^2, beta^2 is not least at zero",
-             part(question(energy.shape_cases, "the energy as a polynomial in alpha^2, beta^2, exactly")),
+             part(objective.SHAPE_CHECK),
              remark="alpha, beta = 0 must be kept out: for two parallel plates, joined by a turn of 180 degrees, the "
              "least energy lies there, where the blend has no tangent plane at either contact."),
     holds("sec-4.initial-value", _WHERE, "The C2 solution is an admissible start for the G2 search.",
-          part(proved(_initial_cases, "the derived rows at alpha = 1", Strength.EACH_ORDER))),
+          part(proved(_initial_cases, "the derived rows at alpha = 1, every order and knots"))),
     not_checkable("sec-4.fminunc", _WHERE, "fminunc is a BFGS quasi-Newton method with a cubic line search.",
                   "a statement on a version of another program, which is not here"),
     not_checkable("sec-4.few-steps", _WHERE, "Started there, fminunc needs several steps to reach a local minimum.",

@@ -12,7 +12,7 @@ from papers.lin2014.consequences import measured_rows
 from papers.lin2014.contact_checks import (
     derivative_check,
     derivative_counterexample,
-    mirror_cases,
+    mirror_check,
     row_counterexample,
     w_kr1,
 )
@@ -174,8 +174,7 @@ CLAIMS = (
           part(_derived(2), pr.COND_3_1),
           remark="The step is right; its premise app-d2 is not, and so (3.1) is wrong."),
     holds_if("sec-A.similarly", _WHERE, "(1.2), (2.2), (3.2) follow like the others, at the other end.", "k = 4",
-             part(Check(mirror_cases, Strength.EACH_ORDER, "printed rows at R, mirrored, and at S, k = 3 to 8",
-                        proof=True)),
+             *(part(mirror_check(row), formula) for row, formula in enumerate((pr.COND_1_2, pr.COND_2_2, pr.COND_3_2))),
              remark="The last inner knot is u_{m-k+1}; u_{m-3} is that one for k = 4 only. The error of (3.1) is "
              "mirrored too."),
 )  # fmt: skip

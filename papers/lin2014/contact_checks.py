@@ -295,15 +295,22 @@ def derivative_counterexample(surface: Literal["P", "R"], order: int, formula: F
     return None
 
 
-def mirror_cases(_: Formula | None) -> Iterator[Case]:
-    """Yield orders: (2.1) and (3.1), mirrored at u = 1/2 and with S for R, are (2.2) and (3.2) as printed."""
+def mirror_check(row: int) -> Check:
+    """Return the check of (1.2), (2.2) or (3.2): the printed row at R, mirrored at u = 1/2 and with S for R."""
+    at_r = (pr.COND_1_1, pr.COND_2_1, pr.COND_3_1)[row].relation
     names = dict(zip(_ROWS["start"] + _BASE_ROWS["start"], _ROWS["end"] + _BASE_ROWS["end"], strict=True))
     names |= {pr.alpha: pr.beta, pr.k_r: pr.k_s, pr.w_kr: pr.t_ks, pr.w_s: pr.t_s, pr.u_1: 1 - u_last}
-    for k in range(3, ORDERS[-1] + 1):
-        # For k = 4 the printed index m - 3 is that of the last inner knot, m - k + 1.
-        last = {pr.u_m3: u_last} if k == CUBIC else {}
-        same = all(
-            (at_r.relation.rhs.xreplace(names) - at_s.relation.rhs.xreplace(last)).subs(pr.k, k).expand() == 0
-            for at_r, at_s in ((pr.COND_2_1, pr.COND_2_2), (pr.COND_3_1, pr.COND_3_2))
-        )
-        yield Case(f"k = {k}", bool(same), own=k == CUBIC, meets=k == CUBIC)
+
+    def cases(formula: Formula | None) -> Iterator[Case]:
+        relation = _relation(formula)
+        for k in range(max(row + 1, ORDERS[0]), ORDERS[-1] + 1):
+            # For k = 4 the printed index m - 3 is that of the last inner knot, m - k + 1.
+            last = {pr.u_m3: u_last} if k == CUBIC else {}
+            left, right = (side.xreplace(names) for side in at_r.args)
+            left_s, right_s = (side.xreplace(last) for side in relation.args)
+            residual = sp.expand(((right_s - left_s) - (right - left)).subs(pr.k, k))
+            # The last row, which is that of S, has no knot.
+            meets = k == CUBIC or row == 0
+            yield Case(f"k = {k}", bool(residual == 0), own=k == CUBIC, meets=meets, residual=residual)
+
+    return Check(cases, Strength.EACH_ORDER, "the printed row at R, mirrored, and at S, orders up to 8", proof=True)

@@ -113,13 +113,6 @@ def shape_parameter_cases(order: int) -> Iterator[Case]:
     yield Case("alpha = 1, a base with R_w = 0 on the contact", true, own=False, meets=False)
 
 
-def direction_cases(sign: int) -> Iterator[Case]:
-    """Yield alpha = 1: true where P_u is `sign` times R_w, by the chain rule of a blend that leaves backwards."""
-    true = special_conditions(1)[1].subs(A, 1)
-    residual = sp.expand(sign * sp.Symbol("R_w") - true)
-    yield Case("alpha = 1", residual == 0, residual=residual)
-
-
 def substitution_cases(order: int, formula: Formula | None) -> Iterator[Case]:
     """Decide whether p_1 = alpha^2, q_1 = p_2 = q_2 = 0 turns (15) and (16) into (17) and (18), as algebra."""
     _, right = _sides(formula, pr.P_u if order == 1 else pr.P_uu)

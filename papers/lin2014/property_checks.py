@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from fractions import Fraction
+from functools import cache
 from itertools import pairwise
+from typing import Any
 
 import sympy as sp
 from sympy.polys.domains import QQ
@@ -13,23 +15,37 @@ from sympy.polys.matrices import DomainMatrix
 from derivations.properties import contact_orders, proofs
 from derivations.splines import X, basis_pieces
 from papers.ledger import Case, Check, Formula, Strength
+from papers.lin2014 import printed as pr
+from papers.lin2014.abstract import WITHIN, coefficient
 from papers.lin2014.exact import clamped, de_boor, net_ring, rational_points, spline_basis
-from papers.lin2014.spline_checks import CUBIC, samples
+from papers.lin2014.spline_checks import CUBIC, samples, triangle_cases
 
 HALF, THIRD = Fraction(1, 2), Fraction(1, 3)
 
 
-def proof_check(*names: str) -> Check:
-    """Return the check that the identities behind some properties are zero, for every degree and knot vector."""
+def proof_check(*names: str, instances: Callable[[], Iterator[Case]] = lambda: iter(())) -> Check:
+    """Return the check that the identities behind some properties are zero, for every degree and knot vector.
+
+    The instances are run after them.
+    """
 
     def cases(_: Formula | None) -> Iterator[Case]:
-        for proof in proofs():
-            if proof.name in names:
-                for name, residual in proof.identities.items():
-                    yield Case(f"{proof.name}: {name}", residual == 0, residual=residual)
+        yield from identity_cases(*names)
+        yield from instances()
 
     method = f"identities for symbolic degree and knots ({', '.join(names)}; argument in derivations.properties)"
     return Check(cases, Strength.SYMBOLIC_ORDER, method, proof=True)
+
+
+_proofs = cache(proofs)
+
+
+def identity_cases(*names: str) -> Iterator[Case]:
+    """Yield the identities behind some properties, which are to be zero."""
+    for proof in _proofs():
+        if proof.name in names:
+            for name, residual in proof.identities.items():
+                yield Case(f"{proof.name}: {name}", residual == 0, residual=residual)
 
 
 def question(cases: Callable[[], Iterator[Case]], method: str, strength: Strength = Strength.RATIONAL) -> Check:
@@ -61,8 +77,57 @@ def _sums_to_one(vector: Sequence[Fraction], v: Fraction) -> bool:
     return inside and sum(basis(i, CUBIC, v, "V") for i in range(len(vector) - CUBIC)) == 1
 
 
+def insertion_cases() -> Iterator[Case]:
+    """Yield that a spline stays one where a knot z is inserted, for every order, knots and place of z.
+
+    With s_0 .. s_(k+1) the knots of function B of order k and z among them, B' the function over s_0 .. s_k and B''
+    that over s_1 .. s_(k+1), B = (z - s_0)/(s_k - s_0) B' + (s_(k+1) - z)/(s_(k+1) - s_1) B''. By induction on k: the
+    recurrence on the left, the claim for k - 1 put in, all written in the three new functions of order k - 1. For
+    order 1 a step function is cut in two.
+    """
+    s0, s1, s2, before, sk, after, z, x = sp.symbols("s_0 s_1 s_2 s_{k-1} s_k s_{k+1} z x")
+    new = sp.symbols("A B C")
+
+    def rising(start: Any, end: Any) -> Any:
+        return (x - start) / (end - start)
+
+    def falling(start: Any, end: Any) -> Any:
+        return (end - x) / (end - start)
+
+    first = rising(s0, before) * new[0] + falling(s1, sk) * new[1]
+    second = rising(s1, sk) * new[1] + falling(s2, after) * new[2]
+    claimed = (z - s0) / (sk - s0) * first + (after - z) / (after - s1) * second
+    left = (z - s0) / (before - s0) * new[0] + (sk - z) / (sk - s1) * new[1]
+    right = (z - s1) / (sk - s1) * new[1] + (after - z) / (after - s2) * new[2]
+    # Old knots, z left out; where z is next to an end one of the two lower functions keeps its knots.
+    for label, place, lower, start, end in (
+        ("z inside", {}, (left, right), s1, sk),
+        ("z right after the start", {s1: z}, (left, new[2]), s2, sk),
+        ("z right before the end", {sk: z}, (new[0], right), s1, before),
+    ):
+        old = rising(s0, end) * lower[0] + falling(start, after) * lower[1]
+        residual = sp.cancel((old - claimed).subs(place))
+        yield Case(f"knot insertion, every order and knots, {label}", residual == 0, residual=residual)
+
+
+@cache
+def contact_at_knot(order: int, multiplicity: int) -> int:
+    """Return how smooth all splines of an order are at a knot h, 0 < h < 1, of a multiplicity, but no smoother."""
+    knots = [0] * order + ["h"] * multiplicity + [1] * order
+    return min(x for x in contact_orders(order - 1, knots, "h") if x is not None)
+
+
 def same_knots_cases() -> Iterator[Case]:
     """Yield surfaces whose curves all have one knot vector: the classical surface, evaluated in either order."""
+    a, b = sp.symbols("a b", integer=True, nonnegative=True)
+    along, across = pr.B(pr.j, pr.ell, pr.v, pr.V_r), pr.B(pr.i, pr.k, pr.u, pr.U)
+    last_v, last_u = (pr.j, 0, pr.n), (pr.i, 0, pr.m)
+    by_rows = sp.Sum(sp.Sum(pr.P[pr.i, pr.j] * along, last_v) * across, last_u)
+    by_columns = sp.Sum(sp.Sum(pr.P[pr.i, pr.j] * across, last_u) * along, last_v)
+    factors = [coefficient(total, pr.P[a, b]) for total in (by_rows, by_columns)]
+    residual = sp.factor_terms(factors[0] - factors[1])
+    yield Case("every order, knots and count: both orders of summation", bool(residual == 0), residual=residual)
+    yield from triangle_cases()
     for k, length in ((2, 3), (3, 3), (4, 4)):
         across, along = clamped(k, Fraction(2, 5)), clamped(length, THIRD)
         rows, columns = len(across) - k, len(along) - length
@@ -102,7 +167,8 @@ def union(order: int, *vectors: Sequence[Fraction]) -> tuple[Fraction, ...]:
 
 
 def conversion_cases() -> Iterator[Case]:
-    """Yield surfaces whose curves all fit exactly on the union of their knots."""
+    """Yield that inserting knots changes no spline, and surfaces whose curves all fit on the union of their knots."""
+    yield from insertion_cases()
     for sample in samples():
         common = union(sample.l, *sample.V)
         fits = all(contained(sample.l, vector, common) for vector in set(sample.V))
@@ -111,7 +177,14 @@ def conversion_cases() -> Iterator[Case]:
 
 
 def row_difference_cases() -> Iterator[Case]:
-    """Yield pairs of neighbouring rows: their difference lies in the spline space of neither."""
+    """Yield pairs of neighbouring rows: their difference lies in the spline space of neither.
+
+    Where one row alone has the knot h, the difference is as rough there as that row, and splines without it are not.
+    """
+    for order in range(2, 9):
+        for r in range(1, order):
+            found = contact_at_knot(order, r)
+            yield Case(f"order {order}, an {r}-fold knot of one row", found == order - 1 - r, own=order == CUBIC)
     for order, a, b in (
         (3, clamped(3), clamped(3, HALF)),
         (4, clamped(4, HALF), clamped(4, THIRD)),
@@ -131,6 +204,8 @@ def no_spline_form_cases() -> Iterator[Case]:
     With D_i(v) = (k-1)(P_i+1(v) - P_i(v))/(u_i+k - u_i+1) on the union of V_i and V_i+1, the sum of D_i B_i,k-1 is
     compared with the derivative of the printed sum, differentiated function by function.
     """
+    exists = all(case.true for case in (*identity_cases("u-derivative"), *insertion_cases()))
+    yield Case("every order and knots: a spline form exists", not exists)
     for sample in samples():
         net = net_ring(*sample.sizes)
         basis = spline_basis({"U": sample.U, "lower": sample.U[1:-1]})
@@ -171,16 +246,20 @@ def continuity_control_cases() -> Iterator[Case]:
 
     The other curves, which lack the knot, stay polynomial across it.
     """
-    for order in range(2, 6):
+    for order in range(2, 9):
         for r in range(1, order):
-            knots = [0] * order + [sp.Rational(1, 2)] * r + [1] * order
-            found = contact_orders(order - 1, knots, sp.Rational(1, 2))
-            least = min(x for x in found if x is not None)
+            least = contact_at_knot(order, r)
             yield Case(f"order {order}, multiplicity {r}: C^{least}", least == order - 1 - r, own=order == CUBIC)
 
 
 def independent_control_cases() -> Iterator[Case]:
     """Yield surfaces: the jump of a v-derivative across a knot of curve i is N_i(u) times that of the curve."""
+    a = sp.Symbol("a", integer=True, nonnegative=True)
+    jumps, across = sp.IndexedBase("J"), pr.B(pr.i, pr.k, pr.u, pr.U)
+    factor = coefficient(sp.Sum(jumps[pr.i] * across, (pr.i, 0, pr.m)), jumps[a])
+    # Any other curve: its jump enters with a function of its own, and is zero.
+    residual = sp.expand(factor - WITHIN(0, a, pr.m) * pr.B(a, pr.k, pr.u, pr.U))
+    yield Case("every order, knots and count: factor of the jump of curve a", bool(residual == 0), residual=residual)
     for position in (0, 3, 6):
         vectors = [clamped(CUBIC)] * 7
         vectors[position] = clamped(CUBIC, HALF, HALF, HALF)

@@ -1,6 +1,7 @@
 """Deciding definitions and counts of sections 2 and 3: printed sums against de Boor's triangle, counts by counting.
 
-The triangle knows no basis functions, so that it judges sums over them; basis functions come from Cox-de Boor.
+The triangle knows no basis functions, so that it judges sums over them; basis functions come from Cox-de Boor. Each
+check decides its formula for every order, knot vector and count first, and then runs it at instances.
 """
 
 from __future__ import annotations
@@ -11,9 +12,12 @@ from fractions import Fraction
 from functools import cache
 from typing import Any
 
+import sympy as sp
+
 from derivations.properties import basis_table
 from papers.ledger import Case, Check, Formula, Strength
 from papers.lin2014 import printed as pr
+from papers.lin2014.abstract import SAME, WITHIN, coefficient
 from papers.lin2014.exact import (
     Meaning,
     UndefinedError,
@@ -73,8 +77,51 @@ def _all_samples() -> tuple[tuple[Sample, dict[tuple[int, int], Any]], ...]:
     return tuple((sample, net_ring(*sample.sizes)) for sample in samples())
 
 
+# Indices of one control point.
+_A, _B = sp.symbols("a b", integer=True, nonnegative=True)
+
+
+def triangle_cases() -> Iterator[Case]:
+    """Yield that the triangle multiplies control point j by basis function j, for every order, knots and points.
+
+    One step of the triangle replaces points d_j by d_(j-1) (1 - w_j) + d_j w_j, w_j = (x - t_j)/(t_(j+k-1) - t_j),
+    and functions of order k by those of order k - 1: the same that the recurrence makes of sum_j d_j B_j,k. At order
+    1 one function is 1 and the triangle ends at its point. So both are the same sum, by induction.
+    """
+    t, d = sp.IndexedBase("t"), sp.IndexedBase("d")
+    j, k, x = sp.Symbol("j", integer=True), sp.Symbol("k", integer=True), sp.Symbol("x")
+    width = t[j + k - 1] - t[j]
+    weight = (x - t[j]) / width
+    by_triangle = d[j - 1] * (1 - weight) + d[j] * weight
+    # B_j,k gives B_j,k-1 the rising factor, B_(j-1),k the falling one.
+    by_recurrence = d[j] * (x - t[j]) / width + d[j - 1] * (t[j - 1 + k] - x) / width
+    residual = sp.cancel(by_triangle - by_recurrence)
+    yield Case("one step of the triangle, every order and knots", residual == 0, residual=residual)
+
+
+def _coefficient_case(formula: Formula | None, unit: Any, true: Any) -> Case:
+    """Decide a printed sum for every order, knots and counts: what multiplies one control point."""
+    residual = sp.factor_terms(coefficient(_formula(formula).relation.rhs, unit) - true)
+    return Case(f"every order, knots and count: factor of {unit}", bool(residual == 0), residual=residual)
+
+
+def _curve_factor(i: Any) -> Any:
+    """Return what the triangle multiplies P_ib by, on curve i."""
+    return WITHIN(0, _B, pr.N(i)) * pr.B(_B, pr.ell, pr.v, pr.V(i))
+
+
 def surface_cases(formula: Formula | None) -> Iterator[Case]:
     """Decide (1), (3) or (13): the printed sum against the triangle, for all control points at once."""
+    by_curves = _formula(formula).relation.rhs.has(pr.C)
+    across = WITHIN(0, _A, pr.m) * pr.B(_A, pr.k, pr.u, pr.U)
+    true = across if by_curves else across * _curve_factor(_A)
+    yield _coefficient_case(formula, pr.C(_A, pr.v) if by_curves else pr.P[_A, _B], true)
+    yield from triangle_cases()
+    yield from surface_instances(formula)
+
+
+def surface_instances(formula: Formula | None) -> Iterator[Case]:
+    """Run (1), (3) or (13) against the triangle on small surfaces."""
     for sample, net in _all_samples():
         knots: dict[Any, Any] = {"U": sample.U} | dict(enumerate(sample.V))
         for u, v in zip(rational_points(0, 1, 4), reversed(list(rational_points(0, 1, 4))), strict=True):
@@ -95,6 +142,14 @@ def surface_cases(formula: Formula | None) -> Iterator[Case]:
 
 def curve_cases(formula: Formula | None) -> Iterator[Case]:
     """Decide (2), a v-control curve, against the triangle."""
+    i = _formula(formula).relation.lhs.args[0]
+    yield _coefficient_case(formula, pr.P[_A, _B], SAME(i, _A) * _curve_factor(i))
+    yield from triangle_cases()
+    yield from curve_instances(formula)
+
+
+def curve_instances(formula: Formula | None) -> Iterator[Case]:
+    """Run (2) against the triangle."""
     for sample, net in _all_samples():
         for i, v in zip((0, sample.m, 1), rational_points(0, 1, 3), strict=True):
             meaning = Meaning(
@@ -117,7 +172,13 @@ def base_cases(letter: str) -> Callable[[Formula | None], Iterator[Case]]:
         (pr.w, pr.W, pr.V_r, pr.k_r, pr.m_r, pr.n_r) if letter == "R" else (pr.t, pr.T, pr.V_s, pr.k_s, pr.m_s, pr.n_s)
     )
 
+    points = pr.R if letter == "R" else pr.S
+
     def cases(formula: Formula | None) -> Iterator[Case]:
+        of_row = WITHIN(0, _A, last_x) * pr.B(_A, order, x, knots_x)
+        of_column = WITHIN(0, _B, last_v) * pr.B(_B, pr.ell, pr.v, knots_v)
+        yield _coefficient_case(formula, points[_A, _B], of_row * of_column)
+        yield from triangle_cases()
         for k, length in ((2, 3), (3, 2), (4, 4)):
             across = clamped(k, THIRD, start=-1, end=2)
             along = clamped(length, Fraction(1, 4), Fraction(3, 5))
@@ -161,19 +222,68 @@ def _formula(formula: Formula | None) -> Formula:
     return formula
 
 
-def counted(instances: Callable[[], Iterable[tuple[str, dict[Any, Any], bool]]]) -> Callable[..., Iterator[Case]]:
-    """Return a check of a relation between counts: each instance gives a label, the counted letters, and own."""
+@dataclass(frozen=True)
+class Counting:
+    """Counts for every order and number of functions, and the same counted at instances.
+
+    Attributes
+    ----------
+    exact : mapping
+        Letter -> its value in the other letters, derived.
+    instances : callable
+        Yields a label, the counted letters, and own.
+    """
+
+    exact: dict[Any, Any]
+    instances: Callable[[], Iterable[tuple[str, dict[Any, Any], bool]]]
+
+
+def count_check(counting: Counting, method: str) -> Check:
+    """Return a check of a relation between counts."""
 
     def cases(formula: Formula | None) -> Iterator[Case]:
-        for label, values, own in instances():
-            functions = {str(name): value for name, value in values.items() if callable(value)}
-            numbers = {letter: value for letter, value in values.items() if not callable(value)}
-            yield difference_case(_formula(formula), label, Meaning(numbers, functions), own=own)
+        relation = _formula(formula).relation
+        residual = sp.expand((relation.rhs - relation.lhs).subs(counting.exact))
+        yield Case("every order and count", residual == 0, residual=residual)
+        for label, values, own in counting.instances():
+            yield difference_case(_formula(formula), label, Meaning(values), own=own)
 
-    return cases
+    return Check(cases, Strength.SYMBOLIC_ORDER, method, proof=True)
 
 
-def knot_count_instances(count: Any, order: Any) -> Callable[[], Iterator[tuple[str, dict[Any, Any], bool]]]:
+@cache
+def last_knot(count: Any, order: Any) -> Any:
+    """Return the index of the last knot that `count` + 1 functions of an order need.
+
+    L + 1 knots have L functions of order 1. Each step of the recurrence makes one function of two neighbours.
+    """
+    functions, r, last = sp.Function("c"), sp.Symbol("r", integer=True), sp.Symbol("L")
+    number = sp.rsolve(functions(r + 1) - functions(r) + 1, functions(r), {functions(1): last}).subs(r, order)
+    (solution,) = sp.solve(number - (count + 1), last)
+    return sp.expand(solution)
+
+
+@cache
+def support_end(first: Any, order: Any) -> Any:
+    """Return the index of the knot at which function `first` of an order ends; it starts at knot `first`.
+
+    Order 1 ends one knot on; each step of the recurrence takes in the next function (`locality`).
+    """
+    end, r = sp.Function("e"), sp.Symbol("r", integer=True)
+    return sp.expand(sp.rsolve(end(r + 1) - end(r) - 1, end(r), {end(1): first + 1}).subs(r, order))
+
+
+def domain_ends(count: Any, order: Any) -> tuple[Any, Any]:
+    """Return the indices of the first and the last knot of the domain.
+
+    One step of the recurrence turns the sum of all functions of an order into that of the next lower one, but for its
+    first and last function, which enter with a factor: so the sum is 1 where these two vanish, from the end of the
+    first one on, up to the start of the last one.
+    """
+    return support_end(sp.Integer(0), order - 1), count + 1
+
+
+def knot_count_instances(count: Any, order: Any) -> Counting:
     """Count: how many knots carry `count` + 1 basis functions of an order; the last index is one less."""
 
     def instances() -> Iterator[tuple[str, dict[Any, Any], bool]]:
@@ -183,7 +293,7 @@ def knot_count_instances(count: Any, order: Any) -> Callable[[], Iterator[tuple[
                     length = next(x for x in range(1, 40) if functions_on(x, k) == m + 1)
                     yield f"order {k}, {m + 1} functions", {pr.last: length - 1, count: m, order: k}, k == CUBIC
 
-    return instances
+    return Counting({pr.last: last_knot(count, order)}, instances)
 
 
 @cache
@@ -193,7 +303,7 @@ def functions_on(n_knots: int, order: int) -> int:
     return len(next(iter(table.values()))) if table else max(n_knots - order, 0)
 
 
-def domain_instances(count: Any, order: Any) -> Callable[[], Iterator[tuple[str, dict[Any, Any], bool]]]:
+def domain_instances(count: Any, order: Any) -> Counting:
     """Count: the indices of the first and the last knot of the domain, where the basis functions sum to 1."""
 
     def instances() -> Iterator[tuple[str, dict[Any, Any], bool]]:
@@ -203,27 +313,34 @@ def domain_instances(count: Any, order: Any) -> Callable[[], Iterator[tuple[str,
                 values = {pr.last: spans[0], pr.first: spans[-1] + 1, count: m, order: k}
                 yield f"order {k}, {m + 1} functions", values, k == CUBIC
 
-    return instances
+    return Counting(dict(zip((pr.last, pr.first), domain_ends(count, order), strict=True)), instances)
 
 
-def inner_instances() -> Iterator[tuple[str, dict[Any, Any], bool]]:
+def inner_knots_count() -> Counting:
     """Count: the indices of the first and the last knot strictly inside the domain of a clamped vector."""
-    for order in range(2, 6):
-        for n in range(order, order + 4):
-            knots = clamped(order, *(Fraction(r, 10) for r in range(1, n - order + 2)))
-            inside = [index for index, knot in enumerate(knots) if 0 < knot < 1]
-            values = {pr.first: inside[0], pr.last: inside[-1], pr.ell: order, pr.n_r: n}
-            yield f"order {order}, {n + 1} points", values, order == CUBIC
 
+    def instances() -> Iterator[tuple[str, dict[Any, Any], bool]]:
+        for order in range(2, 6):
+            for n in range(order, order + 4):
+                knots = clamped(order, *(Fraction(r, 10) for r in range(1, n - order + 2)))
+                inside = [index for index, knot in enumerate(knots) if 0 < knot < 1]
+                values = {pr.first: inside[0], pr.last: inside[-1], pr.ell: order, pr.n_r: n}
+                yield f"order {order}, {n + 1} points", values, order == CUBIC
 
-def count_check(instances: Callable[[], Iterable[tuple[str, dict[Any, Any], bool]]], method: str) -> Check:
-    """Return a check of a relation between counts."""
-    return Check(counted(instances), Strength.RATIONAL, method)
+    # The runs of equal knots of a clamped vector reach up to the ends of its domain.
+    start, end = domain_ends(pr.n_r, pr.ell)
+    return Counting({pr.first: start + 1, pr.last: end - 1}, instances)
 
 
 SUM_METHOD = (
-    "the printed sum over Cox-de Boor functions against de Boor's triangle, an identity in all control points, at "
-    "rational parameters and knots of orders 2 to 4"
+    "what multiplies one control point, with symbolic indices, orders, counts and knots, against de Boor's triangle, "
+    "whose coefficients are the basis functions by induction on the order; run at rational parameters and knots of "
+    "orders 2 to 4 as well"
 )
-SURFACE_CHECK = Check(surface_cases, Strength.RATIONAL, SUM_METHOD)
-CURVE_CHECK = Check(curve_cases, Strength.RATIONAL, SUM_METHOD)
+SURFACE_CHECK = Check(surface_cases, Strength.SYMBOLIC_ORDER, SUM_METHOD, proof=True)
+CURVE_CHECK = Check(curve_cases, Strength.SYMBOLIC_ORDER, SUM_METHOD, proof=True)
+
+
+def base_check(letter: str) -> Check:
+    """Return the check of (7) or (9)."""
+    return Check(base_cases(letter), Strength.SYMBOLIC_ORDER, SUM_METHOD, proof=True)
