@@ -10,7 +10,11 @@ from solver.arrays import FloatArray
 from solver.base import Base
 from solver.correspondence import Correspondence, Flip, correspond, corresponding_samples
 from solver.errors import EdgeError
+from solver.operations import bounding_box
 from solver.surfaces import BSplineSurface, Surface
+
+# Samples that are measured at once.
+_AT_ONCE = 8192
 
 
 @dataclass(frozen=True)
@@ -98,43 +102,98 @@ def measure_contact(a: Base, b: Base, flip: Flip = "auto", correspondence: Corre
     """
     matched = correspondence or correspond(a, b, flip)
     s_a, s_b = corresponding_samples(a, b, matched)
-    side_a, side_b = _Side(a, s_a, 1.0), _Side(b, s_b, 1.0 if matched.flipped else -1.0)
+    # Part by part: a long edge has more samples than memory should hold at once.
+    starts = range(0, len(s_a), _AT_ONCE)
+    parts = [_measured(a, b, matched, s_a[i : i + _AT_ONCE], s_b[i : i + _AT_ONCE]) for i in starts]
     size = model_size(a.surface, b.surface)
-    places = [Place(float(s), (float(p[0]), float(p[1]), float(p[2]))) for s, p in zip(s_a, side_a.point, strict=True)]
-
-    gap = np.linalg.norm(side_a.point - side_b.point, axis=1)
-    sine = np.linalg.norm(np.cross(side_a.normal, side_b.normal), axis=1)
-    angle = np.degrees(np.arctan2(sine, np.sum(side_a.normal * side_b.normal, axis=1)))
-    k_a, k_b = side_a.curvature(), side_b.curvature()
-    jump = np.abs(k_a - k_b)
-    largest = float(np.max(np.abs([*k_a, *k_b, 1e-3 / size])))
-    # One side is left backwards: odd derivatives change sign unless the edges are at opposite ends.
-    sign = -1.0 if a.edge[1] == b.edge[1] else 1.0
-    noise = [_noise(side_a, order) + _noise(side_b, order) for order in range(3)]
-    c1 = _relative(side_a.x_w - sign * side_b.x_w, (side_a.x_w, side_b.x_w), noise[1])
-    c2 = _relative(side_a.x_ww - side_b.x_ww, (side_a.x_ww, side_b.x_ww), noise[2])
-    geometric = [_geometric_noise(side, largest) for side in (side_a, side_b)]
+    gap, angle, jump = (_first_worst([getattr(part, name) for part in parts]) for name in ("gap", "angle", "jump"))
+    largest = float(np.maximum(np.max([part.curvature for part in parts]), 1e-3 / size))
+    differences, derivatives = (np.max([getattr(x, name) for x in parts], 0) for name in ("differences", "derivatives"))
+    speeds = np.min([part.speeds for part in parts], axis=0).tolist()
+    noises = [_noises(base) for base in (a, b)]
+    c1, c2 = (_relative(differences[d], derivatives[d], noises[0][d + 1] + noises[1][d + 1]) for d in (0, 1))
+    geometric = [_geometric_noise(noise, speed, largest) for noise, speed in zip(noises, speeds, strict=True)]
     return Contact(
-        gap=float(gap.max()),
-        angle_degrees=float(angle.max()),
-        curvature_jump=float(jump.max()),
-        curvature_jump_relative=float(jump.max()) / largest,
+        gap=gap.value,
+        angle_degrees=angle.value,
+        curvature_jump=jump.value,
+        curvature_jump_relative=jump.value / largest,
         c1_residual=c1[0],
         c2_residual=c2[0],
         size=size,
         rounding={
-            "gap": noise[0],
+            "gap": noises[0][0] + noises[1][0],
             "angle_degrees": float(np.degrees(geometric[0][0] + geometric[1][0])),
             "curvature_jump_relative": (geometric[0][1] + geometric[1][1]) / largest,
             "c1_residual": c1[1],
             "c2_residual": c2[1],
         },
-        gap_at=places[int(gap.argmax())],
-        angle_at=places[int(angle.argmax())],
-        curvature_at=places[int(jump.argmax())],
+        gap_at=gap.place,
+        angle_at=angle.place,
+        curvature_at=jump.place,
         flipped=matched.flipped,
         shift=matched.shift,
     )
+
+
+@dataclass(frozen=True)
+class _Worst:
+    """The largest of some values, or the first that is not a number, and where it is."""
+
+    value: float
+    place: Place
+
+
+@dataclass(frozen=True)
+class _Part:
+    """What some of the samples contribute to a `Contact`.
+
+    Attributes
+    ----------
+    gap, angle, jump : _Worst
+    curvature : float
+        Largest of either side, across the edge.
+    differences, derivatives : (float, float)
+        Largest difference of first and second cross derivatives, and largest such derivative of either side.
+    speeds : (float, float)
+        Least speed across the edge, of a and of b.
+    """
+
+    gap: _Worst
+    angle: _Worst
+    jump: _Worst
+    curvature: float
+    differences: tuple[float, float]
+    derivatives: tuple[float, float]
+    speeds: tuple[float, float]
+
+
+def _measured(a: Base, b: Base, matched: Correspondence, s_a: FloatArray, s_b: FloatArray) -> _Part:
+    side_a, side_b = _Side(a, s_a, 1.0), _Side(b, s_b, 1.0 if matched.flipped else -1.0)
+
+    def worst(values: FloatArray) -> _Worst:
+        i = int(values.argmax())
+        x, y, z = side_a.point[i].tolist()
+        return _Worst(float(values[i]), Place(float(s_a[i]), (x, y, z)))
+
+    sine = np.linalg.norm(_cross(side_a.normal, side_b.normal), axis=1)
+    angle = np.degrees(np.arctan2(sine, np.sum(side_a.normal * side_b.normal, axis=1)))
+    k_a, k_b = side_a.curvature(), side_b.curvature()
+    # One side is left backwards: odd derivatives change sign unless the edges are at opposite ends.
+    sign = -1.0 if a.edge[1] == b.edge[1] else 1.0
+    return _Part(
+        gap=worst(np.linalg.norm(side_a.point - side_b.point, axis=1)),
+        angle=worst(angle),
+        jump=worst(np.abs(k_a - k_b)),
+        curvature=float(np.max(np.abs([k_a, k_b]))),
+        differences=(_longest(side_a.x_w - sign * side_b.x_w), _longest(side_a.x_ww - side_b.x_ww)),
+        derivatives=(_longest(side_a.x_w, side_b.x_w), _longest(side_a.x_ww, side_b.x_ww)),
+        speeds=(side_a.least_cross_speed(), side_b.least_cross_speed()),
+    )
+
+
+def _first_worst(found: list[_Worst]) -> _Worst:
+    return found[int(np.argmax([one.value for one in found]))]
 
 
 def check_regular_edge(base: Base) -> None:
@@ -163,11 +222,10 @@ class _Side:
     """
 
     def __init__(self, base: Base, s: FloatArray, sign: float) -> None:
-        self.base = base
-        self.point = base.derivative(s, 0, 0)
-        self.x_w, self.x_s = base.derivative(s, 1, 0), base.derivative(s, 0, 1)
-        self.x_ww, self.x_ws, self.x_ss = (base.derivative(s, a, 2 - a) for a in (2, 1, 0))
-        cross = np.cross(self.x_w, self.x_s)
+        at = base.referee.points(s)
+        self.point, self.x_w, self.x_s = at[0, 0], at[1, 0], at[0, 1]
+        self.x_ww, self.x_ws, self.x_ss = at[2, 0], at[1, 1], at[0, 2]
+        cross = _cross(self.x_w, self.x_s)
         length = np.linalg.norm(cross, axis=1)
         scale = np.linalg.norm(self.x_w, axis=1) * np.linalg.norm(self.x_s, axis=1)
         inwards = -sign if base.edge[1] == "1" else sign
@@ -191,41 +249,41 @@ class _Side:
         return float(np.linalg.norm(self.across()[1], axis=1).min())
 
 
-def control_point_cloud(surface: Surface) -> FloatArray:
-    """Return all control points of a surface, shape (K, 3)."""
-    if isinstance(surface, BSplineSurface):
-        return surface.control_points.reshape(-1, 3)
-    return np.concatenate([curve.control_points for curve in surface.control_curves])
-
-
 def model_size(*surfaces: Surface) -> float:
     """Return the largest extent of the control points of all surfaces, model units."""
-    points = np.concatenate([control_point_cloud(surface) for surface in surfaces])
-    return float(np.ptp(points, axis=0).max())
+    boxes = np.stack([bounding_box(surface) for surface in surfaces])
+    return float((boxes[:, 1].max(axis=0) - boxes[:, 0].min(axis=0)).max())
 
 
-def _relative(difference: FloatArray, sides: tuple[FloatArray, FloatArray], noise: float) -> tuple[float, float]:
+def _cross(a: FloatArray, b: FloatArray) -> FloatArray:
+    """Return the cross product of vectors along axis 1, in memory one coordinate after the other."""
+    (x, y, z), (u, v, w) = a.T, b.T
+    return np.stack([y * w - z * v, z * u - x * w, x * v - y * u]).T
+
+
+def _longest(*vectors: FloatArray) -> float:
+    return max(float(np.linalg.norm(x, axis=1).max()) for x in vectors)
+
+
+def _relative(worst: float, largest: float, noise: float) -> tuple[float, float]:
     """Return the largest difference over the largest derivative, and what `noise` amounts to in that measure.
 
     A derivative that is nothing but rounding counts as vanishing: then the absolute figure decides.
     """
-    worst = float(np.linalg.norm(difference, axis=1).max())
-    largest = max(float(np.linalg.norm(x, axis=1).max()) for x in sides)
     scale = largest if largest > 8 * noise else 1.0
-    return worst / scale, noise / scale
+    return float(worst / scale), float(noise / scale)
 
 
-def _noise(side: _Side, order: int) -> float:
-    """Bound what rounding of the control points to float64 may do to a cross derivative."""
-    coordinate = float(np.abs(control_point_cloud(side.base.surface)).max())
-    return float(np.finfo(float).eps) * coordinate * _derivative_factor(side.base, order)
+def _noises(base: Base) -> list[float]:
+    """Bound what rounding of the control points to float64 may do to cross derivatives of order 0, 1, 2."""
+    coordinate = float(np.abs(bounding_box(base.surface)).max())
+    return [float(np.finfo(float).eps) * coordinate * _derivative_factor(base, order) for order in range(3)]
 
 
-def _geometric_noise(side: _Side, largest_curvature: float) -> tuple[float, float]:
+def _geometric_noise(noises: list[float], speed: float, largest_curvature: float) -> tuple[float, float]:
     """Bound what that rounding may do to the angle (radians) and to the curvature across the edge (1/length)."""
-    speed = side.least_cross_speed()
-    angle = _noise(side, 1) / speed
-    return angle, _noise(side, 2) / speed**2 + 2 * largest_curvature * angle
+    angle = noises[1] / speed
+    return angle, noises[2] / speed**2 + 2 * largest_curvature * angle
 
 
 def _derivative_factor(base: Base, order: int) -> float:

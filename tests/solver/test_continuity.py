@@ -1,13 +1,16 @@
 """The measures of contact, where the answer is known, and against Open CASCADE."""
 
+from dataclasses import asdict
+
 import numpy as np
 import pytest
 
 from helpers.bases import facing_pair, moved
 from helpers.occ import analyse, edge_point
-from solver import Base, BSplineSurface, EdgeError, blend, measure_contact, measure_regularity
+from solver import Base, BSplineSurface, EdgeError, blend, continuity, measure_contact, measure_regularity
 from solver.continuity import check_regular_edge
-from solver.operations import reverse_u, reverse_v, swap_directions
+from solver.knots import uniform_knots
+from solver.operations import reverse_u, reverse_v, split_u, swap_directions
 from solver.regularity import area_bound
 
 BEZIER_1, BEZIER_2 = [0, 0, 1, 1], [0, 0, 0, 1, 1, 1]
@@ -137,3 +140,60 @@ def test_the_bound_is_exact_for_a_bilinear_patch():
     # X = (u (1 + v), v, 0): P_u x P_v = (0, 0, 1 + v), least 1 and linear.
     net = [[[0, 0, 0], [0, 1, 0]], [[1, 0, 0], [2, 1, 0]]]
     assert area_bound(BSplineSurface(1, 1, BEZIER_1, BEZIER_1, net)) == pytest.approx(1, rel=1e-14)
+
+
+def halves(spans, moved_point=(0, 0), by=0.0):
+    """A long strip cut in two, v over [0, 1]; of the second half a control point is moved along the normal."""
+    rng = np.random.default_rng(3)
+    x, y = np.meshgrid(np.arange(4.0), np.arange(spans + 3.0), indexing="ij")
+    net = np.stack([x, y, 0.1 * rng.uniform(-1, 1, x.shape)], axis=2)
+    a, b = split_u(BSplineSurface(3, 3, uniform_knots(3, 1), uniform_knots(3, spans), net), 0.5)
+    points = b.control_points.copy()
+    points[moved_point] += [0, 0, by]
+    return Base(a, "u1"), Base(BSplineSurface(3, 3, b.knots_u, b.knots_v, points), "u0")
+
+
+@pytest.mark.parametrize(("row", "name"), [(0, "gap"), (1, "angle"), (2, "curvature")])
+@pytest.mark.parametrize("place", ["first", "last"])
+def test_a_fault_in_one_span_of_thousands_is_found_and_placed(row, name, place):
+    # Five parts of samples and a little more: the last part is a small one, and the fault is at its very end.
+    spans = 5 * continuity._AT_ONCE // 7 + 3
+    sound = measure_contact(*halves(spans))
+    faulty = measure_contact(*halves(spans, (row, 0 if place == "first" else -1), 1e-3))
+    measure = {"gap": "gap", "angle": "angle_degrees", "curvature": "curvature_jump"}[name]
+    assert getattr(sound, measure) <= 1e-9
+    assert getattr(faulty, measure) >= 1e-4
+    parameter = getattr(faulty, f"{name}_at").parameter
+    assert parameter <= 1 / spans if place == "first" else parameter >= 1 - 1 / spans
+    # Rows are met by derivatives of their order and above, not by those below.
+    assert row == 0 or faulty.gap <= 1e-12
+    assert row < 2 or faulty.angle_degrees <= 1e-9
+
+
+@pytest.mark.parametrize("at_once", [5, 64, 4096])
+@pytest.mark.parametrize("edges", [("u1", "u0"), ("v0", "v1"), ("u0", "v0")])
+def test_measured_in_parts_as_measured_at_once(monkeypatch, at_once, edges):
+    a, b = (Base(side.surface, edge) for side, edge in zip(halves(40, (1, 17), 0.2), edges, strict=True))
+    found = []
+    for size in (10**9, at_once):
+        monkeypatch.setattr(continuity, "_AT_ONCE", size)
+        contact = asdict(measure_contact(a, b, flip="no"))
+        places = [contact.pop(f"{name}_at") for name in ("gap", "angle", "curvature")]
+        found.append((contact.pop("rounding"), contact, [(p["parameter"], *p["point"]) for p in places]))
+    (rounding, measures, places), (other_rounding, others, other_places) = found
+    # The same arithmetic: what differs is at most how the processor takes the last few numbers of an array.
+    assert others == pytest.approx(measures, rel=1e-13)
+    assert other_rounding == pytest.approx(rounding, rel=1e-13)
+    np.testing.assert_allclose(other_places, places, rtol=1e-13)
+
+
+def test_a_part_without_a_normal_is_not_forgotten():
+    # A control point of the second row moved onto the edge: the cross derivative vanishes at that end only.
+    a, b = halves(3 * continuity._AT_ONCE // 7)
+    points = b.surface.control_points.copy()
+    points[1, 0] = points[0, 0]
+    cusp = BSplineSurface(3, 3, b.surface.knots_u, b.surface.knots_v, points)
+    contact = measure_contact(a, Base(cusp, "u0"))
+    assert np.isnan([contact.angle_degrees, contact.curvature_jump, contact.curvature_jump_relative]).all()
+    assert contact.angle_at.parameter == 0.0
+    assert np.isnan(contact.rounding["angle_degrees"])

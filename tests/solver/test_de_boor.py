@@ -14,7 +14,8 @@ from helpers.splines import (
     scale,
     semistructured_surfaces,
 )
-from solver.de_boor import curve_points, surface_points
+from solver import BSplineSurface
+from solver.de_boor import curve_points, edge_curves, surface_points
 
 # A value is a convex combination of control points: a few roundings for each of at most 12 levels, of both directions.
 # Derivatives are measured against their own largest control point, so that narrow spans do not count against them.
@@ -53,6 +54,37 @@ def test_surfaces_are_those_of_the_definition(surface, data):
         found = surface_points(surface, [u], [v], du, dv)[0]
         exact = np.array([float(c) for c in exact_point(surface, u, v, du, dv)])
         assert np.abs(found - exact).max() <= 10 * TOLERANCE * scale(surface, du, dv)
+
+
+@settings(max_examples=25, deadline=None)
+@given(
+    st.one_of(bspline_surfaces(degrees=(1, 3), most=1), semistructured_surfaces(degrees=(1, 3), most=1)),
+    st.sampled_from(["u0", "u1", "v0", "v1"]),
+    st.floats(0, 1),
+)
+def test_along_an_edge_all_derivatives_are_those_of_the_definition(surface, edge, t):
+    (u0, u1), (v0, v1) = surface.domain
+    across_u, at_end = edge[0] == "u", edge[1] == "1"
+    u = (u1 if at_end else u0) if across_u else min(u0 + t * (u1 - u0), u1)
+    v = (v1 if at_end else v0) if not across_u else min(v0 + t * (v1 - v0), v1)
+    found = edge_curves(surface, edge).points(np.array([v if across_u else u]))
+    assert len(found) == 6
+    for (across, along), value in found.items():
+        du, dv = (across, along) if across_u else (along, across)
+        exact = np.array([float(c) for c in exact_point(surface, u, v, du, dv)])
+        assert np.abs(value[0] - exact).max() <= 10 * TOLERANCE * scale(surface, du, dv)
+
+
+@pytest.mark.parametrize("edge", ["u0", "u1", "v0", "v1"])
+def test_along_an_edge_rational_surfaces_are_those_of_the_full_triangle(edge):
+    # The whole net and both directions on one side, the rows next to the edge on the other.
+    rng = np.random.default_rng(5)
+    knots_u, knots_v = [0, 0, 0, 0.4, 1, 1, 1], [0, 0, 0, 0, 0.3, 0.3, 1, 1, 1, 1]
+    surface = BSplineSurface(2, 3, knots_u, knots_v, rng.uniform(-1, 1, (4, 6, 3)), rng.uniform(0.5, 2, (4, 6)))
+    s, at = np.linspace(0, 1, 11), np.full(11, float(edge[1]))
+    for (across, along), value in edge_curves(surface, edge).points(s).items():
+        full = (at, s, across, along) if edge[0] == "u" else (s, at, along, across)
+        assert np.abs(value - surface_points(surface, *full)).max() <= 1e-11
 
 
 def test_right_continuous_at_inner_knots_and_left_continuous_at_the_end():
