@@ -1,7 +1,6 @@
-"""Deciding the Bezier example of section 2: (4) to (6), the formula for Q_j^s, blossoms, counts, and Fig. 3.
+"""Deciding the Bezier example of section 2: (4) to (6), the formula for Q_j^s, blossoms, counts.
 
-Judges: de Casteljau's triangle for values, substitution and degrees in `derivations.bezier` for rows, exact root
-isolation and winding in `derivations.trimming` for the trimmed region.
+Judges: de Casteljau's triangle for values, substitution and degrees in `derivations.bezier` for rows.
 """
 
 from __future__ import annotations
@@ -14,7 +13,6 @@ from typing import Any
 import sympy as sp
 
 from derivations.bezier import blossom, division_curve, division_lemmas, expanded_rows, generic_patch, row_degrees
-from derivations.trimming import Hole, Side, areas, boundary_residual, corners, crossings, inside_square
 from papers.ledger import Case, Check, Formula, Strength
 from papers.lin2014 import printed as pr
 from papers.lin2014.exact import Meaning, UndefinedError, bernstein, difference_case, indexed
@@ -72,14 +70,26 @@ def function_cases(formula: Formula | None) -> Iterator[Case]:
 
 
 def range_cases(_: Formula | None) -> Iterator[Case]:
-    """Decide whether v_i in [0, 1] keeps v(t) in [0, 1]: Bernstein polynomials are not negative and sum to 1."""
-    t = sp.Symbol("t")
-    for k in range(1, 9):
-        functions = [sp.binomial(k, r) * t**r * (1 - t) ** (k - r) for r in range(k + 1)]
-        sums_to_one = sp.expand(sum(functions) - 1) == 0
-        # Their only roots are 0 and 1, and they are positive at 1/2.
-        positive = all(f.subs(t, sp.Rational(1, 2)) > 0 and set(sp.roots(f, t)) <= {0, 1} for f in functions)
-        yield Case(f"degree {k}", bool(sums_to_one and positive))
+    """Decide whether v_i in [0, 1] keeps v(t) in [0, 1], for every degree: by induction over the degree.
+
+    B_r^k = (1 - t) B_r^(k-1) + t B_(r-1)^(k-1), with weights that are not negative and sum to 1: so the polynomials of
+    every degree are not negative and sum to 1, as the one of degree 0 does, and v(t) is a mean of the v_i.
+    """
+    k, r = sp.symbols("k r", integer=True, positive=True)
+    t, rest = sp.symbols("t w", positive=True)  # w stands for 1 - t
+
+    def function(index: Any, degree: Any) -> Any:
+        return sp.binomial(degree, index) * t**index * rest ** (degree - index)
+
+    def residual(index: Any) -> Any:
+        lower = rest * function(index, k - 1) + t * function(index - 1, k - 1)
+        common = t**index * rest ** (k - index)
+        return sp.gammasimp(sp.powsimp(sp.expand((function(index, k) - lower) / common)))
+
+    for name, index in (("inner", r), ("first", sp.Integer(0)), ("last", k)):
+        left = residual(index)
+        yield Case(f"recurrence, every degree, {name} index", left == 0, residual=left)
+    yield Case("degree 0", bernstein(0, 0, t) == 1)
 
 
 def division_cases(part: str) -> Any:
@@ -200,9 +210,22 @@ def _polar(net: list[list[Any]], i: int, j: int, arguments: list[Any]) -> Any:
 
 
 def count_cases(part: str) -> Any:
-    """Return the check of the number of control points of each row: one more than its degree after substitution."""
+    """Return the check of the number of control points of each row: one more than its degree after substitution.
+
+    For every m, n, k: the coefficient of B_s^n in (6) has the terms P_i v(u)^s, and no higher power of v. Degree by
+    degree the rows are found by substituting, so that no power cancels for control points in general.
+    """
 
     def cases(formula: Formula | None) -> Iterator[Case]:
+        u = sp.Symbol("u", positive=True)
+        powers = pr.s if part == "bottom" else pr.n - pr.s
+        highest = sp.powsimp(u**pr.m * (u**pr.k) ** powers).as_base_exp()[1]
+        relation = _given(formula).relation
+        if all(a == b for a, b in zip(relation.lhs.args, _row_name(part), strict=True)):
+            residual = sp.expand(relation.rhs - (highest + 1))
+            yield Case("every m, n, k, row s", residual == 0, residual=residual)
+        else:
+            yield Case("every m, n, k, row s", False, residual=sp.Symbol(f"undefined: {relation.lhs}"))
         for m, n, k in DEGREES:
             rows = expanded_rows(m, n, k, "bottom" if part == "bottom" else "top")
             for r in range(n + 1):
@@ -214,6 +237,11 @@ def count_cases(part: str) -> Any:
                 )
 
     return cases
+
+
+def _row_name(part: str) -> tuple[Any, Any]:
+    """Return the indices (j, s) of the rows of a sub-patch in (6)."""
+    return (sp.Integer(0), pr.s) if part == "bottom" else (pr.s, pr.n - pr.s)
 
 
 def last_row_cases(formula: Formula | None) -> Iterator[Case]:
@@ -246,58 +274,6 @@ def curve_based_cases(_: Formula | None) -> Iterator[Case]:
             rows = expanded_rows(m, n, k, "bottom" if part == "bottom" else "top")
             degrees = tuple(len(row) - 1 for row in rows)
             yield Case(f"degrees {m}, {n}, {k}, {part}", degrees == row_degrees(m, n, k, part))
-
-
-def hole() -> Hole:
-    """Return the region of Fig. 3 by the four printed functions."""
-    return Hole(
-        left=Side.decimal("0.4", "0.6", "0.3", "0.1", "0.25"),
-        right=Side.decimal("0.2", "0.5", "0.8", "0.75"),
-        bottom=Side.decimal("0.3", "0.8", "0.4", "0.7", "0.1", "0.2"),
-        top=Side.decimal("0.25", "0.75", "0.6", "0.8", "0.3", "0.5"),
-    )
-
-
-def loop_cases(_: Formula | None) -> Iterator[Case]:
-    """Decide whether c1 .. c4 enclose a region: they meet in four corners, nowhere else, inside the square."""
-    region = hole()
-    met = {name: one == other for name, (one, other) in corners(region).items()}
-    for name, true in met.items():
-        yield Case(f"corner, {name}", true)
-    points = {point for found in crossings(region).values() for point in found}
-    wanted = {tuple(map(sp.Rational, map(str, pair[0]))) for pair in corners(region).values()}
-    yield Case("no other crossing", {tuple(map(sp.Rational, map(str, point))) for point in points} == wanted)
-    yield Case("strictly inside the unit square", inside_square(region))
-
-
-def parameter_cases(_: Formula | None) -> Iterator[Case]:
-    """Decide whether the local parameters, such as (v - 0.4)/0.2, run over [0, 1] on the printed intervals."""
-    for name, offset, width, start, end in (
-        ("c1", "0.4", "0.2", "0.4", "0.6"),
-        ("c2", "0.2", "0.3", "0.2", "0.5"),
-        ("c3", "0.3", "0.5", "0.3", "0.8"),
-        ("c4", "0.25", "0.5", "0.25", "0.75"),
-    ):
-        local = [(Fraction(x) - Fraction(offset)) / Fraction(width) for x in (start, end)]
-        yield Case(name, local == [0, 1])
-
-
-def tiling_cases(_: Formula | None) -> Iterator[Case]:
-    """Decide whether four divided and four rectangular pieces cover the trimmed square, without gap or overlap."""
-    region = hole()
-    yield Case(
-        "boundaries of the eight pieces add up to those of the square and the hole", not boundary_residual(region)
-    )
-    found = areas(region)
-    yield Case("areas of the pieces and the hole sum to 1", sum(found.values()) == 1)
-    yield Case("every area is positive", all(area > 0 for area in found.values()))
-
-
-def first_split_cases(_: Formula | None) -> Iterator[Case]:
-    """Decide the construction of Q_1: the strip 0.4 <= v <= 0.6 holds all of c1, and c1 divides it across u."""
-    left = hole().left
-    yield Case("c1 is defined over the whole strip", (left.start, left.end) == (Fraction(2, 5), Fraction(3, 5)))
-    yield Case("c1 stays inside the strip's range of u", all(0 < c < 1 for c in left.coefficients))
 
 
 def check(cases: Any, method: str, *, proof: bool = False, strength: Strength = Strength.RATIONAL) -> Check:

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from papers.ledger import Case, Claim, Reading, Strength
+from papers.ledger import Case, Check, Claim, Reading, Strength
 from papers.lin2014 import blending_checks as blending
 from papers.lin2014 import figure_checks as figures
 from papers.lin2014 import printed as pr
+from papers.lin2014 import related_checks as related
 from papers.lin2014.claims_3_conditions import TRUE_3_1
 from papers.lin2014.contact_checks import row_check
 from papers.lin2014.property_checks import proved, question
@@ -35,30 +36,34 @@ CLAIMS: tuple[Claim, ...] = (
               Reading((part(row_check("start", 2), pr.COND_3_1),),
                       label="what the conditions as printed do")),
     holds("sec-1.superfluous-knots", "Section 1", "Giving both contact curves the same knots adds control points.",
-          part(question(figures.superfluous_cases, "rows on their own knots and on the union, as printed"))),
+          part(proved(figures.superfluous_cases, "rows on their own knots and on the union, all printed pairs",
+                      Strength.RATIONAL))),
     holds("sec-1.knot-insertion", "Section 1", "Knot insertion makes the knots of both contact curves identical.",
           part(question(blending.nested_space_cases, "spline spaces over the printed pairs, by exact rank"))),
     holds_if("sec-1.rolling-ball", _RELATED, "A rolling-ball blend meets its bases with G1 at the most.",
              "the curvature of the base across the contact is not that of the ball",
-             part(question(figures.circle_cases, "curvature of a circle and of the base"))),
+             part(Check(related.jump_cases, Strength.SYMBOLIC_ORDER, "the curvature of a circle, every radius",
+                        proof=True), related.JUMP),
+             part(proved(related.g2_cases, "zeros of the jump, every radius and curvature of the base"))),
     ambiguous("sec-1.quintic", _RELATED, "For G2, a Bezier curve across must be quintic.",
-              Reading((part(proved(figures.hermite_cases, "rank of the six end conditions, degrees 2 to 7",
-                                   Strength.EACH_ORDER)),),
+              Reading((part(Check(related.hermite_cases, Strength.SYMBOLIC_ORDER,
+                                  "rank of the six end conditions, every degree", proof=True), pr.QUINTIC),),
                       label="for a method that prescribes two derivatives at both ends, as for C2"),
-              Reading((part(question(figures.quartic_cases, "points, tangents and curvatures at both ends, exactly")),),
+              Reading((part(proved(related.quartic_cases, "points, tangents and curvatures at both ends, exactly",
+                                   Strength.RATIONAL)),),
                       label="for G2 as such, which prescribes points, tangents and curvatures"),
               remark="G2 leaves the lengths of the end derivatives free: the quartic with the control points (0,0), "
               "(1/2,0), (5/3,1/3), (2,1/2), (2,1) has horizontal and vertical end tangents and curvature 1 at both "
               "ends."),
     holds("sec-1.cubic", _RELATED, "A cubic blend with inner knots does the same.",
-          part(proved(figures.cubic_cases, "determinant of the end derivatives", Strength.EACH_ORDER))),
+          part(proved(related.cubic_cases, "determinant of the end derivatives of a cubic, any inner knots"))),
     holds("sec-1.hartmann-contact", _RELATED, "Hartmann's combination of two bases is G^n.",
-          part(proved(figures.hartmann_contact_cases, "derivatives of f at the ends, n = 1 to 3", Strength.EACH_ORDER)),
+          part(proved(related.hartmann_contact_cases, "derivatives of f at the ends, n = 1 to 3", Strength.EACH_ORDER)),
           remark="For f = mu (1-t)^(n+1) / (mu (1-t)^(n+1) + (1-mu) t^(n+1)), well known; [17] itself is not here."),
     ambiguous("sec-1.hartmann-nurbs", _RELATED, "Such a blend can be written as NURBS only approximately.",
-              Reading((part(question(figures.hartmann_rational_cases(splines=False), "numerator and denominator")),),
+              Reading((part(question(related.hartmann_rational_cases(splines=False), "numerator and denominator")),),
                       label="for parametric bases in general"),
-              Reading((part(question(figures.hartmann_rational_cases(splines=True), "numerator and denominator")),),
+              Reading((part(question(related.hartmann_rational_cases(splines=True), "numerator and denominator")),),
                       label="for B-spline bases with a common parameter"),
               remark="f is rational with a positive denominator: for spline bases the blend is exactly rational, of "
               "degree p + n + 1 across."),
@@ -70,17 +75,34 @@ CLAIMS: tuple[Claim, ...] = (
     not_checkable("sec-1.point-based", _RELATED, "T-splines and semi-regular splines are point-based.",
                   "a way to look at a representation, not a property of it"),
     not_checkable("sec-1.hayes", _RELATED, "Hayes' splines need equal numbers of knots in each vector.", _OTHERS),
-    not_checkable("sec-1.ref-11", _RELATED, "The blends of [11] are hard to write as B-splines.",
-                  "how hard is not measured, and [11] is not here; a polynomial blend of spline bases has an exact "
-                  "B-spline form (sec-2.transformation shows one way)"),
+    ambiguous("sec-1.ref-11", _RELATED,
+              "Hermite blends with a Bezier curve or a C-curve [11] are hard to write as B-splines.",
+              Reading((part(proved(related.bezier_conversion_cases,
+                                   "the six rows by the end conditions; spline spaces over the printed pairs, exact "
+                                   "rank", Strength.RATIONAL)),),
+                      label="with a Bezier curve across, between spline bases with C2 contact"),
+              Reading((part(proved(related.c_curve_cases, "y'' = -y among polynomials and quotients, every degree")),),
+                      label="with a C-curve, whose functions are 1, t, cos t and sin t"),
+              remark="The first has an exact form and it takes no effort: Bezier of degree 5 across is a B-spline, and "
+              "along the contacts the rows need the knots of both bases, as those of the semi-structured surface do. "
+              "The second has none. [11] itself is not here; G2 with shape parameters that vary along the contact "
+              "raises the degree along it, and stays exact while they are splines."),
     not_checkable("sec-1.parametric-blends", "Section 1", "Parametric blends can hardly be made B-splines exactly.",
-                  "which blends are meant is not said; decided for Hartmann's in sec-1.hartmann-nurbs"),
-    not_checkable("sec-1.ball-circular", _RELATED, "A rolling ball leaves a fixed, circular cross-section.",
-                  "what the method is, not a consequence of it; what follows is decided in sec-1.rolling-ball"),
+                  "which methods are meant is not said. Decided where a method is named: exact for Hermite blends with "
+                  "Bezier curves, impossible with C-curves (sec-1.ref-11), exact and rational for Hartmann's between "
+                  "spline bases (sec-1.hartmann-nurbs)"),
+    holds("sec-1.ball-circular", _RELATED, "A rolling ball leaves a circular surface: its sections are circles.",
+          part(Check(related.canal_cases, Strength.SYMBOLIC_ORDER,
+                     "the envelope of balls of radius r(t) around a spine, both conditions solved", proof=True),
+               related.SECTION_SQUARED),
+          remark="For a ball of variable radius too, in the plane across the spine at -r r'/s along it, s the speed of "
+          "the spine; for constant radius in the plane through the centre."),
     not_checkable("sec-1.knot-lines-end", _RELATED, "Knot lines of T-splines and semi-regular splines may end inside.",
-                  _OTHERS + "; for semi-structured surfaces see sec-2.continuity-control"),
+                  "it is how those splines are defined, in publications which are not here; that the knots of a "
+                  "semi-structured surface may differ from row to row is decided in sec-2.continuity-control"),
     holds("sec-1.different-counts", _RELATED, "In a semi-structured surface the knot vectors may differ in length.",
-          part(question(_different_counts, "counts of Fig. 1 and of the printed pairs of contact curves"))),
+          part(proved(_different_counts, "counts of Fig. 1 and of the printed pairs of contact curves",
+                      Strength.RATIONAL))),
     holds("sec-1.classical-grid", _RELATED, "In a classical grid all rows, and all columns, have equally many points.",
           part(count_check(knot_count_instances(pr.n_i, pr.ell), "counting knots and basis functions, orders 1 to 6"),
                pr.V_LAST),

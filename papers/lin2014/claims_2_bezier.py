@@ -9,9 +9,11 @@ from sympy import Eq, Sum
 from papers.ledger import Case, Check, Claim, Correction, Counterexample, Formula, Part, Reading, Strength
 from papers.lin2014 import bezier_checks as bezier
 from papers.lin2014 import printed as pr
+from papers.lin2014 import printed_figures as figures
+from papers.lin2014 import trimming_checks as trimming
 from papers.lin2014.bezier_checks import check
 from papers.lin2014.consequences_2 import missing_first_row, top_last_row
-from papers.lin2014.property_checks import question
+from papers.lin2014.property_checks import proved, question
 from papers.lin2014.records import ambiguous, fails, holds, not_checkable, part
 
 _WHERE = "Section 2, Bezier example"
@@ -19,7 +21,7 @@ _TRIANGLE = "de Casteljau's triangle, for all parameters and control points, deg
 _POLAR = "the symmetric multi-affine form, a sum over subsets of the arguments, degrees up to 4"
 _EXPANSION = "rows found by substituting v(u) and changing the basis, degrees up to (3, 3, 2), all u, v, P_ij, v_i"
 _LEMMAS = "the identities behind the closed form, for every m, n, k"
-_COUNTING = "degrees of the rows found by substitution"
+_COUNTING = "degrees of the rows: powers for every m, n, k, and rows found by substitution up to degrees (3, 3, 2)"
 
 
 def _identity(cases: Any, method: str) -> Check:
@@ -27,6 +29,12 @@ def _identity(cases: Any, method: str) -> Check:
     return check(cases, method, proof=True, strength=Strength.EACH_ORDER)
 
 
+def _data(cases: Any, method: str) -> Check:
+    """Return a check that decides printed numbers, all of them."""
+    return check(cases, method, proof=True)
+
+
+_DECIMALS = "the printed decimals, exactly"
 TRUE_TOP_LAST = Formula(Eq(pr.F(pr.n, 0), pr.m + 1), (pr.m, pr.n))
 _LEMMA_PART = part(check(bezier.lemma_cases, _LEMMAS, proof=True, strength=Strength.SYMBOLIC_ORDER))
 
@@ -69,7 +77,8 @@ CLAIMS: tuple[Claim, ...] = (
           "A Bezier function v(t) with control points (i/k, v_i); with v_i in [0, 1] it stays in [0, 1].",
           part(_identity(bezier.function_cases, _TRIANGLE), pr.EQ_5),
           part(_identity(bezier.function_cases, _TRIANGLE), pr.EQ_5_ABSCISSA),
-          part(check(bezier.range_cases, "signs and sum of Bernstein polynomials of degree 1 to 8"))),
+          part(check(bezier.range_cases, "induction over the degree: signs and sum of Bernstein polynomials",
+                     proof=True, strength=Strength.SYMBOLIC_ORDER))),
     holds("eq-6", _WHERE,
           "The sub-patches below and above v(u) are P_1 = sum of Q_0^s B_s^n and P_2 = sum of Q_s^{n-s} B_s^n.",
           part(_identity(bezier.division_cases("bottom"), _EXPANSION), pr.EQ_6_BOTTOM),
@@ -85,7 +94,7 @@ CLAIMS: tuple[Claim, ...] = (
           "The formula for Q_j^s with s = 1, .., n and j = 0, .., n-s defines every row that (6) uses.",
           part(question(_range_cases, "each row of (6) against the printed range")),
           correction=Correction("s = 0, .., n with P_ij^0 = P_ij.",
-                                (Part(check(bezier.row_formula_cases(0), "the row of the patch itself"), ROW_0),)),
+                                (Part(_identity(bezier.row_formula_cases(0), "the row of the patch itself"), ROW_0),)),
           counterexample=_range_counterexample, consequence=missing_first_row,
           remark="The counts in the text do include Q_0^0 with its m + 1 points."),
     holds("sec-2.blossom-1", _WHERE, "First step of the blossom recursion.",
@@ -95,14 +104,14 @@ CLAIMS: tuple[Claim, ...] = (
           remark="The order of the arguments does not matter, so that the order of the printed steps does not either."),
     holds("sec-2.bottom-counts", _WHERE,
           "The rows of the bottom sub-patch have m+1, m+k+1, .., m+nk+1 control points; there are n+1 of them.",
-          part(check(bezier.count_cases("bottom"), _COUNTING), pr.COUNT_BOTTOM)),
+          part(_identity(bezier.count_cases("bottom"), _COUNTING), pr.COUNT_BOTTOM)),
     holds("sec-2.top-counts", _WHERE,
           "The rows of the top sub-patch have m+nk+1, m+(n-1)k+1, .., m+1 control points; there are n+1 of them.",
-          part(check(bezier.count_cases("top"), _COUNTING), pr.COUNT_TOP)),
+          part(_identity(bezier.count_cases("top"), _COUNTING), pr.COUNT_TOP)),
     fails("sec-2.top-last-row", _WHERE, "The last row of the top sub-patch, with m+1 control points, is Q_0^n.",
-          part(check(bezier.last_row_cases, _COUNTING), pr.COUNT_TOP_LAST),
+          part(_identity(bezier.last_row_cases, _COUNTING), pr.COUNT_TOP_LAST),
           correction=Correction("The last row is Q_n^0, the edge v = 1 of the patch.",
-                                (Part(check(bezier.last_row_cases, _COUNTING), TRUE_TOP_LAST),)),
+                                (Part(_identity(bezier.last_row_cases, _COUNTING), TRUE_TOP_LAST),)),
           counterexample=_top_last_counterexample, consequence=top_last_row,
           remark="Indices exchanged, or misread by the scan: with Q_n^0 it is right. Q_0^n is the row on the dividing "
           "curve, which the same sentence names first, with m+nk+1 points."),
@@ -116,12 +125,16 @@ CLAIMS: tuple[Claim, ...] = (
     not_checkable("fig-2.rows", "Fig. 2", "Numbers of control points in each row, as the figure shows them.",
                   "the figure is not part of the text that we have; the counts in the text are decided on their own"),
     holds("fig-3.curves", "Fig. 3", "c1, .., c4 enclose a region inside the unit square.",
-          part(question(lambda: bezier.loop_cases(None), "exact corners and exact roots of all common points"))),
+          *(part(_data(trimming.curve_cases(name), "exact corners and exact roots of all common points"), formula)
+            for name, formula in figures.SIDE_CURVES.items())),
     holds("fig-3.parameters", "Fig. 3", "The arguments of the Bernstein polynomials run over [0, 1] on the intervals.",
-          part(question(lambda: bezier.parameter_cases(None), "the printed decimals"))),
+          *(part(_data(trimming.parameter_cases(name), _DECIMALS), formula)
+            for name, formula in figures.SIDE_PARAMETERS.items()),
+          *(part(_data(trimming.interval_cases(name), _DECIMALS), formula)
+            for name, formula in figures.SIDE_INTERVALS.items())),
     holds("fig-3.pieces", "Fig. 3",
           "The trimmed patch is made of four semi-structured patches and four ordinary Bezier patches, exactly.",
-          part(question(lambda: bezier.tiling_cases(None), "sum of oriented boundaries, areas")), _LEMMA_PART),
+          part(proved(trimming.tiling_cases, "sum of oriented boundaries, areas", Strength.RATIONAL)), _LEMMA_PART),
     holds("fig-3.first-split", "Fig. 3", "The strip between v = 0.4 and v = 0.6 contains c1, which then divides it.",
-          part(question(lambda: bezier.first_split_cases(None), "the printed decimals"))),
+          part(_data(trimming.first_split_cases, _DECIMALS), figures.FIRST_SPLIT)),
 )  # fmt: skip

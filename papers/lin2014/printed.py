@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from sympy import Eq, Function, Ge, IndexedBase, Integral, Rational, Sum, Symbol, binomial, symbols
+from sympy import Eq, Function, Ge, IndexedBase, Integral, Le, Rational, Sum, Symbol, binomial, symbols
 
 from papers.ledger import Formula
 
@@ -297,3 +297,8 @@ SIZES = {
     "fig-11": ((4, 10), (5, 64)),
 }
 FIGURE_1_COUNTS = (5, 5, 5, 7, 6, 6, 6)
+
+# Claims of sections 1 and 3 on degrees and energies: E_6 and E_7 are least energies with 6 and 7 rows.
+QUINTIC = Formula(Ge(degree, 5), (degree,))
+energy_6, energy_7 = symbols("E_6 E_7", nonnegative=True)
+FEWER_IS_BETTER = Formula(Le(energy_6, energy_7), (energy_6, energy_7))

@@ -15,7 +15,8 @@ from papers.lin2014.consequences import made_blend, made_pair, measured_rows, wi
 from papers.lin2014.consequences_3 import COMMON_TERMS, with_normal_equation
 from papers.lin2014.contact_checks import row_check, row_counterexample, t_ks1, u_before, u_last, w_kr1
 from papers.lin2014.exact import Meaning, UndefinedError, clamped, de_boor, interpret
-from papers.lin2014.figure_checks import CONTACTS, knot_cases, quartic_cases, straight_counterexample
+from papers.lin2014.figure_conditions import at_figure, row_2_check, straight_counterexample
+from papers.lin2014.related_checks import quartic_cases
 from papers.loading import load_paper
 from papers.search import smallest_assignment
 
@@ -30,7 +31,7 @@ def test_printed_formulas_run_in_the_papers_folder_only():
             if isinstance(node, ast.Import | ast.ImportFrom)
             for name in (getattr(node, "module", None) or "", *(alias.name for alias in node.names))
         ]
-        assert not [name for name in names if "printed" in name.split(".")], path
+        assert not [name for name in names if any(part.startswith("printed") for part in name.split("."))], path
 
 
 def second_derivative(order, knots, points):
@@ -141,7 +142,7 @@ def test_every_letter_of_corrected_end_formulas_matters():
 def test_the_curvature_that_the_printed_row_gives():
     """Along the normal: the base's second derivative times (w_{k_r+1} - w_s) / u_2, the remark of cond-3.1."""
     assert "times (w_{k_r+1} - w_s) / u_2" in load_paper("lin2014").claim("cond-3.1").remark
-    from papers.lin2014.figure_checks import _base_derivatives, _printed_derivatives, _rows_across
+    from papers.lin2014.figure_conditions import _base_derivatives, _printed_derivatives, _rows_across
 
     H = sp.symbols("H1 H2", positive=True)
     alpha = sp.Symbol("alpha", positive=True)
@@ -161,16 +162,33 @@ def test_the_paper_has_a_title_and_a_legend():
     assert Path(papers.lin2014.__file__).parent.joinpath("printed.py").is_file()
 
 
-@pytest.mark.parametrize("key", sorted(pr.KNOTS))
-def test_a_knot_lost_from_a_printed_vector_is_noticed(key, monkeypatch):
-    """Each knot left out in turn, and the first inner knot moved past the last: the check of the figure turns false."""
-    figure = next(name for name, keys in CONTACTS.items() if key in keys)
-    knots = pr.KNOTS[key]
-    assert all(case.true for case in knot_cases(figure, (key,))()) == (key != "fig-10.first")
-    wrong = [knots[:i] + knots[i + 1 :] for i in range(len(knots))] + [(*knots[:4], 2, *knots[5:])]
-    for changed in wrong:
-        monkeypatch.setitem(pr.KNOTS, key, changed)
-        assert not all(case.true for case in knot_cases(figure, (key,))()), changed
+@pytest.mark.parametrize(("m", "u_1"), [(5, Fraction(1, 3)), (6, Fraction(1, 4))])
+def test_the_condition_of_a_figure_at_numbers_judged_by_exact_splines(m, u_1):
+    """P_uu(0) = R_ww(0) for a cubic blend with m + 1 rows: true of the corrected row, false of the printed one."""
+    U = clamped(4, *(u_1 * i for i in range(1, m - 2)))
+    W = clamped(4, Fraction(2, 7), Fraction(3, 5))
+    R = [Fraction(x) for x in (2, -1, 5)] + [Fraction(0)] * 3
+    numbers = {pr.w_s: Fraction(0), pr.w_kr: W[4], w_kr1: W[5], pr.R_0: R[0], pr.R_1: R[1], pr.R_2: R[2], pr.P_0: R[0]}
+    numbers[pr.P_1] = interpret(at_figure(pr.COND_2_1, m, parametric=True).relation.rhs, Meaning(numbers))
+    for formula, right in ((pr.COND_3_1, False), (TRUE_3_1, True)):
+        at = at_figure(formula, m, parametric=True)
+        points = [R[0], numbers[pr.P_1], interpret(at.relation.rhs, Meaning(numbers))] + [Fraction(0)] * (m - 2)
+        assert (second_derivative(4, U, points) == second_derivative(4, W, R)) == right
+        (case,) = row_2_check("start", m, "any", parametric=True).cases(at)
+        assert case.true == right
+
+
+def test_a_base_that_is_straight_across_hides_the_error_from_its_normal():
+    at = at_figure(pr.COND_3_1, 5, parametric=False)
+    found = {
+        kind: next(iter(row_2_check("start", 5, kind, parametric=False).cases(at))) for kind in ("straight", "curved")
+    }
+    assert found["straight"].true
+    assert not found["curved"].true
+    # Printed minus true: H_2 / h_2 - 1 times the base's second derivative along the normal, 6 (R_2 - R_0) / (H_1 H_2).
+    H1, H2 = sp.symbols("H1 H2", positive=True)
+    wanted = (H2 / sp.Rational(2, 3) - 1) * 6 * (pr.R_2 - pr.R_0) * pr.alpha**4 / (H1 * H2)
+    assert sp.simplify(found["curved"].residual - wanted) == 0
 
 
 def test_the_quartic_and_rows_on_a_line_at_numbers():
