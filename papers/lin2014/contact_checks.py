@@ -31,6 +31,9 @@ Side = Literal["start", "end"]
 u_last, u_before = sp.symbols("u_{m-k+1} u_{m-k}", positive=True)
 w_kr1, t_ks1 = sp.symbols("w_{k_r+1} t_{k_s+1}", real=True)
 
+# For which k the printed index m - 3 is that of the last inner knot, m - k + 1.
+_SAME_INDEX = sp.solve(pr.m - 3 - (pr.m - pr.k + 1), pr.k)
+
 _H, _BASE_H = span_symbols(3), span_symbols(2, "H")
 _ROWS = {"start": (pr.P_0, pr.P_1, pr.P_2), "end": (pr.P_m, pr.P_m1, pr.P_m2)}
 _BASE_ROWS = {"start": (pr.R_0, pr.R_1, pr.R_2), "end": (pr.S_0, pr.S_1, pr.S_2)}
@@ -43,11 +46,10 @@ def row_check(side: Side, row: int, *, parametric: bool = False) -> Check:
     """
     return Check(
         partial(_row_cases, side, row, parametric),
-        Strength.SYMBOLIC_ORDER if side == "start" else Strength.EACH_ORDER,
-        "the row from Cox-de Boor end derivatives and the chain rule, over symbolic knots; orders k and k_s from 2 to 8"
-        if side == "end"
-        else "the row from end derivatives and the chain rule for symbolic orders and knots, and from the Cox-de Boor "
-        "pieces for each pair of orders from 2 to 8",
+        Strength.SYMBOLIC_ORDER,
+        "the row from end derivatives and the chain rule for symbolic orders and knots, and from the Cox-de Boor "
+        "pieces for each pair of orders from 2 to 8"
+        + (", in each of which u_{m-3} is counted from the end" if side == "end" and row else ""),
         proof=True,
         probe=partial(_row_probe, side, parametric),
     )
@@ -99,14 +101,18 @@ def _probe_values(side: Side, parametric: bool, k: int, k_b: int) -> dict[Any, A
 
 def _row_cases(side: Side, row: int, parametric: bool, formula: Formula | None) -> Iterator[Case]:
     relation = _relation(formula)
+    every = _field_values(side, parametric, 0, 0)
     if not relation.has(pr.u_m3):
-        yield _row_case(relation, side, "every order", _field_values(side, parametric, 0, 0), own=True, meets=True)
+        yield _row_case(relation, side, "every order", every, own=True, meets=True)
+    else:
+        label = "every order of the base, and of the blend as if u_{m-3} were the last inner knot, as for k = 4 alone"
+        yield _row_case(relation.xreplace({pr.u_m3: u_last}), side, label, every, own=False, meets=True)
     for k in ORDERS:
         for k_b in ORDERS:
             if k > row:
                 values = _field_values(side, parametric, k, k_b)
                 own = k == CUBIC and k_b == CUBIC
-                yield _row_case(relation, side, f"orders {k}, {k_b}", values, own=own, meets=k == CUBIC)
+                yield _row_case(relation, side, f"orders {k}, {k_b}", values, own=own, meets=k in _SAME_INDEX)
 
 
 def _row_case(relation: Any, side: Side, label: str, values: dict[Any, Any], *, own: bool, meets: bool) -> Case:
@@ -304,13 +310,12 @@ def mirror_check(row: int) -> Check:
     def cases(formula: Formula | None) -> Iterator[Case]:
         relation = _relation(formula)
         for k in range(max(row + 1, ORDERS[0]), ORDERS[-1] + 1):
-            # For k = 4 the printed index m - 3 is that of the last inner knot, m - k + 1.
-            last = {pr.u_m3: u_last} if k == CUBIC else {}
+            last = {pr.u_m3: u_last} if k in _SAME_INDEX else {}
             left, right = (side.xreplace(names) for side in at_r.args)
             left_s, right_s = (side.xreplace(last) for side in relation.args)
             residual = sp.expand(((right_s - left_s) - (right - left)).subs(pr.k, k))
             # The last row, which is that of S, has no knot.
-            meets = k == CUBIC or row == 0
+            meets = k in _SAME_INDEX or row == 0
             yield Case(f"k = {k}", bool(residual == 0), own=k == CUBIC, meets=meets, residual=residual)
 
     return Check(cases, Strength.EACH_ORDER, "the printed row at R, mirrored, and at S, orders up to 8", proof=True)
