@@ -39,7 +39,8 @@ def verify_command(
     markdown: Annotated[str | None, typer.Option(metavar="FILE", help="Write the report of the paper.")] = None,
 ) -> None:
     """Decide every claim of a paper anew; exit status 1 if a verdict is not the recorded one."""
-    from papers.report import ledger_markdown, ledger_record
+    from papers.erratum import ledger_markdown
+    from papers.report import ledger_record
     from solver.io.disk import check_output, write_text
     from solver.io.json_text import to_text
 

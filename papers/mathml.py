@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from html import escape
 from typing import Any
 
 from sympy.printing.latex import LatexPrinter
@@ -10,7 +11,31 @@ from sympy.printing.mathml import MathMLPresentationPrinter
 
 # A letter with its own index, a number, or an operator, inside an index such as k_r+1 or m-k+1.
 _TOKEN = re.compile(r"([A-Za-z]+)(?:_([A-Za-z0-9]+))?|(\d+)|([-+,'])")
-_GREEK = {"alpha": "α", "beta": "β", "delta": "δ", "kappa": "κ"}
+_GREEK = {"alpha": "α", "beta": "β", "delta": "δ", "kappa": "κ", "rho": "ρ", "mu": "μ", "theta": "θ"}
+# h1 and alpha2 are h_1 and alpha_2; primes stand before or after the index, and V^r has an upper one.
+_NAME = re.compile(r"([A-Za-z]+)('*)(?:_?(\d+)|_(\w+|\{.*\}))?('*)(?:\^(\w+))?")
+# The same inside a sentence: a letter or Greek name with a lower index, an upper one, or both. G2 and C2 are no letters
+# with an index, h1 and H1 are.
+_IN_TEXT = re.compile(
+    r"\b(?:([hH])(\d)\b|([A-Za-z]|alpha|beta|kappa|rho|mu)(?:_(\{(?:[^{}]|\{[^{}]*\})*\}|[A-Za-z0-9]+))?)('*)"
+    r"(?:\^(\([^()]*\)|\w+))?(?![A-Za-z])"
+)
+
+
+def decimal(number: Any) -> str:
+    """Return a printed number as a decimal; empty for halves, thirds and whatever has no finite one.
+
+    Examples
+    --------
+    >>> from sympy import Rational
+    >>> decimal(Rational("0.142857")), decimal(Rational(1, 2)), decimal(Rational(1, 3))
+    ('0.142857', '', '')
+    """
+    if number.is_Integer:
+        return str(number)
+    if number.q == 2 or 10**6 % number.q:
+        return ""
+    return f"{number.p / number.q:.6f}".rstrip("0")
 
 
 class _PositiveFirst:
@@ -45,6 +70,11 @@ class _Latex(_PositiveFirst, LatexPrinter):  # type: ignore[misc]
         lower, upper, arguments = ([x if isinstance(x, str) else self._print(x) for x in part] for part in parts)
         raised = f"^{{{','.join(upper)}}}" if upper else ""
         return f"B_{{{','.join(lower)}}}{raised}({'; '.join(arguments)})"
+
+    def _print_Knots(self, expr: Any) -> str:  # noqa: N802
+        return f"({', '.join(decimal(number) or self._print(number) for number in expr)})"
+
+    _print_Numbers = _print_Knots  # noqa: N815
 
 
 class _Printer(_PositiveFirst, MathMLPresentationPrinter):  # type: ignore[misc]  # SymPy is untyped
@@ -88,10 +118,41 @@ class _Printer(_PositiveFirst, MathMLPresentationPrinter):  # type: ignore[misc]
 
     def _name(self, name: str) -> Any:
         if name.startswith("("):  # a difference that stands for one quantity
-            return self._leaf("mi", name.replace("{", "").replace("}", ""))
-        base, _, index = name.partition("_")
-        head = self._leaf("mi", _GREEK.get(base, base))
-        return self._with_index(head, index) if index else head
+            return self._difference(name)
+        found = _NAME.fullmatch(name)
+        if found is None:
+            return self._leaf("mi", _GREEK.get(name, name))
+        base, primes, number, index, more, upper = found.groups()
+        head = self._leaf("mi", _GREEK.get(base, base) + "′" * len(primes + more))
+        lower = number or index
+        head = self._with_index(head, lower) if lower else head
+        return self._raised(head, upper) if upper else head
+
+    def _difference(self, name: str) -> Any:
+        left, _, right = name.strip("()").partition("}-")
+        row = self.dom.createElement("mrow")
+        parts = [self._leaf("mo", "("), self._name(left + "}"), self._leaf("mo", "−"), self._name(right)]
+        for part in (*parts, self._leaf("mo", ")")):
+            row.appendChild(part)
+        return row
+
+    def _raised(self, head: Any, upper: str) -> Any:
+        element = self.dom.createElement("msup")
+        element.appendChild(head)
+        element.appendChild(self._leaf("mi", upper))
+        return element
+
+    def _print_Knots(self, e: Any) -> Any:  # noqa: N802
+        row = self.dom.createElement("mrow")
+        row.appendChild(self._leaf("mo", "("))
+        for n, number in enumerate(e):
+            if n:
+                row.appendChild(self._leaf("mo", ","))
+            row.appendChild(self._leaf("mn", decimal(number)) if decimal(number) else self._print(number))
+        row.appendChild(self._leaf("mo", ")"))
+        return row
+
+    _print_Numbers = _print_Knots  # noqa: N815
 
     def _with_index(self, head: Any, index: str) -> Any:
         element = self.dom.createElement("msub")
@@ -137,3 +198,30 @@ def latex(expression: Any) -> str:
     'b - a'
     """
     return str(_Latex().doprint(expression))
+
+
+def text_html(text: str) -> str:
+    """Return a sentence as HTML, where names such as u_1, w_{k_r+1}, alpha^4 and H1 have their indices below or above.
+
+    Examples
+    --------
+    >>> text_html("u_1 < w_{k_r+1}")
+    '<i>u</i><sub>1</sub> &lt; <i>w</i><sub><i>k</i><sub>r</sub>+1</sub>'
+    >>> text_html("a blend of P_ij by alpha^4")
+    'a blend of <i>P</i><sub>ij</sub> by <i>α</i><sup>4</sup>'
+    """
+    pieces, end = [], 0
+    for found in _IN_TEXT.finditer(text):
+        short, number, letter, index, primes, upper = found.groups()
+        if index or short or upper:
+            pieces += [escape(text[end : found.start()]), _name_html(letter or short, index or number, primes, upper)]
+            end = found.end()
+    return "".join(pieces) + escape(text[end:])
+
+
+def _name_html(base: str, index: str | None, primes: str, upper: str | None) -> str:
+    html = f"<i>{_GREEK.get(base, base)}</i>" + "′" * len(primes)
+    lower = (index or "").removeprefix("{").removesuffix("}")
+    if lower:
+        html += f"<sub>{text_html(lower)}</sub>"
+    return html + (f"<sup>{text_html(upper.strip('()'))}</sup>" if upper else "")

@@ -16,8 +16,9 @@ from papers.baselines.comparison import Comparison, run
 from papers.baselines.interface import Method
 from papers.baselines.registry import methods
 from papers.environment import environment
+from papers.erratum import ledger_markdown
 from papers.page import Results, page
-from papers.report import ledger_markdown, ledger_record
+from papers.report import ledger_record
 from papers.study import Comparisons, Drawing, Example, Study, Table
 from papers.tables import METHODS_NOTE, blends_table, markdown_lines, methods_table, text_lines
 from papers.verification import Ledger

@@ -5,6 +5,7 @@ from __future__ import annotations
 import signal
 import threading
 import time
+from collections import Counter
 from collections.abc import Callable, Iterator
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from contextlib import contextmanager
@@ -294,6 +295,13 @@ class Ledger:
             "mutants_undefined": sum(d.mutation.undefined for d in self.decisions),
             "mutants_survived": sum(len(d.mutation.survivors) for d in self.decisions),
         }
+
+    def mutants_by_kind(self) -> dict[str, int]:
+        """Return how many mutants of each kind were tried."""
+        total: Counter[str] = Counter()
+        for decision in self.decisions:
+            total.update(decision.mutation.kinds)
+        return dict(total)
 
 
 def verify(

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Any
 
-from sympy import Eq, Sum
+from sympy import Eq, Ge, Integer, Sum, Symbol
 
 from papers.ledger import Case, Check, Claim, Correction, Counterexample, Formula, Part, Reading, Strength
 from papers.lin2014 import bezier_checks as bezier
@@ -46,17 +47,20 @@ def _top_last_counterexample() -> Counterexample:
     return Counterexample(values, f"{m + 1} control points for Q_0^{n}", f"{m + 1 - int(case.residual)}")
 
 
-def _range_cases():  # type: ignore[no-untyped-def]
-    """Yield each row that (6) uses, and whether the range s = 1 .. n under it defines the row."""
-    for n in (1, 2, 3):
-        for s in range(n + 1):
-            yield Case(f"n = {n}, Q_0^{s}", s in range(1, n + 1))
-            yield Case(f"n = {n}, Q_{s}^{n - s}", n - s in range(1, n + 1))
-
-
-def _full_range_cases():  # type: ignore[no-untyped-def]
-    """Yield the formula at s = 0 with P_ij^0 = P_ij: the row of the patch itself, the row that (6) needs."""
-    yield from bezier.row_formula_cases(0)(ROW_0)
+def _range_cases(formula: Formula | None) -> Iterator[Case]:
+    """Yield the rows of (6) for every n: s runs from 0 to n in Q_0^s and from n to 0 in Q_j^{n-j}, and no further."""
+    if formula is None:
+        raise ValueError("formula: found None, expected a relation")
+    inside = Symbol("a", integer=True, positive=True)
+    for label, index, used in (
+        ("Q_0^0 and Q_n^0", Integer(0), True),
+        ("Q_0^n, every n", pr.n, True),
+        ("Q_0^s and Q_{n-s}^s, s = 1, .., n - 1", inside, True),
+        ("no row of degree m - k", Integer(-1), False),
+    ):
+        admitted = formula.relation.subs(pr.s, index) == True  # noqa: E712  # a relation may stay undecided
+        short = formula.relation.lhs.subs(pr.s, index) - formula.relation.rhs
+        yield Case(label, admitted == used, residual=short if used and not admitted else None)
 
 
 ROW_0 = Formula(
@@ -65,10 +69,15 @@ ROW_0 = Formula(
 )
 
 
-def _range_counterexample() -> Counterexample:
-    case = next(c for c in _range_cases() if not c.true)
-    return Counterexample((("row", case.label),), "undefined", "Q_0^0 = sum of P_i0 B_i^m")
+Q_RANGE_FROM_0 = Formula(Ge(pr.s, 0, evaluate=False), (pr.s,))
 
+
+def _range_counterexample() -> Counterexample:
+    case = next(c for c in _range_cases(pr.Q_RANGE) if not c.true)
+    return Counterexample((("n", "1"), ("rows", case.label)), "undefined", "Q_0^0 = sum of P_i0 B_i^m")
+
+
+_RANGE = _data(_range_cases, "each row of (6) against the range, every n")
 
 CLAIMS: tuple[Claim, ...] = (
     holds("eq-4", _WHERE, "A Bezier patch as a double sum over Bernstein polynomials.",
@@ -92,9 +101,10 @@ CLAIMS: tuple[Claim, ...] = (
           remark="Several (i, j_1, .., j_s) share one Bernstein polynomial; the sum over l only groups them."),
     fails("sec-2.q-range", _WHERE,
           "The formula for Q_j^s with s = 1, .., n and j = 0, .., n-s defines every row that (6) uses.",
-          part(question(_range_cases, "each row of (6) against the printed range")),
+          part(_RANGE, pr.Q_RANGE),
           correction=Correction("s = 0, .., n with P_ij^0 = P_ij.",
-                                (Part(_identity(bezier.row_formula_cases(0), "the row of the patch itself"), ROW_0),)),
+                                (Part(_RANGE, Q_RANGE_FROM_0),
+                                 Part(_identity(bezier.row_formula_cases(0), "the row of the patch itself"), ROW_0))),
           counterexample=_range_counterexample, consequence=missing_first_row,
           remark="The counts in the text do include Q_0^0 with its m + 1 points."),
     holds("sec-2.blossom-1", _WHERE, "First step of the blossom recursion.",

@@ -202,6 +202,7 @@ BLOSSOM_1 = Formula(Eq(F(1, i, j), (1 - v_c[j_1]) * P[i, j] + v_c[j_1] * P[i, j 
 BLOSSOM_2 = Formula(
     Eq(F(s, i, j), (1 - x[s]) * F(s - 1, i, j) + x[s] * F(s - 1, i, j + 1)), (x.label, i, j, s), (s >= 2,)
 )
+Q_RANGE = Formula(Ge(s, 1), (s,))  # and s <= n
 COUNT_BOTTOM = Formula(Eq(F(0, s), m + s * k + 1), (s, m, k))
 COUNT_TOP = Formula(Eq(F(s, n - s), m + (n - s) * k + 1), (s, m, n, k))
 COUNT_TOP_LAST = Formula(Eq(F(0, n), m + 1), (m, n))

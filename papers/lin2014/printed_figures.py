@@ -50,7 +50,7 @@ def _vector(key: str, knots: Knots) -> Formula:
 VECTORS = {key: _vector(key, Knots(*knots)) for key, knots in KNOTS.items()}
 # Printed once more, in the comparison with [13].
 COMMON_VECTOR_5 = _printed("V", Knots(0, 0, 0, 0, Rational(1, 2), 1, 1, 1, 1))
-SEVENTHS = _printed("V^r_inner", Knots(*KNOTS["fig-10.first"][3:-4]))
+SEVENTHS = _printed("V_inner", Knots(*KNOTS["fig-10.first"][3:-4]))
 
 _ROWS = (
     "how many rows of control points a base has across the contact is printed in Table 1 alone; (3.1) and cubics "

@@ -19,7 +19,7 @@ from papers.search import smallest_assignment
 
 CUBIC = 4
 # Value and derivatives of the strip at u = 0 and u = 1.
-DATA = sp.symbols("f_0 f_0' f_0'' f_1 f_1' f_1''", real=True)
+DATA = sp.symbols("f_0 f'_0 f''_0 f_1 f'_1 f''_1", real=True)
 _F0, _D0, _DD0, _F1, _D1, _DD1 = DATA
 # No middle curve (6 rows) against one (7 rows), uniform u_i as in the paper: a sum of two squares.
 FEWER_COSTS_MORE = Formula(

@@ -5,8 +5,9 @@ from dataclasses import replace
 from pathlib import Path
 from xml.etree import ElementTree
 
+from papers.erratum import ledger_markdown
 from papers.ledger import Verdict
-from papers.report import ledger_html, ledger_markdown, ledger_record
+from papers.report import ledger_html, ledger_record
 from papers.verification import verify
 from solver.io.json_text import to_text
 

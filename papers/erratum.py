@@ -1,0 +1,156 @@
+"""A decided ledger as Markdown: an erratum with each failure in five lines, then every record and what it stands on."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Iterator
+from typing import Any
+
+from papers.ledger import Claim, Formula, Verdict
+from papers.mathml import latex
+from papers.report import checked_text, consequence_text, correction_text, counts_text, mutants_text, reading_text
+from papers.verification import Decision, Ledger, ReadingDecision
+
+
+def ledger_markdown(ledger: Ledger) -> str:
+    """Return the report: counts, each failure in five lines, conditions, readings, and all records. No timings."""
+    lines = [
+        f"# {ledger.paper.title}: every printed claim decided",
+        "",
+        f"Written by `semispline verify {ledger.paper.name} --markdown`; every verdict is computed anew at each run.",
+        "",
+        *counts_text(ledger).splitlines(),
+        "",
+        *([ledger.paper.legend, ""] if ledger.paper.legend else []),
+        *_changed(ledger),
+        *_erratum(ledger),
+        *_section(ledger, Verdict.HOLDS_IF, "True only under an unstated condition", _conditional_lines),
+        *_section(ledger, Verdict.AMBIGUOUS, "Can be read in more than one way", _ambiguous_lines),
+        *_section(ledger, Verdict.NOT_CHECKABLE, "Not checkable", _reason_lines),
+        *_survivors(ledger),
+        *_records(ledger),
+    ]
+    return "\n".join(lines) + "\n"
+
+
+def _records(ledger: Ledger) -> Iterator[str]:
+    """Yield a table with one row a reading: what the verdict stands on, and how it was found."""
+    yield from ("## All records", "")
+    yield "Noticed: mutants of the formulas of the record that its checks told apart, of those that were tried."
+    yield from ("", "| id | claim | verdict | evidence | checked | method | noticed |", "|---|---|---|---|---|---|---|")
+    for claim, decision in zip(ledger.paper.claims, ledger.decisions, strict=True):
+        verdict = str(decision.verdict) if decision.verdict else f"no answer: {decision.problem}"
+        if decision.verdict is not decision.recorded:
+            verdict = f"**CHANGED** {verdict} (recorded: {decision.recorded})"
+        head, mutants = (claim.id, claim.statement, verdict), mutants_text(decision)
+        if not decision.readings:
+            yield _row(*head, "", "", claim.reason, mutants)
+        for reading in decision.readings:
+            label = f"as {reading.label} ({reading.verdict}): " if reading.label else ""
+            yield _row(*head, reading.strength.text, checked_text(reading), label + reading.method, mutants)
+            head, mutants = ("", "", ""), ""
+    yield ""
+
+
+def _row(*cells: str) -> str:
+    return f"| {' | '.join(map(_cell, cells))} |"
+
+
+def _survivors(ledger: Ledger) -> Iterator[str]:
+    """Yield the mutants that no check tells from their formula, counted by reason."""
+    yield from ("## Changes that no check can see, and why", "")
+    for decision in ledger.decisions:
+        for survivors, what in (
+            (decision.mutation.equivalent, "say the same"),
+            (decision.mutation.undecidable, "cannot be told from what is printed"),
+        ):
+            for reason, count in Counter(reason for _, reason in survivors).items():
+                yield f"- **{decision.id}**: {count} {what}: {reason}."
+    yield ""
+
+
+def _cell(text: str) -> str:
+    return text.replace("|", "\\|").replace("\n", " ")
+
+
+def _pairs(ledger: Ledger, verdict: Verdict) -> list[tuple[Claim, Decision]]:
+    pairs = zip(ledger.paper.claims, ledger.decisions, strict=True)
+    return [(claim, decision) for claim, decision in pairs if decision.verdict is verdict]
+
+
+def _changed(ledger: Ledger) -> Iterator[str]:
+    changed = [decision for decision in ledger.decisions if decision.verdict is not decision.recorded]
+    if changed:
+        yield from ("## Changed: found now is not what is recorded", "")
+        for decision in changed:
+            found = decision.verdict or f"no answer ({decision.problem})"
+            yield f"- **{decision.id}**: found {found}, recorded {decision.recorded}."
+        yield ""
+
+
+def _erratum(ledger: Ledger) -> Iterator[str]:
+    yield from ("## Erratum", "")
+    for claim, decision in _pairs(ledger, Verdict.FAILS):
+        yield from (f"### {claim.id} ({claim.where})", "")
+        for heading, text in _failure_lines(claim, decision):
+            yield f"- **{heading}** {text}"
+        yield ""
+
+
+def _failure_lines(claim: Claim, decision: Decision) -> Iterator[tuple[str, str]]:
+    """Yield five lines: what is printed, what is wrong, where it shows first, what is true, what it does."""
+    yield "Printed:", f"{claim.statement} {_formulas(claim.formulas)}".rstrip()
+    wrong = "; ".join(_residual_text(reading, len(decision.readings) > 1) for reading in decision.readings)
+    yield "Wrong:", f"{wrong}. {claim.remark}".rstrip()
+    yield "Smallest counterexample:", decision.counterexample + "."
+    proof = f" Shown by: {reading_text(decision.correction)}." if decision.correction else ""
+    yield "Correct:", f"{correction_text(claim)} {_formulas(claim.corrected_formulas)}{proof}"
+    yield "On a surface:", consequence_text(decision.consequence)
+
+
+def _formulas(formulas: tuple[Formula, ...]) -> str:
+    return "; ".join(dict.fromkeys(_code(formula.relation) for formula in formulas))
+
+
+def _residual_text(reading: ReadingDecision, labelled: bool) -> str:
+    label = f"read with {reading.label}: " if labelled else ""
+    if reading.residual is None:
+        return f"{label}violated by {reading.false_case} (compared: {reading.method})"
+    return f"{label}printed minus true leaves {_code(reading.residual)} ({reading.false_case})"
+
+
+def _code(relation: Any) -> str:
+    return f"$`{latex(relation)}`$"
+
+
+def _section(ledger: Ledger, verdict: Verdict, heading: str, lines: Any) -> Iterator[str]:
+    pairs = _pairs(ledger, verdict)
+    if not pairs:
+        return
+    yield from (f"## {heading}", "")
+    for claim, decision in pairs:
+        yield f"- **{claim.id}** ({claim.where}): {claim.statement}"
+        yield from (f"  - {line}" for line in lines(claim, decision))
+        if claim.remark:
+            yield f"  - {claim.remark}"
+    yield ""
+
+
+def _conditional_lines(claim: Claim, decision: Decision) -> Iterable[str]:
+    for reading in decision.readings:
+        yield f"Holds if {reading.condition}: true for {reading.true_case}, false for {reading.false_case}."
+    if decision.counterexample:
+        yield f"Smallest counterexample otherwise: {decision.counterexample}."
+    if claim.correction:
+        yield f"In general: {claim.correction.statement} {_formulas(claim.corrected_formulas)}".rstrip()
+
+
+def _ambiguous_lines(_claim: Claim, decision: Decision) -> Iterable[str]:
+    for reading in decision.readings:
+        extra = f", leaves {_code(reading.residual)}" if reading.residual not in (None, 0) else ""
+        verdict = f"holds if {reading.condition}" if reading.verdict is Verdict.HOLDS_IF else str(reading.verdict)
+        yield f"Read as {reading.label}: {verdict}{extra}."
+
+
+def _reason_lines(claim: Claim, _decision: Decision) -> Iterable[str]:
+    return (claim.reason,)
