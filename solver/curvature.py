@@ -205,10 +205,37 @@ def isophote_angle(normal: ArrayLike, light: ArrayLike) -> FloatArray:
     return np.asarray(np.degrees(np.arctan2(across, n @ to_light)))
 
 
-def zebra(point: ArrayLike, normal: ArrayLike, eye: ArrayLike, stripes: int = 20) -> FloatArray:
+def mirror_angle(normal: ArrayLike, towards_eye: ArrayLike, axis: ArrayLike) -> FloatArray:
+    """Return the angle between an axis and the ray from the eye mirrored in the surface, in degrees, shape (...).
+
+    Parameters
+    ----------
+    normal : array_like, shape (..., 3)
+        As in `LocalGeometry`; NaN where the normal is. Its sign does not matter.
+    towards_eye : array_like, shape (3,) or (..., 3)
+        From the surface to the eye: one direction for an eye far away, else one for each point. Any length.
+    axis : array_like, shape (3,)
+
+    Examples
+    --------
+    >>> mirror_angle([[0, 0, 1]], [1, 0, 1], [1, 0, 0])
+    array([135.])
+    """
+    n, seen_from = _vectors(normal, "normal"), _vectors(towards_eye, "towards_eye")
+    if seen_from.shape not in ((3,), n.shape):
+        raise InputError(f"towards_eye: shape {seen_from.shape}, expected (3,) or that of normal, {n.shape}")
+    if _vectors(axis, "axis").shape != (3,) or not np.any(axis):
+        raise InputError(f"axis: found {np.asarray(axis).tolist()}, expected one vector that is not zero")
+    return isophote_angle(2.0 * np.sum(n * seen_from, axis=-1)[..., None] * n - seen_from, axis)
+
+
+def zebra(
+    point: ArrayLike, normal: ArrayLike, eye: ArrayLike, stripes: int = 20, axis: ArrayLike = (0.0, 0.0, 1.0)
+) -> FloatArray:
     """Return the zebra pattern that an eye sees mirrored in the surface: 1 on a light stripe, 0 on a dark one.
 
-    The stripes lie on a large cylinder around the z-axis, `stripes` light ones on its circumference.
+    The stripes are rings on a large sphere around an axis, `stripes` light ones and as many dark ones of equal width
+    from pole to pole, a dark one at the pole where the axis points: the pattern of `mirror_angle`, and of the pictures.
 
     Parameters
     ----------
@@ -216,15 +243,15 @@ def zebra(point: ArrayLike, normal: ArrayLike, eye: ArrayLike, stripes: int = 20
         As in `LocalGeometry`; NaN where the normal is.
     eye : array_like, shape (3,)
         Position of the eye, in model units.
+    stripes : int
+    axis : array_like, shape (3,)
     """
     whole_number(stripes, "stripes", 1, OptionError)
     p, n, at = _vectors(point, "point"), _vectors(normal, "normal"), _vectors(eye, "eye")
     if at.shape != (3,) or p.shape != n.shape:
         raise InputError(f"point, normal, eye: shapes {p.shape}, {n.shape}, {at.shape}, expected (..., 3) twice, (3,)")
-    view = p - at
-    mirrored = view - 2.0 * _dot(view, n)[..., None] * n
-    turn = np.arctan2(mirrored[..., 1], mirrored[..., 0]) / (2.0 * np.pi)
-    light = (turn * stripes) % 1.0 < 0.5
+    turn = mirror_angle(n, at - p, axis) / 180.0
+    light = (turn * stripes) % 1.0 >= 0.5
     return np.where(np.isnan(turn), np.nan, light.astype(np.float64))
 
 

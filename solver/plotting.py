@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from solver.arrays import FloatArray
-from solver.curvature import LocalGeometry, isophote_angle
+from solver.curvature import LocalGeometry, isophote_angle, mirror_angle
 from solver.errors import OptionError
 from solver.io.disk import atomic_path
 from solver.io.meshes import pyvista_module, sampled, triangle_mesh
@@ -31,7 +31,7 @@ CURVE_COLORS = ("#0b3c8c", "#e8a200", "#6a0dad", "#00a0b0", "#111111", "#c2185b"
 
 # Samples along each parameter, for one surface and at the least; and over all surfaces.
 _FINEST, _COARSEST, _TOTAL = 240, 24, 600_000
-# Bands over 180 and over 90 degrees; even numbers.
+# Bands over 180 (light and dark ones of `zebra`) and over 90 degrees; even numbers.
 _STRIPES, _ISOPHOTES = 40, 18
 _MARGIN = 1.06
 # A direction whose horizontal part is smaller than this counts as vertical.
@@ -310,11 +310,9 @@ def _field_values(item: _Sampled, field: Field, view: _View) -> FloatArray:
         angle = isophote_angle(item.normal, _unit(view.towards_eye + view.up))
         # Either side of a surface may be the outer one.
         return np.minimum(angle, 180 - angle)
-    # The angle of the eye's mirrored ray to an axis that lies across the picture, so that stripes cross edges of
-    # either direction; light strips form rings about that axis.
+    # The pattern of `zebra` about an axis across the picture, so that stripes cross edges of either direction.
     seen_from = view.towards_eye if view.eye is None else view.eye - item.geometry.point
-    mirrored = -seen_from + 2 * np.sum(item.normal * seen_from, axis=-1)[..., None] * item.normal
-    return isophote_angle(mirrored, view.right + view.up)
+    return mirror_angle(item.normal, seen_from, view.right + view.up)
 
 
 def _color_limit(values: Sequence[FloatArray], samples: Sequence[_Sampled], natural: float) -> float:

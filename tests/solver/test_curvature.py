@@ -12,6 +12,7 @@ from solver.curvature import (
     local_geometry,
     local_geometry_grid,
     mean_curvature,
+    mirror_angle,
     normal_curvature,
     normals,
     principal_curvatures,
@@ -231,12 +232,24 @@ def test_isophotes_of_a_sphere_are_circles_around_the_light():
 
 def test_zebra_stripes_on_a_plane_follow_the_mirror_image():
     plane = BSplineSurface(1, 1, BEZIER_1, BEZIER_1, [[[-1, -1, 0], [-1, 1, 0]], [[1, -1, 0], [1, 1, 0]]])
-    # Seen from above the centre, the mirrored ray leaves in the direction of the point; two stripes: light for
-    # angles from 0 to 90 and from 180 to 270 degrees.
-    u, v = np.array([0.9, 0.55, 0.1, 0.55]), np.array([0.51, 0.9, 0.49, 0.1])
+    # Seen from 1 above the centre, the ray mirrored at distance r leaves at the angle arctan(r) to the normal. Two
+    # light stripes: from 45 to 90 and from 135 to 180 degrees to the axis.
+    u, v = np.array([0.5, 0.9, 0.9, 0.5]), np.array([0.9, 0.5, 0.1, 0.95])
     p, n = plane.evaluate(u, v), normals(plane, u, v)
-    assert zebra(p, n, [0, 0, 3], stripes=2).tolist() == [1, 1, 1, 0]
+    close(mirror_angle(n, [0, 0, 1] - p, [0, 0, 1]), np.degrees(np.arctan(np.hypot(p[:, 0], p[:, 1]))))
+    assert zebra(p, n, [0, 0, 1], stripes=2).tolist() == [0, 0, 1, 0]
+    x = np.array([[-0.9, 0, 0], [-1.1, 0, 0], [0.9, 0, 0], [1.1, 0, 0]])
+    up = np.tile([0.0, 0, 1], (4, 1))
+    assert zebra(x, up, [0, 0, 1], stripes=2, axis=[1, 0, 0]).tolist() == [0, 1, 1, 0]
+    # Either side of a surface is mirrored alike.
+    assert zebra(x, -up, [0, 0, 1], stripes=2, axis=[1, 0, 0]).tolist() == [0, 1, 1, 0]
     assert np.isnan(zebra([[0, 0, 0]], [[np.nan] * 3], [0, 0, 3])).all()
+
+
+@pytest.mark.parametrize(("eye", "axis"), [([1, 2], [0, 0, 1]), ([[0, 0, 1]] * 2, [0, 0, 1]), ([0, 0, 1], [0, 0, 0])])
+def test_a_mirror_without_eye_or_axis_is_refused(eye, axis):
+    with pytest.raises(InputError, match=r"towards_eye: shape|axis: found"):
+        mirror_angle([[0, 0, 1]], eye, axis)
 
 
 def test_a_semistructured_sphere_like_patch_is_measured_directly():

@@ -1,6 +1,7 @@
 import os
 import subprocess
 import sys
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -10,9 +11,10 @@ from typer.testing import CliRunner
 
 from solver import BSplineCurve, BSplineSurface, FileError, OptionError, SemiStructuredSurface
 from solver.cli import app
+from solver.curvature import zebra
 from solver.io.meshes import sampled
 from solver.io.surface_files import write_surface
-from solver.plotting import BASE_COLOR, BLEND_COLOR, CURVE_COLORS, _field_values, _Sampled, _view, render
+from solver.plotting import _STRIPES, BASE_COLOR, BLEND_COLOR, CURVE_COLORS, _field_values, _Sampled, _view, render
 
 SIZE = (320, 240)
 K = [0.0, 0.0, 1.0, 1.0]
@@ -108,6 +110,17 @@ def values(surface, field):
     item = _Sampled(*sampled(surface, 16))
     view = _view([item])
     return _field_values(item, field, view), item, view
+
+
+def test_the_stripes_of_a_picture_are_those_of_the_library():
+    item = _Sampled(*sampled(wave(), 16))
+    view = replace(_view([item]), eye=np.array([1.0, 2.0, 9.0]))
+    angle = _field_values(item, "zebra", view)
+    # The picture cuts 180 degrees into bands, dark and light by turns.
+    light = np.floor(angle / (180 / _STRIPES)) % 2
+    stripes = zebra(item.geometry.point, item.normal, view.eye, axis=view.right + view.up)
+    assert 0.2 < light.mean() < 0.8
+    np.testing.assert_array_equal(light, stripes)
 
 
 def test_curvature_is_exact_and_positive_where_it_bulges():
