@@ -56,7 +56,7 @@ _STRENGTH_TEXT = {
 }
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Formula:
     """A relation with its declared variables.
 
@@ -110,7 +110,7 @@ class Case:
     residual: Any = None
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Check:
     """A way to decide a formula, or a question without one.
 

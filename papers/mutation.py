@@ -10,13 +10,14 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
+from functools import cache
 from itertools import pairwise, zip_longest
 from typing import Any
 
 import sympy as sp
 from sympy.core.function import AppliedUndef
 
-from papers.ledger import Case, Formula, Part, decided_cases
+from papers.ledger import Case, Check, Formula, Part, decided_cases
 from papers.vectors import Knots, Numbers, exchanges, knot_changes, near, number_changes
 
 
@@ -112,10 +113,12 @@ def try_mutants(part: Part) -> MutationResult:
 
     A probe only saves time: of the mutants that it tells apart, the first ones of each kind are put to the check too.
     """
-    formula = part.formula
-    if formula is None:
-        return MutationResult()
-    check = part.check
+    return MutationResult() if part.formula is None else _tried(part.check, part.formula)
+
+
+@cache
+def _tried(check: Check, formula: Formula) -> MutationResult:
+    """Try the mutants once, also where several records rest on one formula and its check."""
     original: list[Case] | None = None
     probed = check.probe(formula) if check.probe else None
     survivors: list[Mutant] = []
