@@ -15,7 +15,7 @@ from derivations.splines import basis_pieces, end_derivative_step, end_derivativ
 from papers.ledger import Case, Check, Formula, Strength
 from papers.lin2014 import printed as pr
 from papers.lin2014.exact import Meaning, UndefinedError, clamped, de_boor, difference_case, net_ring
-from papers.lin2014.property_checks import contact_at_knot, contained, insertion_cases, union
+from papers.lin2014.property_checks import contained, insertion_cases, sharp_continuity_cases, union
 from papers.lin2014.spline_checks import Counting, domain_ends, functions_on, last_knot
 
 CUBIC = 4
@@ -73,13 +73,10 @@ def contact_curve_cases() -> Iterator[Case]:
 def mismatch_cases() -> Iterator[Case]:
     """Yield pairs of knot vectors: true where no single one of the two carries both contact curves.
 
-    Where a vector has a knot r-fold and the other one less often, some spline over the first is smooth there to the
-    order k - 1 - r only, and every spline over the second is smoother.
+    Where a vector has a knot r-fold and the other one less often, some spline over the first is rougher there than
+    all splines over the second.
     """
-    for k in ORDERS:
-        orders = {r: contact_at_knot(k, r) for r in range(1, k)}
-        lost = all(orders[r] == k - 1 - r < orders.get(r - 1, k - 1) for r in orders)
-        yield Case(f"order {k}, a knot that one has more often, anywhere", lost, own=k == CUBIC)
+    yield from sharp_continuity_cases()
     pairs = {name: printed_pair(name) for name in PRINTED_PAIRS}
     half = Fraction(1, 2)
     pairs["{1/2} and {1/4, 1/2, 3/4}"] = (clamped(4, half), clamped(4, half / 2, half, 3 * half / 2))

@@ -221,8 +221,8 @@ CLAIMS = (
                     Part(
                         proved(
                             properties.continuity_control_cases,
-                            "order of contact at a symbolic knot of each multiplicity, orders 2 to 8",
-                            Strength.EACH_ORDER,
+                            "smoothness at a knot of each multiplicity by induction on the degree, every degree and "
+                            "knots; at a symbolic knot for orders 2 to 5",
                         )
                     ),
                     Part(
@@ -275,9 +275,8 @@ CLAIMS = (
                     Part(
                         proved(
                             properties.row_difference_cases,
-                            "smoothness at a symbolic knot that one row alone has, orders 2 to 8; spline spaces by "
-                            "rank",
-                            Strength.EACH_ORDER,
+                            "smoothness at a knot that one row alone has, by induction on the degree, every degree "
+                            "and knots; spline spaces by rank",
                         )
                     ),
                 ),

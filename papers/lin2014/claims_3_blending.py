@@ -116,9 +116,9 @@ CLAIMS: tuple[Claim, ...] = (
              "Knot vectors that differ cannot both be carried by one classical surface, without inserting knots.",
              "neither knot vector contains the other",
              part(proved(blending.mismatch_cases,
-                         "smoothness at a symbolic knot that one vector has more often, orders 2 to 8; spline spaces "
-                         "over the printed pairs by exact rank; for nested vectors an example is enough",
-                         Strength.EACH_ORDER)),
+                         "smoothness at a knot that one vector has more often, by induction on the order, every order "
+                         "and knots; spline spaces over the printed pairs by exact rank; for nested vectors an example "
+                         "is enough")),
              remark="Where V^r is part of V^s, a classical surface over V^s carries both contact curves as they are."),
     not_checkable("sec-3.quality", _ENERGY, "The smaller the strain energy, the better the surface.",
                   "a convention: which surface is better is not defined apart from it. What can be decided is decided: "
@@ -147,8 +147,8 @@ CLAIMS: tuple[Claim, ...] = (
              part(Check(energy.density_cases, Strength.SYMBOLIC_ORDER, "the thin-plate density; rotation of (u, v)",
                         proof=True), pr.EQ_11),
              part(proved(objective.crease_cases,
-                         "splines without second derivative over a symbolic knot of each multiplicity, orders 2 to 8; "
-                         "null space of exact Gram matrices", Strength.EACH_ORDER)),
+                         "C1 splines that are lines on each span, every order and knots; null space of exact Gram "
+                         "matrices; for a crease an example is enough")),
              remark="Across a knot of full multiplicity a crease costs nothing, taken span by span."),
     ambiguous("eq-12", _ENERGY, "Minimise E over the control points under the continuity condition.",
               Reading((part(objective.minimum_check(2)),),

@@ -13,7 +13,7 @@ from typing import Any
 import sympy as sp
 
 from derivations.contact import A, contact_rows
-from derivations.energy import SECOND_DERIVATIVES, Basis, quadratic_form, stationarity_condition, thin_plate_density
+from derivations.energy import SECOND_DERIVATIVES, quadratic_form, stationarity_condition, thin_plate_density
 from derivations.shape import total_degrees
 from derivations.splines import end_derivative_step, end_derivatives, span_symbols
 from papers.ledger import Case, Check, Formula, Strength
@@ -22,8 +22,7 @@ from papers.lin2014 import geometry_checks as geometry
 from papers.lin2014 import printed as pr
 from papers.lin2014.abstract import coefficient
 from papers.lin2014.exact import Meaning, difference_case
-
-ORDERS = range(2, 9)
+from papers.lin2014.property_checks import identity_cases
 
 # One row of (14): blocks A and B, unknown X and known N control points.
 A_BLOCK, B_BLOCK, X_FREE, N_KNOWN = (sp.IndexedBase(name) for name in "ABXN")
@@ -108,10 +107,7 @@ def unique_minimum_cases(order: int) -> Iterator[Case]:
     determinant = sp.factor(ends.det().subs(pr.k, 2 + above))
     step = end_derivative_step(1).is_zero_matrix
     yield Case("P and P_u at u = 0 determine rows 0 and 1", bool(determinant.is_positive and step))
-    at, (a, b, c, d) = sp.Symbol("x"), sp.symbols("a b c d")
-    knot = sp.Symbol("h")
-    same = sp.solve([(a + b * at - c - d * at).subs(at, knot), b - d], [a, b], dict=True)
-    yield Case("lines that meet with one slope are one", same == [{a: c, b: d}])
+    yield _line_case()
     yield from energy.positive_definite_cases(order)
 
 
@@ -226,34 +222,23 @@ SHAPE_CHECK = Check(
 
 
 def crease_cases() -> Iterator[Case]:
-    """Yield orders and multiplicities of a knot h: true where only straight lines have no second derivative.
+    """Yield why zero energy means no bend for C1 splines of every order, and strips with and without a crease.
 
-    The integral of a square vanishes only where the function does, span by span.
+    The integral of a square vanishes only where the function does, so that a strip of zero energy is a line on each
+    span; across a knot of multiplicity r < p it is C^(p-r), so at least C1.
     """
-    for k in ORDERS:
-        for r in range(1, k):
-            smooth = r <= k - 2
-            label = f"order {k}, a knot of multiplicity {r}, anywhere"
-            yield Case(label, _flat(k, r) == 2, own=smooth, meets=smooth)
+    yield from identity_cases("continuity")
+    yield _line_case()
     yield from energy.crease_cases()
 
 
-def _flat(k: int, multiplicity: int) -> int:
-    """Return the dimension of the splines over a clamped vector with a knot h whose second derivative is zero."""
-    space = Basis(k - 1, (0,) * k + ("h",) * multiplicity + (1,) * k)
-    # One row for each span and power of x, one column for each function.
-    rows = []
-    for span in space.spans:
-        bent = [piece.diff().diff() for piece in span.pieces]
-        for power in range(max(k - 2, 0)):
-            row = [sp.Integer(0)] * space.size
-            for n, piece in enumerate(bent):
-                row[span.first + n] = piece.coeff_monomial(piece.gen**power)
-            rows.append(row)
-    if not rows:
-        return int(space.size)
-    matrix = sp.polys.matrices.DomainMatrix.from_Matrix(sp.Matrix(rows)).to_field()
-    return int(space.size - matrix.rank())
+def _line_case() -> Case:
+    """Decide that lines a + b x and c + d x which meet at a knot with one slope are one."""
+    x, knot = sp.symbols("x h")
+    a, b, c, d = sp.symbols("a b c d")
+    difference = a + b * x - c - d * x
+    same = sp.solve([difference.subs(x, knot), difference.diff(x)], [a, b], dict=True)
+    return Case("lines that meet with one slope are one", same == [{a: c, b: d}])
 
 
 def tangential_cases() -> Iterator[Case]:

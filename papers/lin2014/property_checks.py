@@ -110,6 +110,30 @@ def insertion_cases() -> Iterator[Case]:
         yield Case(f"knot insertion, every order and knots, {label}", residual == 0, residual=residual)
 
 
+def sharp_continuity_cases() -> Iterator[Case]:
+    """Yield that across an r-fold knot x all splines of degree p are C^(p-r), some no smoother.
+
+    All are: `continuity`. For p = r the function over a, x, .., x, b is ((t - a)/(x - a))^p before x and
+    ((b - t)/(b - x))^p after it, by the recurrence, and its slope jumps. And every spline of degree p - 1 is the
+    derivative of one of degree p (`u-derivative`, solved for the control points one after another), smoother by one.
+    """
+    yield from identity_cases("continuity", "derivative", "u-derivative")
+    p, before, after = sp.symbols("p g h", positive=True)
+    t = sp.Symbol("t")
+    # The knot x is the origin, a = -g, b = h.
+    left, right = ((t + before) / before) ** p, ((after - t) / after) ** p
+    for name, piece in (("before", left), ("after", right)):
+        step = sp.simplify(piece.subs(p, p + 1) / piece - piece.subs(p, 1))
+        yield Case(f"recurrence {name} the knot", bool(step == 0), residual=step)
+    yield Case("pieces that meet", bool(left.subs(t, 0) == right.subs(t, 0) == 1))
+    jump = right.diff(t).subs(t, 0) - left.diff(t).subs(t, 0)
+    yield Case("a slope that jumps", bool(jump.is_negative))
+    first, width, target = sp.symbols("P_i d Q_i")
+    second = first + width * target / p
+    residual = sp.expand(p * (second - first) / width - target)
+    yield Case("a spline of one degree more", residual == 0, residual=residual)
+
+
 @cache
 def contact_at_knot(order: int, multiplicity: int) -> int:
     """Return how smooth all splines of an order are at a knot h, 0 < h < 1, of a multiplicity, but no smoother."""
@@ -179,12 +203,9 @@ def conversion_cases() -> Iterator[Case]:
 def row_difference_cases() -> Iterator[Case]:
     """Yield pairs of neighbouring rows: their difference lies in the spline space of neither.
 
-    Where one row alone has the knot h, the difference is as rough there as that row, and splines without it are not.
+    Where one row alone has a knot, the difference is as rough there as that row, and splines without it are not.
     """
-    for order in range(2, 9):
-        for r in range(1, order):
-            found = contact_at_knot(order, r)
-            yield Case(f"order {order}, an {r}-fold knot of one row", found == order - 1 - r, own=order == CUBIC)
+    yield from sharp_continuity_cases()
     for order, a, b in (
         (3, clamped(3), clamped(3, HALF)),
         (4, clamped(4, HALF), clamped(4, THIRD)),
@@ -246,7 +267,8 @@ def continuity_control_cases() -> Iterator[Case]:
 
     The other curves, which lack the knot, stay polynomial across it.
     """
-    for order in range(2, 9):
+    yield from sharp_continuity_cases()
+    for order in range(2, 6):
         for r in range(1, order):
             least = contact_at_knot(order, r)
             yield Case(f"order {order}, multiplicity {r}: C^{least}", least == order - 1 - r, own=order == CUBIC)
