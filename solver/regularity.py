@@ -18,7 +18,7 @@ from solver.surfaces import BSplineSurface, Surface
 _PER_SPAN = 8
 _FRACTIONS = np.arange(_PER_SPAN) / _PER_SPAN
 # Polynomial pieces that are worked on at once: a long surface has more samples than memory should hold.
-_PIECES_AT_ONCE = 1024
+_PIECES_AT_ONCE = 2048
 
 
 @dataclass(frozen=True)
@@ -229,7 +229,12 @@ def _dot(a: FloatArray, b: FloatArray) -> FloatArray:
 def _cross(a: FloatArray, b: FloatArray, axis: int = 1) -> FloatArray:
     """Return the cross product of vectors along an axis that is not the last, which is long."""
     (x, y, z), (u, v, w) = (np.moveaxis(c, axis, 0) for c in (a, b))
-    return np.stack([y * w - z * v, z * u - x * w, x * v - y * u], axis=axis)
+    result = np.empty(np.broadcast_shapes(a.shape, b.shape))
+    products = ((y, w, z, v), (z, u, x, w), (x, v, y, u))
+    for out, (p, q, r, s) in zip(np.moveaxis(result, axis, 0), products, strict=True):
+        np.multiply(p, q, out=out)
+        out -= r * s
+    return result
 
 
 def _turn(n1: FloatArray, n2: FloatArray) -> float:
