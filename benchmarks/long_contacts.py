@@ -3,18 +3,19 @@
     python benchmarks/long_contacts.py
 
 Both bases have the same number of control points along the contact and knots of their own. The check of a finished
-blend by the slow referee is left aside, as everywhere here.
+blend by the referee is measured beside the solve: it samples every span of both bases and of the blend.
 """
 
 from __future__ import annotations
 
 import time
 import tracemalloc
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
-from solver import Base, BSplineSurface, ComputationError
+from solver import Base, BSplineSurface, ComputationError, blend
 from solver.blending import state_problem
 from solver.knots import clamped, greville, uniform_knots
 
@@ -25,11 +26,28 @@ FIXED_SIZES = tuple(1_000 * 2**k for k in range(8))
 
 @dataclass(frozen=True)
 class Run:
-    """One solve: control points of each contact curve, seconds, and the peak of what Python and NumPy allocate."""
+    """One solve and the check of its blend.
+
+    Attributes
+    ----------
+    n : int
+        Control points of each contact curve.
+    seconds, check_seconds : float
+        Of the solve, and of all that `blend` does after it.
+    bytes, checked_bytes : int
+        The peak of what Python and NumPy allocate in the solve, and in solve and check together.
+    """
 
     n: int
     seconds: float
     bytes: int
+    check_seconds: float
+    checked_bytes: int
+
+    @property
+    def check_ratio(self) -> float:
+        """How many times longer the check takes than the solve."""
+        return self.check_seconds / self.seconds
 
 
 def base(n: int, length: float, side: int) -> Base:
@@ -50,19 +68,39 @@ def solve(a: Base, b: Base) -> float:
     return float(problem.form.products(points[None])[0, 0])
 
 
-def run(n: int, length: float, repeats: int = 3) -> Run:
-    """Solve for one pair: the least time of some runs, then memory in a run that is not timed."""
-    bases = [base(n, length, side) for side in (0, 1)]
-    seconds = []
-    for _ in range(repeats):
-        started = time.perf_counter()
-        solve(*bases)
-        seconds.append(time.perf_counter() - started)
+def seconds_of(work: Callable[[], object]) -> float:
+    """Return the time that some work takes."""
+    started = time.perf_counter()
+    work()
+    return time.perf_counter() - started
+
+
+def peak_of(work: Callable[[], object]) -> int:
+    """Return the peak of what some work allocates; it takes longer meanwhile."""
     tracemalloc.start()
-    solve(*bases)
+    work()
     peak = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
-    return Run(n, min(seconds), peak)
+    return peak
+
+
+def check_seconds(a: Base, b: Base) -> float:
+    """Return the time of the check: `BlendResult.seconds` is that of everything before it."""
+    started = time.perf_counter()
+    result = blend(a, b, continuity="C2")
+    return time.perf_counter() - started - result.seconds
+
+
+def run(n: int, length: float, repeats: int = 3) -> Run:
+    """Solve and check one pair: the least time of some runs, then memory in runs that are not timed."""
+    bases = [base(n, length, side) for side in (0, 1)]
+    return Run(
+        n,
+        min(seconds_of(lambda: solve(*bases)) for _ in range(repeats)),
+        peak_of(lambda: solve(*bases)),
+        min(check_seconds(*bases) for _ in range(repeats)),
+        peak_of(lambda: blend(*bases, continuity="C2")),
+    )
 
 
 def growth() -> list[Run]:
