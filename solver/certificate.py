@@ -2,7 +2,8 @@
 
 It trusts only the definition: the parts must tile the box; on each, the polynomial written in the part's own
 parameters by Taylor shifts must have no Bernstein coefficient below the bound, or be convex and lie above a tangent
-plane that stays above the bound. Everything is rational arithmetic.
+plane that stays above the bound, or be the bound plus sums of squares and multiples of them. Everything is rational
+arithmetic.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ from typing import TypeAlias
 
 from solver.errors import ComputationError
 from solver.shape_search import Certificate, Leaf
+from solver.squares import Gram
 
 _Table: TypeAlias = list[list[Fraction]]
 
@@ -52,6 +54,10 @@ def _check(certificate: Certificate) -> None:
         )
     for leaf in certificate.leaves:
         ends = [_ends(box, part) for box, part in zip(certificate.box, (leaf.x, leaf.y), strict=True)]
+        if leaf.squares is not None:
+            middles = [((low + high) / 2, high) for low, high in ends]
+            _check_squares(_transposed(_local(_transposed(_local(table, *middles[0])), *middles[1])), leaf, bound)
+            continue
         local = _transposed(_local(_transposed(_local(table, *ends[0])), *ends[1]))
         if leaf.tangent_at is None:
             if min(min(row) for row in _bernstein_table(local)) < bound:
@@ -127,6 +133,46 @@ def _check_tangent(local: _Table, leaf: Leaf, bound: Fraction) -> None:
         least += min(-slope * t, slope * (1 - t))
     if least < bound:
         raise CertificateError(f"certificate: the tangent plane on {leaf} falls below the bound")
+
+
+def _check_squares(local: _Table, leaf: Leaf, bound: Fraction) -> None:
+    """Require f - bound = z'Q0z + (1 - x^2) l'Q1l + (1 - y^2) l'Q2l, x and y from -1 to 1, all Q semidefinite."""
+    if leaf.squares is None or len(leaf.squares) != 3:
+        raise ValueError("expected three matrices")
+    first, second, third = leaf.squares
+    where = f"certificate: part {leaf.x}, {leaf.y}"
+    quadratic = [(0, 0), (1, 0), (0, 1), (2, 0), (1, 1), (0, 2)]
+    left = {(i, j): c for i, row in enumerate(local) for j, c in enumerate(row)}
+    left[0, 0] -= bound
+    for gram, monomials, factor in (
+        (first, quadratic, {(0, 0): 1}),
+        (second, quadratic[:3], {(0, 0): 1, (2, 0): -1}),
+        (third, quadratic[:3], {(0, 0): 1, (0, 2): -1}),
+    ):
+        if not _is_semidefinite(gram, len(monomials)):
+            raise CertificateError(f"{where}: a matrix of its sums of squares is not positive semidefinite")
+        for one, row in zip(monomials, gram, strict=True):
+            for other, entry in zip(monomials, row, strict=True):
+                for power, sign in factor.items():
+                    exponents = one[0] + other[0] + power[0], one[1] + other[1] + power[1]
+                    left[exponents] = left.get(exponents, Fraction(0)) - sign * entry
+    if any(left.values()):
+        raise CertificateError(f"{where}: its sums of squares are not the polynomial minus the bound")
+
+
+def _is_semidefinite(gram: Gram, size: int) -> bool:
+    """Eliminate symmetrically: no pivot may be negative, and where one is zero its whole row must be."""
+    rows = [[Fraction(entry) for entry in row] for row in gram]
+    if len(rows) != size or any(len(row) != size for row in rows):
+        raise ValueError(f"a matrix of {len(rows)} rows, expected {size} x {size}")
+    if any(rows[i][j] != rows[j][i] for i in range(size) for j in range(i)):
+        return False
+    while rows:
+        (pivot, *top), *rest = rows
+        if pivot < 0 or (pivot == 0 and any(top)):
+            return False
+        rows = [[e - (row[0] * t / pivot if pivot else 0) for e, t in zip(row[1:], top, strict=True)] for row in rest]
+    return True
 
 
 def _value(table: _Table, at: list[Fraction]) -> Fraction:

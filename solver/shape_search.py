@@ -2,13 +2,14 @@
 
 The energy is a polynomial of bidegree at most (4, 4) in x = (a - a0) / natural a and y likewise. Its float coefficients
 are taken as exact rationals. A box is discarded when its Bernstein coefficients, in integers, prove that the polynomial
-stays above the bound, or when they prove it convex there and its tangent plane at a point stays above the bound.
+stays above the bound, or when they prove it convex there and its tangent plane at a point stays above the bound. Along
+a curve of equal minima neither ever happens: there, sums of squares prove the bound.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cache, lru_cache
+from functools import cache, lru_cache, partial
 from math import comb
 from typing import Any, TypeAlias
 
@@ -17,11 +18,16 @@ from flint import fmpq, fmpq_mat, fmpz_mat
 
 from solver.arrays import FloatArray
 from solver.errors import ComputationError
+from solver.squares import Gram, NoSquares, gram_matrices
 
 Box: TypeAlias = tuple[tuple[float, float], tuple[float, float]]
 
-# Boxes after which a proof is given up; problems seen so far need less than a hundred.
-_MOST_BOXES = 20_000
+# Boxes after which sums of squares are tried, and the proof is given up; most problems need less than a hundred boxes,
+# and a sum of squares takes the time of thousands of them.
+_PLAIN_BOXES = 300
+_MOST_SQUARES = 20
+# Each point found is lower than the one before.
+_MOST_POINTS = 100
 _NEWTON_STEPS = 60
 
 
@@ -34,13 +40,16 @@ class Leaf:
     x, y : (int, int)
         Part i of 2^s equal parts, as (i, s), in each direction.
     tangent_at : (float, float) or None
-        Where convex: the point of the tangent plane that proves the bound, in [0, 1] x [0, 1] over the part. None: the
-        Bernstein coefficients prove it.
+        Where convex: the point of the tangent plane that proves the bound, in [0, 1] x [0, 1] over the part.
+    squares : (Q0, Q1, Q2) or None
+        Definite matrices of sums of squares that prove it, over [-1, 1] x [-1, 1] for the part; see `solver.squares`.
+        Where neither is given, the Bernstein coefficients prove the bound.
     """
 
     x: tuple[int, int]
     y: tuple[int, int]
-    tangent_at: tuple[float, float] | None
+    tangent_at: tuple[float, float] | None = None
+    squares: tuple[Gram, Gram, Gram] | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,7 +92,7 @@ def least_point(coefficients: FloatArray, box: Box, tolerance: float) -> Certifi
     Raises
     ------
     ComputationError
-        No proof within 20000 boxes.
+        No proof within 300 boxes, nor by 20 sums of squares; or a tolerance that floats cannot express.
 
     Examples
     --------
@@ -92,13 +101,32 @@ def least_point(coefficients: FloatArray, box: Box, tolerance: float) -> Certifi
     (1.0, -5e-10)
     """
     point = best_of_grid(coefficients, box)
-    while True:
+    for _ in range(_MOST_POINTS):
+        value = _exact_value(coefficients, point)
         # Half of the tolerance is for the proof, the rest for the rounding of the bound itself.
-        bound = float(_exact_value(coefficients, point)) - tolerance / 2
-        found = _prove(coefficients, box, bound, point)
+        bound = _float_below(value - _rational(tolerance) / 2)
+        if value - _rational(bound) > _rational(tolerance):
+            raise ComputationError(
+                f"tolerance: found {tolerance:.1e}, expected more than the spacing of floats at {float(value):.3g}"
+            )
+        found = _prove(coefficients, box, bound, point, squares=False)
+        if found is None:
+            found = _prove(coefficients, box, bound, point, squares=True)
         if isinstance(found, list):
             return Certificate(coefficients, box, point, tolerance, bound, tuple(found))
-        point = _descend(coefficients, box, found)
+        if found is None:
+            break
+        # Where the search in floats has come to its end, the point found is the lower one.
+        point = min(_descend(coefficients, box, found), found, key=partial(_exact_value, coefficients))
+    raise ComputationError(
+        f"no proof of the least energy within {_PLAIN_BOXES} boxes, nor by {_MOST_SQUARES} sums of squares; try method "
+        "casadi, or set alpha and beta yourself"
+    )
+
+
+def _float_below(x: fmpq) -> float:
+    nearest = int(x.p) / int(x.q)
+    return nearest if _rational(nearest) <= x else float(np.nextafter(nearest, -np.inf))
 
 
 def best_of_grid(c: FloatArray, box: Box) -> tuple[float, float]:
@@ -177,8 +205,10 @@ def _derivative(c: FloatArray, axis: int) -> FloatArray:
     return np.asarray(np.polynomial.polynomial.polyder(c, axis=axis))
 
 
-def _prove(c: FloatArray, box: Box, bound: float, best: tuple[float, float]) -> list[Leaf] | tuple[float, float]:
-    """Return parts that prove the bound, or a point where the polynomial is below it."""
+def _prove(
+    c: FloatArray, box: Box, bound: float, best: tuple[float, float], *, squares: bool
+) -> list[Leaf] | tuple[float, float] | None:
+    """Return parts that prove the bound, or a point where the polynomial is below it, or None: given up."""
     threshold = _rational(bound)
     exact = fmpq_mat(*c.shape, [_rational(x) for x in c.ravel().tolist()])
     root, denominator = (
@@ -186,7 +216,8 @@ def _prove(c: FloatArray, box: Box, bound: float, best: tuple[float, float]) -> 
     ).numer_denom()
     leaves: list[Leaf] = []
     stack: list[tuple[fmpz_mat, tuple[int, int], tuple[int, int]]] = [(root, (0, 0), (0, 0))]
-    for _ in range(_MOST_BOXES):
+    attempts = 0
+    for _ in range(_PLAIN_BOXES):
         if not stack:
             return leaves
         net, x, y = stack.pop()
@@ -194,7 +225,7 @@ def _prove(c: FloatArray, box: Box, bound: float, best: tuple[float, float]) -> 
         entries = [int(e) for e in net.entries()]
         least = min(entries)
         if least * threshold.q >= threshold.p * (denominator << shift):
-            leaves.append(Leaf(x, y, None))
+            leaves.append(Leaf(x, y))
             continue
         part = _part(box[0], x), _part(box[1], y)
         columns = c.shape[1]
@@ -204,16 +235,39 @@ def _prove(c: FloatArray, box: Box, bound: float, best: tuple[float, float]) -> 
             point = _descend(c, part, inside)
             local = _local_point(point, part)
             if _tangent_bound(c, (_exact_part(box[0], x), _exact_part(box[1], y)), local) >= threshold:
-                leaves.append(Leaf(x, y, local))
+                leaves.append(Leaf(x, y, tangent_at=local))
                 continue
         else:
             point = (part[0][0] + part[0][1]) / 2, (part[1][0] + part[1][1]) / 2
         if _exact_value(c, point) < threshold:
             return point
+        if squares:
+            attempts += 1
+            grams = gram_matrices(_powers_above(net, denominator << shift, threshold))
+            if not isinstance(grams, NoSquares):
+                leaves.append(Leaf(x, y, squares=grams))
+                continue
+            point = _global_point(grams.lowest, part)
+            if _exact_value(c, point) < threshold:
+                return point
+            if attempts == _MOST_SQUARES:
+                return None
         stack += _halves(net, x, y, rows)
-    raise ComputationError(
-        f"no proof of the least energy within {_MOST_BOXES} boxes; try method casadi, or set alpha and beta yourself"
-    )
+    return None
+
+
+def _powers_above(net: fmpz_mat, denominator: int, bound: fmpq) -> fmpq_mat:
+    """Return the polynomial minus the bound, in powers of parameters that run from -1 to 1 over a part."""
+    along, across = (_to_bernstein((-1.0, 1.0), n).inv() for n in (net.nrows(), net.ncols()))
+    table = along * fmpq_mat(net) * across.transpose() / fmpq(denominator)
+    table[0, 0] -= bound
+    return table
+
+
+def _global_point(point: tuple[float, float], part: Box) -> tuple[float, float]:
+    """Return the point of a part whose parameters, from -1 to 1, are given."""
+    x, y = (min(max(low + (high - low) * (t + 1) / 2, low), high) for t, (low, high) in zip(point, part, strict=True))
+    return x, y
 
 
 def _part(whole: tuple[float, float], part: tuple[int, int]) -> tuple[float, float]:
