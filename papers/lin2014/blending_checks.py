@@ -14,6 +14,7 @@ from derivations.contact import A, contact_rows
 from derivations.splines import basis_pieces, end_derivative_step, end_derivatives, span_symbols
 from papers.ledger import Case, Check, Formula, Strength
 from papers.lin2014 import printed as pr
+from papers.lin2014.contact_checks import ORDERS
 from papers.lin2014.exact import Meaning, UndefinedError, clamped, de_boor, difference_case, net_ring
 from papers.lin2014.property_checks import contained, insertion_cases, sharp_continuity_cases, union
 from papers.lin2014.spline_checks import Counting, domain_ends, functions_on, last_knot
@@ -38,9 +39,6 @@ def printed_pair(name: str) -> tuple[tuple[Fraction, ...], tuple[Fraction, ...]]
 def inner_knots(key: str) -> list[Fraction]:
     """Return the knots of a printed vector strictly inside [0, 1]."""
     return [Fraction(int(x.p), int(x.q)) for x in map(sp.Rational, pr.KNOTS[key]) if 0 < x < 1]
-
-
-ORDERS = range(2, 9)
 
 
 @cache

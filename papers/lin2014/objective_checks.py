@@ -174,7 +174,9 @@ def objective_degree(order: int, geometric: bool) -> int:
     since its derivatives below the n-th vanish at u = 0, the n-th does not, and at u = 1 N_n and its slope vanish.
     With beta it is the same.
     """
-    in_points = quadratic_form().function.as_poly(*quadratic_form().function.atoms(sp.Indexed)).total_degree() - 1
+    term = quadratic_form().function
+    points = [x for x in term.atoms(sp.Indexed) if x.base == sp.IndexedBase("P")]
+    in_points = term.as_poly(*points).total_degree()
     if not geometric:
         return int(in_points)
     rows = contact_rows(order, pr.k - 1, span_symbols(order), pr.k_r - 1, span_symbols(order, "H"))
