@@ -6,9 +6,19 @@ from collections import Counter
 from collections.abc import Iterable, Iterator
 from typing import Any
 
+from sympy import Equality
+
 from papers.ledger import Claim, Formula, Verdict
 from papers.mathml import latex
-from papers.report import checked_text, consequence_text, correction_text, counts_text, mutants_text, reading_text
+from papers.report import (
+    checked_text,
+    consequence_text,
+    correction_text,
+    counts_text,
+    kind_text,
+    mutants_text,
+    reading_text,
+)
 from papers.verification import Decision, Ledger, ReadingDecision
 
 
@@ -47,7 +57,7 @@ def _records(ledger: Ledger) -> Iterator[str]:
             yield _row(*head, "", "", claim.reason, mutants)
         for reading in decision.readings:
             label = f"as {reading.label} ({reading.verdict}): " if reading.label else ""
-            yield _row(*head, reading.strength.text, checked_text(reading), label + reading.method, mutants)
+            yield _row(*head, kind_text(reading), checked_text(reading), label + reading.method, mutants)
             head, mutants = ("", "", ""), ""
     yield ""
 
@@ -100,7 +110,11 @@ def _erratum(ledger: Ledger) -> Iterator[str]:
 def _failure_lines(claim: Claim, decision: Decision) -> Iterator[tuple[str, str]]:
     """Yield five lines: what is printed, what is wrong, where it shows first, what is true, what it does."""
     yield "Printed:", f"{claim.statement} {_formulas(claim.formulas)}".rstrip()
-    wrong = "; ".join(_residual_text(reading, len(decision.readings) > 1) for reading in decision.readings)
+    minus = (
+        "printed minus true" if all(isinstance(f.relation, Equality) for f in claim.formulas) else "left minus right"
+    )
+    several = len(decision.readings) > 1
+    wrong = "; ".join(_residual_text(reading, minus, several) for reading in decision.readings)
     yield "Wrong:", f"{wrong}. {claim.remark}".rstrip()
     yield "Smallest counterexample:", decision.counterexample + "."
     proof = f" Shown by: {reading_text(decision.correction)}." if decision.correction else ""
@@ -112,11 +126,11 @@ def _formulas(formulas: tuple[Formula, ...]) -> str:
     return "; ".join(dict.fromkeys(_code(formula.relation) for formula in formulas))
 
 
-def _residual_text(reading: ReadingDecision, labelled: bool) -> str:
+def _residual_text(reading: ReadingDecision, minus: str, labelled: bool) -> str:
     label = f"read with {reading.label}: " if labelled else ""
     if reading.residual is None:
         return f"{label}violated by {reading.false_case} (compared: {reading.method})"
-    return f"{label}printed minus true leaves {_code(reading.residual)} ({reading.false_case})"
+    return f"{label}{minus} leaves {_code(reading.residual)} ({reading.false_case})"
 
 
 def _code(relation: Any) -> str:

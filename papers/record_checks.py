@@ -76,10 +76,18 @@ def _missing_evidence(claim: Claim) -> Iterator[str]:
     if verdict is Verdict.HOLDS_IF and not all(reading.condition for reading in claim.readings):
         yield "holds-if without its condition"
     if verdict is Verdict.FAILS:
-        missing = [name for name in ("correction", "counterexample", "consequence") if getattr(claim, name) is None]
-        if missing:
-            yield f"fails without {', '.join(missing)}"
-        if claim.correction and not claim.correction.parts:
-            yield "fails with a correction that has no proof"
-        if claim.correction and not claim.correction.statement.strip():
-            yield "fails with a correction that says nothing, expected what is true instead"
+        yield from _missing_correction(claim)
+
+
+def _missing_correction(claim: Claim) -> Iterator[str]:
+    missing = [name for name in ("correction", "counterexample", "consequence") if getattr(claim, name) is None]
+    if missing:
+        yield f"fails without {', '.join(missing)}"
+    if claim.correction is None:
+        return
+    if not claim.correction_parts:
+        yield "fails with a correction that has no proof"
+    elif not claim.corrected_formulas:
+        yield "fails with a correction that has no formula"
+    if not claim.correction.statement.strip():
+        yield "fails with a correction that says nothing, expected what is true instead"

@@ -158,7 +158,7 @@ def _short_evidence(claim: Claim, decision: Decision) -> str:
         return decision.problem
     if not decision.readings:
         return claim.reason
-    return "; ".join(dict.fromkeys(f"{r.strength.text}, {checked_text(r)}" for r in decision.readings))
+    return "; ".join(dict.fromkeys(f"{kind_text(r)}, {checked_text(r)}" for r in decision.readings))
 
 
 def mutants_text(decision: Decision) -> str:
@@ -200,7 +200,13 @@ def ledger_html(ledger: Ledger) -> str:
 
 
 def _words(reading: ReadingDecision) -> str:
-    return f"{reading.strength.text}, {checked_text(reading)}: {reading.method}"
+    return f"{kind_text(reading)}, {checked_text(reading)}: {reading.method}"
+
+
+def kind_text(reading: ReadingDecision) -> str:
+    """Return the strength of the evidence in words; instances that are all there is are no sample."""
+    complete = reading.proof and reading.strength is Strength.RATIONAL
+    return "exact rational arithmetic" if complete else reading.strength.text
 
 
 def _claim_html(claim: Claim, decision: Decision) -> str:

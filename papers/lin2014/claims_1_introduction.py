@@ -11,7 +11,7 @@ from papers.lin2014 import printed as pr
 from papers.lin2014 import related_checks as related
 from papers.lin2014.claims_3_conditions import TRUE_3_1
 from papers.lin2014.contact_checks import row_check
-from papers.lin2014.property_checks import proved, question
+from papers.lin2014.property_checks import proved
 from papers.lin2014.records import ambiguous, holds, holds_if, not_checkable, part
 from papers.lin2014.spline_checks import count_check, knot_count_instances
 
@@ -64,9 +64,10 @@ CLAIMS: tuple[Claim, ...] = (
           part(proved(related.hartmann_contact_cases, "derivatives of f at the ends, n = 1 to 3", Strength.EACH_ORDER)),
           remark="For f = mu (1-t)^(n+1) / (mu (1-t)^(n+1) + (1-mu) t^(n+1)), well known; [17] itself is not here."),
     ambiguous("sec-1.hartmann-nurbs", _RELATED, "Such a blend can be written as NURBS only approximately.",
-              Reading((part(question(related.hartmann_rational_cases(splines=False), "numerator and denominator")),),
+              Reading((part(proved(related.sine_base_cases,
+                                   "solving for a base with a sine, which is no quotient of polynomials")),),
                       label="for parametric bases in general"),
-              Reading((part(question(related.hartmann_rational_cases(splines=True), "numerator and denominator")),),
+              Reading((part(proved(related.hartmann_rational_cases, "numerator and denominator, every n and mu")),),
                       label="for B-spline bases with a common parameter"),
               remark="f is rational with a positive denominator: for spline bases the blend is exactly rational, of "
               "degree p + n + 1 across."),

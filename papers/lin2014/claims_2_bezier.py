@@ -14,7 +14,7 @@ from papers.lin2014 import printed_figures as figures
 from papers.lin2014 import trimming_checks as trimming
 from papers.lin2014.bezier_checks import check
 from papers.lin2014.consequences_2 import missing_first_row, top_last_row
-from papers.lin2014.property_checks import proved, question
+from papers.lin2014.property_checks import question
 from papers.lin2014.records import ambiguous, fails, holds, not_checkable, part
 
 _WHERE = "Section 2, Bezier example"
@@ -128,7 +128,7 @@ CLAIMS: tuple[Claim, ...] = (
     ambiguous("sec-2.subpatch-kind", _WHERE, "Therefore both sub-patches are semi-structured patches.",
               Reading((part(question(lambda: bezier.same_order_cases(None), "orders of the rows")),),
                       label="surfaces by Definition 1, whose control curves all have one order"),
-              Reading((part(question(lambda: bezier.curve_based_cases(None), _COUNTING)),),
+              Reading((part(_identity(bezier.curve_based_cases, _COUNTING)), _LEMMA_PART),
                       label="skins of curves of any order"),
               remark="Definition 1 gives all curves one order and lets knots differ; here there are no inner knots and "
               "the orders differ. Raising all rows to the highest degree would give an ordinary Bezier patch."),
@@ -144,7 +144,8 @@ CLAIMS: tuple[Claim, ...] = (
             for name, formula in figures.SIDE_INTERVALS.items())),
     holds("fig-3.pieces", "Fig. 3",
           "The trimmed patch is made of four semi-structured patches and four ordinary Bezier patches, exactly.",
-          part(proved(trimming.tiling_cases, "sum of oriented boundaries, areas", Strength.RATIONAL)), _LEMMA_PART),
+          part(_data(trimming.tiling_cases, "sum of oriented boundaries, areas, lengths of exact rows"),
+               figures.PIECES), _LEMMA_PART),
     holds("fig-3.first-split", "Fig. 3", "The strip between v = 0.4 and v = 0.6 contains c1, which then divides it.",
           part(_data(trimming.first_split_cases, _DECIMALS), figures.FIRST_SPLIT)),
 )  # fmt: skip

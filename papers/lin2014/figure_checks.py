@@ -121,11 +121,14 @@ def cone_cases(formula: Formula | None) -> Iterator[Case]:
     yield Case(f"{counts[0]} on the cone, {counts[1]} on the free form", tuple(_relation(formula).rhs) == counts)
 
 
-def bicubic_cases() -> Iterator[Case]:
-    """Yield the models of Table 1: enough rows and columns for a cubic."""
+def bicubic_cases(formula: Formula | None) -> Iterator[Case]:
+    """Yield the printed vectors, which end in as many ones as the order, and the models of Table 1: enough rows."""
+    order = _relation(formula).rhs
+    for key, knots in pr.KNOTS.items():
+        yield Case(f"{key}: {list(knots).count(1)} ones", bool(order == list(knots).count(1)))
     for figure, pair in pr.SIZES.items():
         for rows, columns in pair:
-            yield Case(f"{figure}: {rows} x {columns}", min(rows, columns) >= CUBIC)
+            yield Case(f"{figure}: {rows} x {columns}", bool(min(rows, columns) >= order))
 
 
 def middle_curve_cases() -> Iterator[Case]:

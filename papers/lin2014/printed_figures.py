@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from sympy import Add, Eq, Mul, Pow, Rational, Symbol, symbols
+from sympy import Add, Eq, Integer, Mul, Pow, Rational, Symbol, symbols
 
 from papers.ledger import Formula
 from papers.lin2014.printed import KNOTS, SIZES, B, u, v
@@ -25,18 +25,15 @@ def _printed(name: str, data: Any, reason: str = "", changes: Any = ()) -> Formu
     return Formula(Eq(symbol, data, evaluate=False), (symbol,), undecidable=undecidable)
 
 
-_ONCE = (
-    "the position of this inner knot is printed once, and no printed number depends on it: control points are not "
-    "given, and nor is {}"
-)
-# What would depend on an inner knot, for the vectors that nothing else printed determines.
+_ONCE = "the position of this inner knot is printed once, and no printed number depends on it: "
+_MIDDLE = "only the knots of the middle curve follow from it, which are not printed"
 _DEPENDS = {
-    "fig-5.second": "the plane patch over {1/3, 2/3}, which the text changes to {1/2} without saying how",
-    "fig-6.planar": "the middle curve of Fig. 6, whose knots average these",
-    "fig-6.curved": "the middle curve of Fig. 6, whose knots average these",
-    "fig-8.larger": "the middle curve of Figs. 8 and 9, whose knots average these",
-    "fig-8.smaller": "the middle curve of Figs. 8 and 9, whose knots average these",
-    "fig-10.second": "a middle curve, which Fig. 10 does not have; that they are fifths is not said",
+    "fig-5.second": "the text changes this patch to {1/2} without saying how, and prints no control points",
+    "fig-6.planar": _MIDDLE,
+    "fig-6.curved": _MIDDLE,
+    "fig-8.larger": _MIDDLE,
+    "fig-8.smaller": _MIDDLE,
+    "fig-10.second": "the blend has no middle curve, and that the knots are fifths is not said",
 }
 
 
@@ -44,10 +41,11 @@ def _vector(key: str, knots: Knots) -> Formula:
     name = "V^r" if key in ("fig-5.first", "fig-6.planar", "fig-8.larger", "fig-10.first") else "V^s"
     if key not in _DEPENDS:
         return _printed(name, knots)
-    return _printed(name, knots, _ONCE.format(_DEPENDS[key]), inner_moves(knots))
+    return _printed(name, knots, _ONCE + _DEPENDS[key], inner_moves(knots))
 
 
 VECTORS = {key: _vector(key, Knots(*knots)) for key, knots in KNOTS.items()}
+BICUBIC = _printed("k", Integer(4))
 # Printed once more, in the comparison with [13].
 COMMON_VECTOR_5 = _printed("V", Knots(0, 0, 0, 0, Rational(1, 2), 1, 1, 1, 1))
 SEVENTHS = _printed("V_inner", Knots(*KNOTS["fig-10.first"][3:-4]))
@@ -108,5 +106,7 @@ SIDE_PARAMETERS = {
     for name, s in _SIDES.items()
 }
 SIDE_INTERVALS = {name: _printed(str(s[1]), Knots(*map(Rational, s[4]))) for name, s in _SIDES.items()}
+# Semi-structured and ordinary pieces of the trimmed patch.
+PIECES = _printed("N", Numbers(4, 4))
 # The patch is first divided at these values of v.
 FIRST_SPLIT = _printed("v", Knots(Rational("0.4"), Rational("0.6")))

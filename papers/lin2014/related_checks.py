@@ -62,21 +62,27 @@ def hartmann_contact_cases() -> Iterator[Case]:
         yield Case(f"n = {n}", flat and f.subs(t, 0) == 1 and f.subs(t, 1) == 0)
 
 
-def hartmann_rational_cases(*, splines: bool) -> Any:
-    """Return the check that the blend has no exact NURBS form: for B-spline bases it is a quotient of splines."""
+def hartmann_rational_cases() -> Iterator[Case]:
+    """Yield, for every n and mu, that the blend of two spline pieces a(t), b(t) has *no* exact rational form.
 
-    def cases() -> Iterator[Case]:
-        t = sp.Symbol("t")
-        f = sp.together(_hartmann(2, sp.Rational(1, 2), t))
-        one = 1 + 2 * t - t**3 if splines else sp.sin(t)
-        other = 3 - t**2
-        numerator, denominator = sp.fraction(sp.together(f * one + (1 - f) * other))
-        is_rational = numerator.is_polynomial(t) and denominator.is_polynomial(t)
-        # A positive denominator is a positive weight function.
-        positive = all(denominator.subs(t, sp.Rational(r, 8)) > 0 for r in range(9)) if is_rational else False
-        yield Case("cubic pieces" if splines else "a base with a sine", not (is_rational and positive))
+    f a + (1 - f) b is up a + down b over up + down, with x = 1 - t and y = t: polynomials, the weight positive.
+    """
+    x, y, mu, nu = sp.symbols("x y mu nu", positive=True)
+    n = sp.Symbol("n", integer=True, positive=True)
+    a, b = sp.symbols("a b", real=True)
+    up, down = mu * x ** (n + 1), nu * y ** (n + 1)
+    blend = up / (up + down) * a + down / (up + down) * b
+    same = sp.cancel(blend - (up * a + down * b) / (up + down)) == 0
+    polynomial = bool((n + 1).is_integer and (n + 1).is_positive)
+    yield Case("pieces of splines", not (same and polynomial and (up + down).is_positive is True))
 
-    return cases
+
+def sine_base_cases() -> Iterator[Case]:
+    """Yield that a blend X = f sin t + (1 - f) b, b polynomial, is not rational: else sin t would be a quotient."""
+    X, b, f, wave = sp.symbols("X b f S", positive=True)
+    (solved,) = sp.solve(f * wave + (1 - f) * b - X, wave)
+    yield Case("sin t is a quotient of polynomials if X is", solved.is_rational_function(X, b, f))
+    yield from c_curve_cases()
 
 
 def _hartmann(n: int, mu: Any, t: Any) -> Any:

@@ -22,6 +22,7 @@ from derivations.trimming import (
     corners,
     crossings,
     inside_square,
+    trimmed_rows,
 )
 from papers.ledger import Case, Formula
 from papers.lin2014 import printed_figures as printed
@@ -137,9 +138,16 @@ def interval_cases(name: str) -> Any:
     return cases
 
 
-def tiling_cases() -> Iterator[Case]:
-    """Decide whether four divided and four rectangular pieces cover the trimmed square, without gap or overlap."""
+def tiling_cases(formula: Formula | None) -> Iterator[Case]:
+    """Decide how many pieces are semi-structured and how many ordinary, and that they cover the trimmed square.
+
+    The rows of an ordinary Bezier patch have equally many control points.
+    """
     region = hole()
+    bicubic = [[Fraction(i * j) for j in range(4)] for i in range(4)]
+    lengths = [{len(row) for row in piece} for piece in trimmed_rows(bicubic, region).values()]
+    counts = [sum(len(found) > 1 for found in lengths), sum(len(found) == 1 for found in lengths)]
+    yield Case(f"{counts[0]} semi-structured, {counts[1]} ordinary", list(_relation(formula).rhs) == counts)
     yield Case(
         "boundaries of the eight pieces add up to those of the square and the hole", not boundary_residual(region)
     )

@@ -74,6 +74,16 @@ def with_formula(formula):
             ),
             "says nothing",
         ),
+        (
+            replace(
+                GOOD,
+                verdict=Verdict.FAILS,
+                correction=Correction("y is 2x", (Part(CHECK),)),
+                counterexample=lambda: Counterexample((("x", "1"),), "1", "2"),
+                consequence=lambda: Consequence("a surface", {"gap": 1.0}),
+            ),
+            "no formula",
+        ),
     ],
 )
 def test_a_bad_record_is_refused(claim, message):

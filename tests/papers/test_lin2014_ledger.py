@@ -6,7 +6,7 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 from papers.erratum import ledger_markdown
-from papers.ledger import Verdict
+from papers.ledger import Strength, Verdict
 from papers.report import ledger_html, ledger_record
 from papers.verification import verify
 from solver.io.json_text import to_text
@@ -57,10 +57,11 @@ def test_every_claim_is_decided_as_recorded_and_the_report_is_fresh():
     counts = ledger.counts()
     assert counts["printed"] >= 100
     assert counts["decided"] == counts["printed"] - counts["not-checkable"]
-    assert counts["mutants"] > 1500
+    assert counts["mutants"] > 3000
     assert (counts["vacuous"], counts["changed"], counts["mutants_survived"]) == (0, 0, 0)
     _evidence_is_complete(ledger)
     _outputs_are_complete(ledger)
+    _report_reads_as_an_erratum(ledger)
     stored = REPORT.read_text(encoding="utf-8")
     text = ledger_markdown(ledger)
     # What the study found may stand before it; the ledger is the last part.
@@ -79,6 +80,7 @@ def _evidence_is_complete(ledger):
             assert decision.correction.verdict is Verdict.HOLDS, claim.id
             assert decision.consequence.measured, claim.id
             assert decision.readings[0].false_case, claim.id
+            assert claim.corrected_formulas, claim.id
         if decision.verdict is Verdict.HOLDS_IF:
             reading = decision.readings[0]
             assert reading.true_case, claim.id
@@ -87,10 +89,41 @@ def _evidence_is_complete(ledger):
         assert bool(claim.formulas) <= (decision.mutation.tried > 0), claim.id
 
 
+def _report_reads_as_an_erratum(ledger):
+    text = ledger_markdown(ledger)
+    erratum = text[text.index("## Erratum") : text.index("## True only")]
+    failures = erratum.split("\n### ")[1:]
+    assert len(failures) == ledger.counts()["fails"]
+    for failure in failures:
+        lines = [line for line in failure.splitlines()[1:] if line]
+        heads = [line.split("**")[1] for line in lines]
+        assert heads == ["Printed:", "Wrong:", "Smallest counterexample:", "Correct:", "On a surface:"], failure
+        assert "$`" in lines[3], failure
+    rows = text[text.index("## All records") :].splitlines()
+    cells = {row.split(" | ")[0].strip("| "): row.split(" | ") for row in rows if row.startswith("| ")}
+    for claim, decision in zip(ledger.paper.claims, ledger.decisions, strict=True):
+        _, _, verdict, evidence, checked, method, noticed = cells[claim.id]
+        assert verdict == str(decision.verdict)
+        if decision.verdict is not Verdict.NOT_CHECKABLE:
+            assert "exact" in evidence or "floating" in evidence, claim.id
+            assert "case" in checked, claim.id
+        assert method.strip(), claim.id
+        assert bool(decision.mutation.tried) == any(c.isdigit() for c in noticed), claim.id
+    survivors = [*(s for d in ledger.decisions for s in d.mutation.equivalent + d.mutation.undecidable)]
+    assert all(reason in text for _, reason in survivors)
+
+
 def _outputs_are_complete(ledger):
     record = ledger_record(ledger)
     assert len(record["claims"]) == len(ledger.paper.claims)
     assert '"kind": "ledger"' in to_text(record)
+    strengths = {claim["strength"] for claim in record["claims"] if claim["strength"]}
+    assert strengths <= {strength.text for strength in Strength}
+    for claim in record["claims"]:
+        assert bool(claim["corrected_formulas"]) or claim["verdict"] != "fails", claim["id"]
+        tried = claim["mutants"]["tried"]
+        assert sum(claim["mutants"]["kinds"].values()) == tried
+    assert set(ledger.mutants_by_kind()) == {"sign", "factor", "exponent", "index", "limit", "number", "knot"}
     html = ledger_html(ledger)
     assert html.count("<details") == len(ledger.paper.claims)
     formulas = re.findall("<math>.*?</math>", html)
