@@ -209,6 +209,12 @@ def kind_text(reading: ReadingDecision) -> str:
     return "exact rational arithmetic" if complete else reading.strength.text
 
 
+def _mutants_and_reasons(decision: Decision) -> str:
+    """Return how many mutants were noticed, and why the others were not."""
+    reasons = dict.fromkeys(why for _, why in decision.mutation.equivalent + decision.mutation.undecidable)
+    return "; ".join((f"{mutants_text(decision)} noticed", *reasons)) if decision.mutation.tried else ""
+
+
 def _claim_html(claim: Claim, decision: Decision) -> str:
     verdict = str(decision.verdict or "no answer")
     rows: list[tuple[str, str]] = [("where", escape(claim.where))]
@@ -224,6 +230,7 @@ def _claim_html(claim: Claim, decision: Decision) -> str:
         *((f"read as {r.label}" if r.label else "evidence", f"{r.verdict}: {_words(r)}") for r in decision.readings),
         ("reason", claim.reason),
         ("remark", claim.remark),
+        ("mutants", _mutants_and_reasons(decision)),
         ("problem", decision.problem),
     ]
     rows += [(name, text_html(text)) for name, text in texts if text]

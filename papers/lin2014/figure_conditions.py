@@ -75,6 +75,12 @@ def row_2_check(side: Side, m: int, kind: Kind, *, parametric: bool) -> Check:
             shown = difference_form(expression, _BASE[side]) if kind == "any" else sp.factor(expression)
             yield Case(label, False, residual=shown)
 
+    def probe(formula: Formula) -> Any:
+        try:
+            return _residual(formula.relation.rhs, side, m, kind, parametric)
+        except UndefinedError as error:
+            return str(error)
+
     what = "all coordinates" if kind == "any" else "the coordinate along the normal"
     return Check(
         cases,
@@ -82,6 +88,7 @@ def row_2_check(side: Side, m: int, kind: Kind, *, parametric: bool) -> Check:
         f"P_uu by row 2 against the base's second derivative, {what}; k = k_r = 4, uniform u_i as in the figure, any "
         "control points and knots of the base",
         proof=True,
+        probe=probe,
     )
 
 
