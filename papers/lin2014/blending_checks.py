@@ -16,7 +16,7 @@ from papers.ledger import Case, Check, Formula, Strength
 from papers.lin2014 import printed as pr
 from papers.lin2014.contact_checks import ORDERS
 from papers.lin2014.exact import Meaning, UndefinedError, clamped, de_boor, difference_case, net_ring
-from papers.lin2014.property_checks import contained, insertion_cases, sharp_continuity_cases, union
+from papers.lin2014.property_checks import contained, insertion_cases, premises, sharp_continuity_cases, union
 from papers.lin2014.spline_checks import Counting, domain_ends, functions_on, last_knot
 
 CUBIC = 4
@@ -74,7 +74,7 @@ def mismatch_cases() -> Iterator[Case]:
     Where a vector has a knot r-fold and the other one less often, some spline over the first is rougher there than
     all splines over the second.
     """
-    yield from sharp_continuity_cases()
+    yield from premises(sharp_continuity_cases())
     pairs = {name: printed_pair(name) for name in PRINTED_PAIRS}
     half = Fraction(1, 2)
     pairs["{1/2} and {1/4, 1/2, 3/4}"] = (clamped(4, half), clamped(4, half / 2, half, 3 * half / 2))
@@ -86,7 +86,7 @@ def mismatch_cases() -> Iterator[Case]:
 
 def nested_space_cases() -> Iterator[Case]:
     """Yield that knot insertion changes no spline, and printed pairs: both lie in the space of the union of knots."""
-    yield from insertion_cases()
+    yield from premises(insertion_cases())
     for name in PRINTED_PAIRS:
         a, b = printed_pair(name)
         both = union(CUBIC, a, b)

@@ -21,7 +21,7 @@ from papers.ledger import (
 from papers.lin2014 import printed as pr
 from papers.lin2014 import property_checks as properties
 from papers.lin2014.consequences_2 import one_function_for_all
-from papers.lin2014.property_checks import identity_cases, proof_check, proved
+from papers.lin2014.property_checks import identity_cases, premises, proof_check, proved
 from papers.lin2014.spline_checks import (
     CURVE_CHECK,
     SURFACE_CHECK,
@@ -68,7 +68,7 @@ def _wrong_basis_counterexample() -> Counterexample:
 
 
 def _domain_cases() -> Iterator[Case]:
-    yield from identity_cases("partition of unity")
+    yield from premises(identity_cases("partition of unity"))
     yield from properties.common_domain_cases()
 
 

@@ -16,7 +16,7 @@ from typing import Any, Literal
 import sympy as sp
 
 from derivations.contact import A, contact_rows, contact_rows_from_pieces
-from derivations.splines import end_derivatives, end_derivatives_from_pieces, span_symbols
+from derivations.splines import end_derivative_step, end_derivatives, end_derivatives_from_pieces, span_symbols
 from papers.ledger import Case, Check, Counterexample, Formula, Strength
 from papers.lin2014 import printed as pr
 from papers.lin2014.exact import Meaning, interpret
@@ -102,6 +102,7 @@ def _probe_values(side: Side, parametric: bool, k: int, k_b: int) -> dict[Any, A
 
 def _row_cases(side: Side, row: int, parametric: bool, formula: Formula | None) -> Iterator[Case]:
     relation = _relation(formula)
+    _require_induction(side)
     every = _field_values(side, parametric, 0, 0)
     if not relation.has(pr.u_m3):
         yield _row_case(relation, side, "every order", every, own=True, meets=True)
@@ -114,6 +115,14 @@ def _row_cases(side: Side, row: int, parametric: bool, formula: Formula | None) 
                 values = _field_values(side, parametric, k, k_b)
                 own = k == CUBIC and k_b == CUBIC
                 yield _row_case(relation, side, f"orders {k}, {k_b}", values, own=own, meets=k in _SAME_INDEX)
+
+
+@cache
+def _require_induction(side: Side) -> None:
+    """Raise `ValueError` unless the closed form of end derivatives passes from every order to the next one."""
+    step = end_derivative_step(2, side)
+    if not step.is_zero_matrix:
+        raise ValueError(f"end derivatives at the {side}: found the step {step}, expected zero")
 
 
 def _row_case(relation: Any, side: Side, label: str, values: dict[Any, Any], *, own: bool, meets: bool) -> Case:
@@ -180,6 +189,7 @@ def _derivative_cases(surface: Literal["P", "R"], order: int, formula: Formula |
     k = pr.k if is_blend else pr.k_r
     h = span_symbols(2, "h" if is_blend else "H")
     knots = {pr.u_1: h[0], pr.u_2: h[1], pr.w_kr: pr.w_s + h[0], w_kr1: pr.w_s + h[1]}
+    _require_induction("start")
     for number in (k, *ORDERS):
         if number is k:
             true = end_derivatives(2, k - 1, h)[order, :]

@@ -22,7 +22,7 @@ from papers.lin2014 import geometry_checks as geometry
 from papers.lin2014 import printed as pr
 from papers.lin2014.abstract import coefficient
 from papers.lin2014.exact import Meaning, difference_case
-from papers.lin2014.property_checks import identity_cases
+from papers.lin2014.property_checks import identity_cases, premises
 
 # One row of (14): blocks A and B, unknown X and known N control points.
 A_BLOCK, B_BLOCK, X_FREE, N_KNOWN = (sp.IndexedBase(name) for name in "ABXN")
@@ -92,6 +92,12 @@ def zero_system_cases() -> Iterator[Case]:
 
 
 def unique_minimum_cases(order: int) -> Iterator[Case]:
+    """Yield why the free rows have just one minimum, and blends in which they have."""
+    yield from premises(_positive_cases())
+    yield from energy.positive_definite_cases(order)
+
+
+def _positive_cases() -> Iterator[Case]:
     """Yield why the free rows have just one minimum, for every k >= 3, every m and all knots of a C1 blend.
 
     The energy is a sum of integrals of squares. Let it vanish for some free rows, the others zero. Then P_uu = 0, so
@@ -108,7 +114,6 @@ def unique_minimum_cases(order: int) -> Iterator[Case]:
     step = end_derivative_step(1).is_zero_matrix
     yield Case("P and P_u at u = 0 determine rows 0 and 1", bool(determinant.is_positive and step))
     yield _line_case()
-    yield from energy.positive_definite_cases(order)
 
 
 def minimum_check(order: int) -> Check:
@@ -196,7 +201,7 @@ def regular_cases() -> Iterator[Case]:
 
 def shape_parameter_cases() -> Iterator[Case]:
     """Yield that P_u = -alpha^2 R_w is G1 for every alpha but 0 and every regular base, and instances."""
-    yield from regular_cases()
+    yield from premises(regular_cases())
     yield from geometry.shape_parameter_cases(1)
 
 
@@ -206,7 +211,7 @@ def single_minimum_of_shape_cases() -> Iterator[Case]:
     The normal of P is -a times that of R; plates that face each other have positive a and b over every
     gap, by which the whole figure is scaled.
     """
-    yield from regular_cases()
+    yield from premises(regular_cases())
     a, b, gap = sp.symbols("a b d", positive=True)
     strip = energy.end_energy(4, 6, (0, a, 0, gap, b, 0))
     best = sp.solve([sp.diff(strip, a), sp.diff(strip, b)], [a, b], dict=True)[0]
@@ -229,8 +234,7 @@ def crease_cases() -> Iterator[Case]:
     The integral of a square vanishes only where the function does, so that a strip of zero energy is a line on each
     span; across a knot of multiplicity r < p it is C^(p-r), so at least C1.
     """
-    yield from identity_cases("continuity")
-    yield _line_case()
+    yield from premises([*identity_cases("continuity"), _line_case()])
     yield from energy.crease_cases()
 
 
@@ -273,7 +277,7 @@ def isometric_cases(formula: Formula | None) -> Iterator[Case]:
     values = dict(zip((pr.kappa_1, pr.kappa_2), curvatures, strict=True))
     residual = sp.expand((relation.rhs - relation.lhs).subs(values))
     yield Case("sum of squares", bool(residual == 0), residual=residual)
-    yield from tangential_cases()
+    yield from premises(tangential_cases())
     yield from energy.isometric_cases()
 
 

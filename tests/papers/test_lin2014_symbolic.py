@@ -22,6 +22,7 @@ from papers.lin2014.abstract import SAME, WITHIN, coefficient
 from papers.lin2014.claims_4_implementation import NORMAL_EQUATION, TRUE_14
 from papers.lin2014.contact_checks import mirror_check, row_check
 from papers.lin2014.exact import clamped, de_boor
+from papers.verification import decide
 
 CLAIMS = {
     claim.id: claim
@@ -191,6 +192,15 @@ def test_a_premise_that_fails_makes_the_proof_red(monkeypatch):
     assert found
     assert not any(found)
     properties.contact_at_knot.cache_clear()
+
+
+@pytest.mark.parametrize("name", ["eq-12", "sec-4.normal-equation", "sec-4.c1-similarly"])
+def test_an_argument_without_its_premise_gives_no_verdict(name, monkeypatch):
+    """Where it would otherwise turn into `fails`, or hide behind `ambiguous`."""
+    monkeypatch.setattr(objective, "thin_plate_density", lambda: sp.Symbol("P_uu") ** 2 - sp.Symbol("P_vv") ** 2)
+    decision = decide(CLAIMS[name])
+    assert decision.verdict is None
+    assert "(11) is a sum of squares" in decision.problem
 
 
 def test_end_rows_hold_for_every_order_of_the_base():
