@@ -28,9 +28,9 @@ class BlendResult:
     alpha2, beta2 : float or None
         Of (2.1) and (2.2), the bases in their own parameters; 1 for C1 and C2, None for C0 and G0.
     alpha2_bounds, beta2_bounds : (float, float) or None
-        The admissible box; None where there is no such unknown, and for method bfgs, which knows no bounds.
+        The admissible box; None where there is no such unknown. Method bfgs does not know it: see `warnings`.
     active_bounds : tuple of str
-        Which bounds stopped the search, such as "alpha2 lower".
+        Which bounds stopped the search, such as "alpha2 lower", or were passed by it (method bfgs).
     flipped : bool
         Whether edge b runs against edge a.
     seam_shift : float
@@ -42,7 +42,7 @@ class BlendResult:
     regularity : Regularity
         How far the blend is from folding.
     warnings : tuple of str
-        What a user should look at: folds, creases.
+        What a user should look at: folds, creases, shape parameters out of their bounds.
     iterations : int
         Of the nonlinear solver; 0 where there is none.
     status : str or None

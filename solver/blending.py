@@ -140,7 +140,7 @@ def blend(
         check_certificate(found.certificate)
     seam = _seam(surface, problem)
     regularity = measure_regularity(surface)
-    warnings = _warnings(surface, regularity) + _seam_warning(a, b)
+    warnings = _warnings(surface, regularity) + _bound_warnings(problem, found) + _seam_warning(a, b)
     if strict and warnings:
         raise FoldError(f"{'; '.join(warnings)}; try other middle curves, alpha='natural', or without strict")
     return BlendResult(
@@ -150,8 +150,8 @@ def blend(
         energy=energy,
         alpha2=None if sides[0].order == 0 else found.a,
         beta2=None if sides[1].order == 0 else found.b,
-        alpha2_bounds=problem.bounds[0] if problem.free[0] and found.bounded else None,
-        beta2_bounds=problem.bounds[1] if problem.free[1] and found.bounded else None,
+        alpha2_bounds=problem.bounds[0] if problem.free[0] else None,
+        beta2_bounds=problem.bounds[1] if problem.free[1] else None,
         active_bounds=_active_bounds(problem, found),
         flipped=matched.flipped,
         seam_shift=matched.shift,
@@ -237,7 +237,6 @@ class _Found:
     proven_gap: float | None = None
     constraint_rank: Callable[[], tuple[int, int]] | None = None
     status: str | None = None
-    bounded: bool = True
 
 
 def _checked_shape(alpha: Shape | tuple[Shape, Shape]) -> tuple[Shape, Shape]:
@@ -292,7 +291,7 @@ def _shape_parameters(problem: BlendProblem, method: Method) -> _Found:
     from solver.quasi_newton import solve_quasi_newton
 
     rough = solve_quasi_newton(problem)
-    return _Found(rough.a, rough.b, method, rough.iterations, status=rough.status, bounded=False)
+    return _Found(rough.a, rough.b, method, rough.iterations, status=rough.status)
 
 
 def _surface(
@@ -311,14 +310,22 @@ def _surface(
     return SemiStructuredSurface(problem.form.u.degree, problem.form.u.knots, tuple(curves))
 
 
+def _shape_unknowns(problem: BlendProblem, found: _Found) -> list[tuple[str, float, float, float]]:
+    """Return name, value found and admissible ends of each shape parameter that was searched."""
+    return [
+        (name, value, *ends)
+        for name, is_free, value, ends in zip(
+            ("alpha2", "beta2"), problem.free, (found.a, found.b), problem.bounds, strict=True
+        )
+        if is_free
+    ]
+
+
 def _active_bounds(problem: BlendProblem, found: _Found) -> tuple[str, ...]:
     active = []
-    for name, is_free, value, (low, high) in zip(
-        ("alpha2", "beta2"), problem.free, (found.a, found.b), problem.bounds, strict=True
-    ):
-        if is_free and found.bounded:
-            # An interior-point method stops a little inside of a bound.
-            active += [f"{name} lower"] * (value <= low * (1 + 1e-6)) + [f"{name} upper"] * (value >= high * (1 - 1e-6))
+    for name, value, low, high in _shape_unknowns(problem, found):
+        # An interior-point method stops a little inside of a bound.
+        active += [f"{name} lower"] * (value <= low * (1 + 1e-6)) + [f"{name} upper"] * (value >= high * (1 - 1e-6))
     return tuple(active)
 
 
@@ -373,6 +380,17 @@ def _warnings(surface: SemiStructuredSurface, regularity: Regularity) -> tuple[s
             f"the blend may be creased at v = {', '.join(f'{v:g}' for v in creases)}: knots of full multiplicity"
         )
     return tuple(found)
+
+
+def _bound_warnings(problem: BlendProblem, found: _Found) -> tuple[str, ...]:
+    """Return a warning for each shape parameter outside of its bounds: the paper's own search knows none."""
+    return tuple(
+        f"{name} is {value:.3g}, outside of the admissible {low:.3g} to {high:.3g}: "
+        f"method {found.method} knows no bounds"
+        for name, value, low, high in _shape_unknowns(problem, found)
+        # A bound itself may come back rounded.
+        if not low * (1 - 1e-12) <= value <= high * (1 + 1e-12)
+    )
 
 
 def _seam_warning(a: Base, b: Base) -> tuple[str, ...]:

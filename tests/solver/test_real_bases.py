@@ -4,9 +4,8 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from scipy.interpolate import make_interp_spline
 
-from helpers.bases import facing_pair, patch, turned
+from helpers.bases import circle, cylinder, facing_pair, patch, turned
 from solver import (
     Base,
     BSplineSurface,
@@ -21,32 +20,6 @@ from solver.closing import periodic_points, reseamed, seam_order
 from solver.de_boor import curve_points, surface_points
 from solver.gram import Basis
 from solver.operations import map_domain
-
-
-def circle(n_spans, degree=3, seam=0.0):
-    """A closed C^(degree - 1) spline close to the unit circle, clamped, its seam at an angle."""
-    t = np.linspace(0, 1, n_spans + 1)
-    angle = 2 * np.pi * (t + seam)
-    values = np.stack([np.cos(angle), np.sin(angle)], axis=1)
-    values[-1] = values[0]
-    periodic = make_interp_spline(t, values, k=degree, bc_type="periodic")
-    # Clamp by inserting both ends to full multiplicity.
-    knots = np.concatenate([[0.0] * (degree + 1), t[1:-1], [1.0] * (degree + 1)])
-    greville = np.array([knots[i + 1 : i + degree + 1].mean() for i in range(len(knots) - degree - 1)])
-    unit = np.eye(len(greville))
-    collocation = np.column_stack([curve_points(degree, knots, e[:, None], greville)[:, 0] for e in unit])
-    return knots, np.linalg.solve(collocation, periodic(greville))
-
-
-def cylinder(n_spans, radius, heights, *, seam=0.0, tilt=0.0, offset=(0.0, 0.0)):
-    """Open along u (the axis), closed along v, with contact at u0."""
-    knots_v, points = circle(n_spans, seam=seam)
-    knots_u = np.array([0, 0, 0, 0, 1, 1, 1, 1.0])
-    rows = []
-    for i, z in enumerate(np.linspace(*heights, 4)):
-        r = radius * (1 + tilt * i)
-        rows.append(np.column_stack([r * points + np.array(offset), np.full(len(points), z)]))
-    return BSplineSurface(3, 3, knots_u, knots_v, np.array(rows))
 
 
 @pytest.mark.parametrize("order", [0, 1, 2])

@@ -9,8 +9,9 @@ from hypothesis import strategies as st
 from scipy.optimize import brute, minimize
 from scipy.stats import special_ortho_group
 
-from helpers.bases import facing_pair, moved, patch
-from solver import Base, BSplineSurface, ComputationError, ContactError, EdgeError, blend
+from helpers.bases import cylinder, facing_pair, moved, patch
+from solver import Base, BSplineSurface, ComputationError, ContactError, EdgeError, FoldError, blend
+from solver.blending import state_problem
 from solver.certificate import CertificateError, check_certificate
 from solver.correspondence import Correspondence
 from solver.problem import ProblemOptions, make_problem
@@ -192,30 +193,66 @@ def test_the_polynomial_is_the_energy_of_the_best_blend(seed):
 
 
 def dense_multistart(problem, points):
-    def energy(logs):
-        return energy_at(problem, np.exp(logs))
+    """The least energy of a grid, and of a local search from its best point, over the parameters that are free."""
 
-    ranges = [slice(np.log(low), np.log(high), (np.log(high) - np.log(low)) / points) for low, high in problem.bounds]
-    start = brute(energy, ranges, finish=None)
-    bounds = [(np.log(low), np.log(high)) for low, high in problem.bounds]
+    def energy(logs):
+        values = iter(np.exp(logs))
+        shape = [next(values) if is_free else at for is_free, at in zip(problem.free, problem.start, strict=True)]
+        return energy_at(problem, shape)
+
+    bounds = [(np.log(low), np.log(high)) for (low, high), f in zip(problem.bounds, problem.free, strict=True) if f]
+    ranges = [slice(low, high, (high - low) / points) for low, high in bounds]
+    start = np.atleast_1d(brute(energy, ranges, finish=None))
     return float(minimize(energy, start, bounds=bounds, method="L-BFGS-B").fun)
 
 
-def verify_never_beaten(seeds, points):
-    for seed in seeds:
-        problem = problem_of(seed, middle_curves=seed % 3)
-        found = solve_reduced(problem)
-        assert found.gap <= 1e-10
-        assert energy_at(problem, (found.a, found.b)) <= dense_multistart(problem, points) * (1 + 1e-10)
+CONTACTS = ("G2", "G1", "C2", "C1", "G0", "C0")
 
 
-def test_a_dense_multistart_never_beats_it():
-    verify_never_beaten(range(12), 12)
+def varied_problem(seed):
+    """Any edges and directions, every scale of v, any continuity with an unknown; each fourth pair is closed."""
+    rng = np.random.default_rng(seed)
+    if seed % 4 == 3:
+        tilt = rng.uniform(-0.2, 0.2, 2)
+        a = cylinder(6, 1.0, (1, 2), seam=rng.uniform(), tilt=tilt[0])
+        b = cylinder(8, rng.uniform(0.7, 1.4), (-1, -2), seam=rng.uniform(), tilt=tilt[1], offset=(0.2, 0.1))
+        bases = Base(a, "u0"), Base(b, "u0")
+    else:
+        bases = facing_pair(rng)
+    first = str(rng.choice(["G2", "G1"]))
+    pair = rng.permutation([first, str(rng.choice(CONTACTS))]).tolist()
+    options = {"v_scale": str(rng.choice(["paper", "unit", "length"])), "middle_curves": int(rng.integers(0, 3))}
+    low = float(rng.choice([1 / 8, 1 / 2, 1 / 50]))
+    return state_problem(*bases, continuity=tuple(pair), box=(low, 1 / low), **options).problem
+
+
+def verify_never_beaten(problem, points):
+    found = solve_reduced(problem)
+    assert found.gap <= 1e-10
+    check_certificate(found.certificate)
+    assert energy_at(problem, (found.a, found.b)) <= dense_multistart(problem, points) * (1 + 1e-10)
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_a_dense_multistart_never_beats_it(seed):
+    verify_never_beaten(problem_of(seed, middle_curves=seed % 3), 12)
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_a_dense_multistart_never_beats_it_whatever_the_contact(seed):
+    verify_never_beaten(varied_problem(seed), 10)
 
 
 @pytest.mark.slow
 def test_a_dense_multistart_never_beats_it_300_times():
-    verify_never_beaten(range(300), 20)
+    for seed in range(300):
+        verify_never_beaten(problem_of(seed, middle_curves=seed % 3), 20)
+
+
+@pytest.mark.slow
+def test_a_dense_multistart_never_beats_it_300_times_whatever_the_contact():
+    for seed in range(300):
+        verify_never_beaten(varied_problem(seed), 10)
 
 
 @pytest.mark.parametrize("seed", range(10))
@@ -276,13 +313,36 @@ def test_every_combination_of_sides(pair):
         assert local.energy == pytest.approx(result.energy, rel=1e-8)
 
 
-def test_bfgs_is_reported_and_never_better():
-    a, b = facing_pair(np.random.default_rng(0), edges=("u0", "u0"), backwards=(False, False))
+@pytest.mark.parametrize("seed", range(6))
+def test_bfgs_is_reported_and_never_better(seed):
+    a, b = facing_pair(np.random.default_rng(seed), edges=("u0", "u0"), backwards=(False, False))
     rough = blend(a, b, method="bfgs")
     assert rough.method == "bfgs"
     assert rough.iterations > 0
-    wide = blend(a, b, box=(1e-3, 1e3))
-    assert wide.energy <= rough.energy * (1 + 1e-10)
+    # Over a box that has its answer inside, however small: the default one begins at 1/8 of natural.
+    sizes = [8 * low for low, _ in (rough.alpha2_bounds, rough.beta2_bounds)]
+    low, *_, high = sorted([1 / 8, rough.alpha2 / sizes[0], rough.beta2 / sizes[1], 8])
+    around = blend(a, b, box=(0.9 * low, 1.1 * high))
+    assert around.energy <= rough.energy * (1 + 1e-10)
+
+
+def test_bfgs_outside_of_the_box_says_so():
+    # In a box that its answer misses the paper's search has less energy than any admissible blend, and says why.
+    a, b = facing_pair(np.random.default_rng(0), edges=("u0", "u0"), backwards=(False, False))
+    free = blend(a, b, method="bfgs")
+    assert not free.warnings
+    assert not free.active_bounds
+    assert free.alpha2_bounds[0] < free.alpha2 < free.alpha2_bounds[1]
+    factor = free.alpha2 / (free.alpha2_bounds[0] * 8)
+    missed = (1.1 * factor, 10 * factor)
+    rough, proved = (blend(a, b, method=method, box=missed) for method in ("bfgs", "reduced"))
+    assert rough.alpha2 < rough.alpha2_bounds[0]
+    assert rough.active_bounds[0] == "alpha2 lower"
+    assert [w for w in rough.warnings if w.startswith("alpha2 is") and "knows no bounds" in w]
+    assert rough.energy < proved.energy
+    assert not proved.warnings
+    with pytest.raises(FoldError, match="outside of the admissible"):
+        blend(a, b, method="bfgs", box=missed, strict=True)
 
 
 def crooked_pair(seed):
