@@ -231,9 +231,9 @@ def _cross(a: FloatArray, b: FloatArray, axis: int = 1) -> FloatArray:
     (x, y, z), (u, v, w) = (np.moveaxis(c, axis, 0) for c in (a, b))
     result = np.empty(np.broadcast_shapes(a.shape, b.shape))
     products = ((y, w, z, v), (z, u, x, w), (x, v, y, u))
-    for out, (p, q, r, s) in zip(np.moveaxis(result, axis, 0), products, strict=True):
-        np.multiply(p, q, out=out)
-        out -= r * s
+    for component, (p, q, r, s) in zip(np.moveaxis(result, axis, 0), products, strict=True):
+        np.multiply(p, q, out=component)
+        np.subtract(component, r * s, out=component)
     return result
 
 
