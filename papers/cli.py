@@ -8,6 +8,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -36,10 +37,13 @@ def verify_command(
     json_file: Annotated[
         str | None, typer.Option("--json", metavar="FILE", help="Write the decided ledger; - is standard output.")
     ] = None,
-    markdown: Annotated[str | None, typer.Option(metavar="FILE", help="Write the report of the paper.")] = None,
+    markdown: Annotated[
+        str | None,
+        typer.Option(metavar="FILE", help="Write the report of the paper; what a study found stays at its end."),
+    ] = None,
 ) -> None:
     """Decide every claim of a paper anew; exit status 1 if a verdict is not the recorded one."""
-    from papers.erratum import ledger_markdown
+    from papers.erratum import ledger_markdown, with_study_kept
     from papers.report import ledger_record
     from solver.io.disk import check_output, write_text
     from solver.io.json_text import to_text
@@ -53,7 +57,9 @@ def verify_command(
     elif json_file is not None:
         write_text(json_file, to_text(ledger_record(ledger)))
     if markdown is not None:
-        write_text(markdown, ledger_markdown(ledger))
+        file = Path(markdown)
+        before = file.read_text(encoding="utf-8", errors="replace") if file.is_file() else ""
+        write_text(markdown, with_study_kept(ledger_markdown(ledger), before))
     if json_file != "-":
         print_ledger(ledger)
     if not ledger.ok:

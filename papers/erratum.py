@@ -17,13 +17,27 @@ from papers.report import (
     counts_text,
     kind_text,
     mutants_text,
-    reading_text,
 )
 from papers.verification import Decision, Ledger, ReadingDecision
 
+# Heads what a study adds after the ledger in the same file.
+STUDY_HEADING = "# What the study finds"
+
+
+def with_study_kept(ledger: str, before: str) -> str:
+    r"""Return the Markdown of a ledger with what a study has found, as it stands at the end of an earlier version.
+
+    Examples
+    --------
+    >>> with_study_kept("new ledger\n", "old ledger\n\n# What the study finds: x\nmuch\n")
+    'new ledger\n\n# What the study finds: x\nmuch\n'
+    """
+    _, heading, found = before.partition(f"\n{STUDY_HEADING}")
+    return f"{ledger}\n{heading.lstrip()}{found}" if heading else ledger
+
 
 def ledger_markdown(ledger: Ledger) -> str:
-    """Return the report: counts, each failure in five lines, conditions, readings, and all records. No timings."""
+    """Return the report: counts, each failure in five lines, conditions, readings, remarks, all records; no timings."""
     lines = [
         f"# {ledger.paper.title}: every printed claim decided",
         "",
@@ -36,6 +50,7 @@ def ledger_markdown(ledger: Ledger) -> str:
         *_erratum(ledger),
         *_section(ledger, Verdict.HOLDS_IF, "True only under an unstated condition", _conditional_lines),
         *_section(ledger, Verdict.AMBIGUOUS, "Can be read in more than one way", _ambiguous_lines),
+        *_section(ledger, Verdict.HOLDS, "True as printed, with a remark", _proof_lines, remarked=True),
         *_section(ledger, Verdict.NOT_CHECKABLE, "Not checkable", _reason_lines),
         *_survivors(ledger),
         *_records(ledger),
@@ -46,7 +61,10 @@ def ledger_markdown(ledger: Ledger) -> str:
 def _records(ledger: Ledger) -> Iterator[str]:
     """Yield a table with one row a reading: what the verdict stands on, and how it was found."""
     yield from ("## All records", "")
-    yield "Noticed: mutants of the formulas of the record that its checks told apart, of those that were tried."
+    yield (
+        "Noticed: changes of the record's formulas that were told apart, of those that were tried: by the check "
+        "itself, or, after two of each kind, by exact residuals at rational numbers where the check has such a probe."
+    )
     yield from ("", "| id | claim | verdict | evidence | checked | method | noticed |", "|---|---|---|---|---|---|---|")
     for claim, decision in zip(ledger.paper.claims, ledger.decisions, strict=True):
         verdict = str(decision.verdict) if decision.verdict else f"no answer: {decision.problem}"
@@ -117,9 +135,17 @@ def _failure_lines(claim: Claim, decision: Decision) -> Iterator[tuple[str, str]
     wrong = "; ".join(_residual_text(reading, minus, several) for reading in decision.readings)
     yield "Wrong:", f"{wrong}. {claim.remark}".rstrip()
     yield "Smallest counterexample:", decision.counterexample + "."
-    proof = f" Shown by: {reading_text(decision.correction)}." if decision.correction else ""
-    yield "Correct:", f"{correction_text(claim)} {_formulas(claim.corrected_formulas)}{proof}"
+    yield "Correct:", _correction(claim, decision)
     yield "On a surface:", consequence_text(decision.consequence)
+
+
+def _correction(claim: Claim, decision: Decision) -> str:
+    """Return what is true instead, without the formulas that stay as they are printed, and how it was shown."""
+    printed = {formula.relation for formula in claim.formulas}
+    changed = tuple(formula for formula in claim.corrected_formulas if formula.relation not in printed)
+    shown = decision.correction
+    proof = f" ({kind_text(shown)}, {checked_text(shown)}.)" if shown else ""
+    return f"{correction_text(claim)} {_formulas(changed or claim.corrected_formulas)}{proof}"
 
 
 def _formulas(formulas: tuple[Formula, ...]) -> str:
@@ -137,8 +163,9 @@ def _code(relation: Any) -> str:
     return f"$`{latex(relation)}`$"
 
 
-def _section(ledger: Ledger, verdict: Verdict, heading: str, lines: Any) -> Iterator[str]:
-    pairs = _pairs(ledger, verdict)
+def _section(ledger: Ledger, verdict: Verdict, heading: str, lines: Any, *, remarked: bool = False) -> Iterator[str]:
+    """Yield the records of one verdict; with `remarked` only those that have a remark."""
+    pairs = [pair for pair in _pairs(ledger, verdict) if pair[0].remark or not remarked]
     if not pairs:
         return
     yield from (f"## {heading}", "")
@@ -159,11 +186,24 @@ def _conditional_lines(claim: Claim, decision: Decision) -> Iterable[str]:
         yield f"In general: {claim.correction.statement} {_formulas(claim.corrected_formulas)}".rstrip()
 
 
-def _ambiguous_lines(_claim: Claim, decision: Decision) -> Iterable[str]:
+def _ambiguous_lines(claim: Claim, decision: Decision) -> Iterable[str]:
     for reading in decision.readings:
         extra = f", leaves {_code(reading.residual)}" if reading.residual not in (None, 0) else ""
         verdict = f"holds if {reading.condition}" if reading.verdict is Verdict.HOLDS_IF else str(reading.verdict)
-        yield f"Read as {reading.label}: {verdict}{extra}."
+        at = f", such as for {reading.false_case}" if reading.false_case else ""
+        yield f"Read as {reading.label}: **{verdict}**{extra}{at} ({kind_text(reading)}, {checked_text(reading)})."
+    if decision.counterexample:
+        yield f"Smallest counterexample: {decision.counterexample}."
+    if claim.correction:
+        yield f"Correct: {_correction(claim, decision)}"
+    if decision.consequence:
+        yield f"On a surface: {consequence_text(decision.consequence)}"
+
+
+def _proof_lines(_claim: Claim, decision: Decision) -> Iterable[str]:
+    for reading in decision.readings:
+        label = f"Read as {reading.label}: " if reading.label else ""
+        yield f"{label}{kind_text(reading)}, {checked_text(reading)}."
 
 
 def _reason_lines(claim: Claim, _decision: Decision) -> Iterable[str]:

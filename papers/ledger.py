@@ -35,7 +35,10 @@ class Verdict(StrEnum):
 
 
 class Strength(IntEnum):
-    """How strong the evidence is, the strongest first."""
+    """How strong the evidence is, the strongest first.
+
+    In general: for all that the claim speaks of (orders, degrees, counts, knots, control points), left as symbols.
+    """
 
     SYMBOLIC_ORDER = 1
     EACH_ORDER = 2
@@ -49,8 +52,8 @@ class Strength(IntEnum):
 
 
 _STRENGTH_TEXT = {
-    Strength.SYMBOLIC_ORDER: "exact identity, symbolic order and knots",
-    Strength.EACH_ORDER: "exact identity over symbolic knots, order by order",
+    Strength.SYMBOLIC_ORDER: "exact, in general",
+    Strength.EACH_ORDER: "exact, for each order from 2 to 8",
     Strength.RATIONAL: "exact rational instances",
     Strength.FLOAT: "floating point with a stated tolerance",
 }
@@ -298,6 +301,19 @@ class Paper:
             if claim.id == identifier:
                 return claim
         raise LedgerError(f"claim: found {identifier!r}, expected one of {', '.join(c.id for c in self.claims)}")
+
+
+def given(formula: Formula | None) -> Formula:
+    """Return the formula that a check needs.
+
+    Raises
+    ------
+    ValueError
+        There is none.
+    """
+    if formula is None:
+        raise ValueError("formula: found None, expected a relation")
+    return formula
 
 
 def decided_cases(check: Check, formula: Formula | None) -> Iterator[Case]:

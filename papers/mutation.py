@@ -139,7 +139,11 @@ def _tried(check: Check, formula: Formula) -> MutationResult:
                 survivors.append(mutant)
         except ZeroDivisionError:
             undefined += 1
-    same, open_ = formula.equivalent, formula.undecidable
+    # A reason that says nothing explains nothing.
+    same, open_ = (
+        {text: why for text, why in reasons.items() if why.strip()}
+        for reasons in (formula.equivalent, formula.undecidable)
+    )
     return MutationResult(
         kinds,
         tuple(f"{m.kind}: {m.text}" for m in survivors if m.text not in same and m.text not in open_),

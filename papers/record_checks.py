@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 
 import sympy as sp
 
-from papers.ledger import Claim, Formula, LedgerError, Verdict
+from papers.ledger import Check, Claim, Formula, LedgerError, Strength, Verdict
+from papers.mutation import mutants
 from papers.search import smallest_assignment
+
+# The paper's own number, or a section, figure or table with a slug.
+_ID = re.compile(r"(def|eq|app)-[A-Za-z0-9]+|cond-\d+\.\d+|(sec|fig|table)-[A-Za-z0-9]+\.[a-z0-9]+([.-][a-z0-9]+)*")
 
 
 def check_record(claim: Claim) -> None:
@@ -23,6 +28,8 @@ def check_record(claim: Claim) -> None:
 
 
 def _problems(claim: Claim) -> Iterator[str]:
+    if not _ID.fullmatch(claim.id):
+        yield f"id {claim.id!r}, expected one such as eq-1, cond-2.1, fig-3.slug or sec-4.slug"
     if claim.verdict not in list(Verdict):
         yield f"verdict {claim.verdict!r}, expected one of {', '.join(Verdict)}"
     if not claim.statement.strip() or not claim.where.strip():
@@ -30,9 +37,17 @@ def _problems(claim: Claim) -> Iterator[str]:
     for formula in claim.formulas + claim.corrected_formulas:
         yield from _formula_problems(formula)
     for part in claim.parts + claim.correction_parts:
-        if not part.check.method.strip():
-            yield "a check without a method, expected what is compared with what"
+        yield from _check_problems(part.check)
     yield from _missing_evidence(claim)
+
+
+def _check_problems(check: Check) -> Iterator[str]:
+    if not check.method.strip():
+        yield "a check without a method, expected what is compared with what"
+    if not isinstance(check.strength, Strength):
+        yield f"strength {check.strength!r}, expected one of {', '.join(Strength.__members__)}"
+    elif check.proof and check.strength is Strength.FLOAT:
+        yield "a proof in floating point, expected an exact one, or a check that is none"
 
 
 def _formula_problems(formula: Formula) -> Iterator[str]:
@@ -47,6 +62,23 @@ def _formula_problems(formula: Formula) -> Iterator[str]:
         yield f"free symbols do not match the declared variables: undeclared {undeclared}, unused {unused}"
     elif formula.assumptions and assumption_instance(formula) is None:
         yield f"no instance found that satisfies the assumptions {formula.assumptions}, expected at least one"
+    else:
+        yield from _reason_problems(formula)
+
+
+def _reason_problems(formula: Formula) -> Iterator[str]:
+    """Find reasons that say nothing, and those for a mutant that is never made, which may hide a stronger check."""
+    if not formula.equivalent and not formula.undecidable:
+        return
+    made = {mutant.text for mutant in mutants(formula)}
+    for text, reason in (*formula.equivalent.items(), *formula.undecidable.items()):
+        if not reason.strip():
+            yield f"mutant {text} without a reason, expected why no check can tell it from the formula"
+        if text not in made:
+            yield f"a reason for the mutant {text}, which is not made; expected one of the mutants of the formula"
+    both = sorted(set(formula.equivalent) & set(formula.undecidable))
+    if both:
+        yield f"mutants {both} both equivalent and undecidable, expected one of the two"
 
 
 def assumption_instance(formula: Formula) -> dict[sp.Symbol, sp.Rational] | None:
@@ -73,6 +105,11 @@ def _missing_evidence(claim: Claim) -> Iterator[str]:
         yield f"ambiguous with {len(claim.readings)} reading, expected at least 2"
     if len(claim.readings) > 1 and not all(reading.label for reading in claim.readings):
         yield "several readings, one without a label"
+    labels = [reading.label for reading in claim.readings]
+    if len(set(labels)) < len(labels) and all(labels):
+        yield f"several readings with one label: {labels}, expected different ones"
+    if verdict in (Verdict.HOLDS, Verdict.FAILS) and any(reading.condition for reading in claim.readings):
+        yield f"{verdict} with a condition, expected none, or holds-if"
     if verdict is Verdict.HOLDS_IF and not all(reading.condition for reading in claim.readings):
         yield "holds-if without its condition"
     if verdict is Verdict.FAILS:

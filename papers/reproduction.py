@@ -16,7 +16,7 @@ from papers.baselines.comparison import Comparison, run
 from papers.baselines.interface import Method
 from papers.baselines.registry import methods
 from papers.environment import environment
-from papers.erratum import ledger_markdown
+from papers.erratum import STUDY_HEADING, ledger_markdown
 from papers.page import Results, page
 from papers.report import ledger_record
 from papers.study import Comparisons, Drawing, Example, Study, Table
@@ -146,15 +146,15 @@ def markdown(results: Results) -> list[str]:
 
 
 def report_document(results: Results) -> str:
-    """Return what a reader of the paper wants to know: what the study finds, prior art, and every claim decided.
+    """Return what a reader of the paper wants to know: every claim decided, then what the study finds, and prior art.
 
     Its copy in the paper's folder is what the last study said; numbers that depend on the machine are left out.
     """
-    lines = [f"# What the study finds: {results.ledger.paper.title.rstrip('.')}", "", results.study.preface, ""]
+    lines = [f"{STUDY_HEADING}: {results.ledger.paper.title.rstrip('.')}", "", results.study.preface, ""]
     lines += [f"Every statement here was computed by `{results.command}`.", ""]
     lines += [f"- **{f.short}.** {f.detail}" for f in results.study.findings(results.comparisons)]
     lines += ["", "Prior art:", "", *(f"- {work}" for work in results.study.prior_art), ""]
-    return "\n".join([*lines, ledger_markdown(results.ledger)])
+    return "\n".join([ledger_markdown(results.ledger), *lines])
 
 
 def _edge_by_edge(examples: Iterable[Example], comparisons: Comparisons) -> list[tuple[str, Comparison]]:

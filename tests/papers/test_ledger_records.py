@@ -36,11 +36,34 @@ def with_formula(formula):
     return replace(GOOD, readings=(Reading((Part(CHECK, formula),)),))
 
 
+def with_check(**changes):
+    return replace(GOOD, readings=(Reading((Part(replace(CHECK, **changes), FORMULA),)),))
+
+
+def labelled(*labels):
+    return tuple(replace(GOOD.readings[0], label=label) for label in labels)
+
+
 @pytest.mark.parametrize(
     ("claim", "message"),
     [
         (replace(GOOD, verdict="true"), "verdict 'true'"),
         (replace(GOOD, statement=" "), "empty"),
+        *(
+            (replace(GOOD, id=name), "id .*expected one such as")
+            for name in ("", "eq", "2.1", "cond-2", "sec-4", "x-1")
+        ),
+        (with_check(strength=9), "strength 9, expected one of SYMBOLIC_ORDER"),
+        (with_check(strength=Strength.FLOAT, proof=True), "a proof in floating point"),
+        (replace(GOOD, readings=(replace(GOOD.readings[0], condition="x > 0"),)), "holds with a condition"),
+        (replace(GOOD, readings=labelled("one", "one"), verdict=Verdict.AMBIGUOUS), "with one label"),
+        (with_formula(replace(FORMULA, equivalent={"Eq(y, 3*x)": "why"})), "which is not made"),
+        (with_formula(replace(FORMULA, undecidable={"Eq(y, 3*x)": "why"})), "which is not made"),
+        (with_formula(replace(FORMULA, equivalent={"Eq(y, -2*x)": " "})), "without a reason"),
+        (
+            with_formula(replace(FORMULA, equivalent={"Eq(y, -2*x)": "a"}, undecidable={"Eq(y, -2*x)": "b"})),
+            "both equivalent and undecidable",
+        ),
         (with_formula(Formula(y - 2 * x, (x, y))), "expected a relation"),
         (with_formula(Formula(sp.Eq(y, 2 * x), (x,))), r"undeclared \['y'\]"),
         (with_formula(Formula(sp.Eq(y, 2), (x, y))), r"unused \['x'\]"),
@@ -89,6 +112,19 @@ def with_formula(formula):
 def test_a_bad_record_is_refused(claim, message):
     with pytest.raises(LedgerError, match=message):
         check_record(claim)
+
+
+@pytest.mark.parametrize(
+    "claim",
+    [
+        *(replace(GOOD, id=name) for name in ("def-1", "cond-3.2", "app-d1", "table-1.sizes", "sec-A.17-gives-2.1")),
+        with_formula(replace(FORMULA, equivalent={"Eq(y, -2*x)": "why"})),
+        with_check(strength=Strength.FLOAT),
+        replace(GOOD, readings=labelled("one", "other"), verdict=Verdict.AMBIGUOUS),
+    ],
+)
+def test_what_is_well_formed_passes(claim):
+    check_record(claim)
 
 
 def test_the_corrected_formula_is_checked_too():

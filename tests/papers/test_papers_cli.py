@@ -48,6 +48,18 @@ def test_verify_a_folder_and_write_both_files(made_up_paper, tmp_path):
     assert "### eq-2" in (tmp_path / "r.md").read_text()
 
 
+def test_a_report_written_anew_keeps_what_the_study_found(made_up_paper, tmp_path):
+    folder, report = made_up_paper(), tmp_path / "r.md"
+    assert run("verify", folder, "--markdown", report).exit_code == 0
+    ledger = report.read_text()
+    assert "What the study finds" not in ledger
+    study = "# What the study finds: a sum\n\nIt is right.\n"
+    report.write_text(f"# an older ledger\n\n{study}")
+    for _ in range(2):
+        assert run("verify", folder, "--markdown", report).exit_code == 0
+        assert report.read_text() == f"{ledger}\n{study}"
+
+
 def test_json_on_standard_output_is_nothing_but_json(made_up_paper):
     result = run("verify", made_up_paper(), "--json", "-")
     assert json.loads(result.stdout)["counts"]["printed"] == 2

@@ -11,8 +11,8 @@ from papers.lin2014.study import study
 STORED = (Path(__file__).parents[2] / "papers" / "lin2014" / "REPORT.md").read_text(encoding="utf-8")
 
 
-def test_the_document_has_findings_prior_art_and_the_ledger():
-    assert STORED.index("What the study finds") < STORED.index("Prior art:") < STORED.index("## Erratum")
+def test_the_document_has_the_erratum_first_then_findings_and_prior_art():
+    assert STORED.index("## Erratum") < STORED.index("What the study finds") < STORED.index("Prior art:")
     for work in study().prior_art:
         assert f"- {work}" in STORED
 

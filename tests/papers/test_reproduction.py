@@ -10,6 +10,7 @@ from typer.testing import CliRunner
 from helpers.small_report import METHODS, fails, small_results, small_study
 from papers.cli import app
 from papers.environment import environment
+from papers.erratum import STUDY_HEADING, ledger_markdown, with_study_kept
 from papers.lin2014.findings import findings, meets_demand
 from papers.lin2014.study import study
 from papers.reproduction import markdown, numbers, write_report
@@ -75,6 +76,14 @@ def test_markdown_has_the_same_tables(results, folder):
     rows = [line for line in text.splitlines() if line.startswith("| ")]
     widths = {len(re.findall(r"(?<!\\)\|", line)) for line in rows}
     assert len(widths) == 4  # Table 1, methods, pairs, ledger
+
+
+def test_the_report_has_the_ledger_first_and_verify_keeps_the_rest(results, folder):
+    text = (folder / "REPORT.md").read_text()
+    ledger = ledger_markdown(results.ledger)
+    assert text.startswith(ledger)
+    assert text.index("## Erratum") < text.index(STUDY_HEADING) < text.index("Prior art:")
+    assert with_study_kept(ledger, text) == text
 
 
 def test_the_page_is_written(folder):

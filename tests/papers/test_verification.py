@@ -190,6 +190,8 @@ def test_an_equivalent_mutant_needs_its_reason():
     plain = Formula(sp.Eq(y, x), (x, y))
     assert try_mutants(Part(check, plain)).survivors == ("sign: Eq(y, -x)",)
     explained = replace(plain, equivalent={"Eq(y, -x)": "the magnitude is the same"})
+    unexplained = replace(plain, equivalent={"Eq(y, -x)": " "})
+    assert try_mutants(Part(check, unexplained)).survivors == ("sign: Eq(y, -x)",)
     result = try_mutants(Part(check, explained))
     assert (result.survivors, result.equivalent) == ((), (("Eq(y, -x)", "the magnitude is the same"),))
 
