@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Literal, TypeAlias, get_args
 
@@ -165,7 +165,7 @@ def blend(
         kkt_residual=found.kkt_residual,
         certificate=found.certificate,
         proven_gap=found.proven_gap,
-        constraint_rank=None if found.constraint_rank is None else found.constraint_rank(),
+        constraint_rank=found.constraint_rank,
         seconds=seconds,
     )
 
@@ -235,7 +235,7 @@ class _Found:
     kkt_residual: float | None = None
     certificate: Certificate | None = None
     proven_gap: float | None = None
-    constraint_rank: Callable[[], tuple[int, int]] | None = None
+    constraint_rank: tuple[int, int] | None = None
     status: str | None = None
 
 
@@ -285,7 +285,7 @@ def _shape_parameters(problem: BlendProblem, method: Method) -> _Found:
             method,
             local.iterations,
             local.kkt_residual,
-            constraint_rank=local.rank,
+            constraint_rank=local.constraint_rank,
             status=local.status,
         )
     from solver.quasi_newton import solve_quasi_newton
@@ -324,8 +324,8 @@ def _shape_unknowns(problem: BlendProblem, found: _Found) -> list[tuple[str, flo
 def _active_bounds(problem: BlendProblem, found: _Found) -> tuple[str, ...]:
     active = []
     for name, value, low, high in _shape_unknowns(problem, found):
-        # An interior-point method stops a little inside of a bound.
-        active += [f"{name} lower"] * (value <= low * (1 + 1e-6)) + [f"{name} upper"] * (value >= high * (1 - 1e-6))
+        # 1e-9: what the ways there and back between alpha and alpha^2 in natural units may round.
+        active += [f"{name} lower"] * (value <= low * (1 + 1e-9)) + [f"{name} upper"] * (value >= high * (1 - 1e-9))
     return tuple(active)
 
 
@@ -383,13 +383,12 @@ def _warnings(surface: SemiStructuredSurface, regularity: Regularity) -> tuple[s
 
 
 def _bound_warnings(problem: BlendProblem, found: _Found) -> tuple[str, ...]:
-    """Return a warning for each shape parameter outside of its bounds: the paper's own search knows none."""
+    """Return a warning for each shape parameter outside of its bounds: method bfgs, the paper's own, knows none."""
     return tuple(
         f"{name} is {value:.3g}, outside of the admissible {low:.3g} to {high:.3g}: "
         f"method {found.method} knows no bounds"
         for name, value, low, high in _shape_unknowns(problem, found)
-        # A bound itself may come back rounded.
-        if not low * (1 - 1e-12) <= value <= high * (1 + 1e-12)
+        if not low <= value <= high
     )
 
 

@@ -20,6 +20,10 @@ from solver.sides import Side
 # A solution is judged by its residuals, not by the status, which differs between platforms for the same point.
 KKT_LIMIT = 1e-8
 FEASIBILITY_LIMIT = 1e-9
+# The scale of the objective is at least this part of the magnitudes of its terms.
+LEAST_SCALE = 1e-5
+# Where the energy falls to less than this part of the start's, the solver goes on from there with the new scale.
+RESCALED = 0.1
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,9 +68,9 @@ class ConstrainedSolution:
     iterations : int
     status : str
     kkt_residual : float
-        Largest entry of the gradient of the Lagrangian, scaled problem.
-    jacobian : sparse array
-        Of the constraints at the solution.
+        Largest entry of the gradient of the Lagrangian and of multiplier times slack, scaled problem.
+    constraint_rank : (int, int)
+        Of the constraint Jacobian at the solution, and its number of rows; full rank makes multipliers unique.
     """
 
     a: float
@@ -74,18 +78,40 @@ class ConstrainedSolution:
     iterations: int
     status: str
     kkt_residual: float
-    jacobian: SparseMatrix
-
-    def rank(self) -> tuple[int, int]:
-        """Return the rank of the constraint Jacobian and its number of rows; full rank makes multipliers unique."""
-        squared = (self.jacobian @ self.jacobian.T).toarray()
-        values = np.linalg.eigvalsh(squared)
-        # Squared singular values: what is below eps of the largest cannot be told from zero.
-        return int(np.count_nonzero(values > len(values) * np.finfo(float).eps * values[-1])), len(values)
+    constraint_rank: tuple[int, int]
 
 
-def constrained_problem(problem: BlendProblem) -> ConstrainedProblem:
-    """State the blend problem with every control point and shape parameter as an unknown."""
+def sparse_rank(matrix: SparseMatrix) -> int:
+    """Return the rank of a sparse matrix most of whose rows have a column to themselves.
+
+    Such a row is independent of the others. Of what is left when none has one any more, the rank is a dense one.
+
+    Examples
+    --------
+    >>> sparse_rank(sp.csr_array([[1.0, 0, 2], [0, 1, 1], [0, 1, 1]]))
+    2
+    """
+    left = sp.csr_array(matrix)
+    # What is below eps of its row cannot be told from zero.
+    largest = abs(left).max(axis=1).toarray().ravel()
+    left.data[np.abs(left.data) <= np.finfo(float).eps * np.repeat(largest, np.diff(left.indptr))] = 0
+    left.eliminate_zeros()
+    rank = 0
+    while left.shape[0]:
+        columns = left.tocsc()
+        alone = np.unique(columns.indices[columns.indptr[:-1][np.diff(columns.indptr) == 1]])
+        if not alone.size:
+            return rank + int(np.linalg.matrix_rank(left.toarray()))
+        rank += len(alone)
+        left = left[np.setdiff1d(np.arange(left.shape[0]), alone)]
+    return rank
+
+
+def constrained_problem(problem: BlendProblem, energy_scale: float = np.inf) -> ConstrainedProblem:
+    """State the blend problem with every control point and shape parameter as an unknown.
+
+    The objective is the energy over that of the start, or over `energy_scale` where that is less.
+    """
     n = problem.form.offsets[-1]
     free = [name for name, is_free in zip(("alpha", "beta"), problem.free, strict=True) if is_free]
     x = ca.MX.sym("x", 3 * n + len(free))
@@ -95,8 +121,8 @@ def constrained_problem(problem: BlendProblem) -> ConstrainedProblem:
     matrix = problem.form.matrix().tocsc()
     energy = casadi_matrix(matrix)
     magnitude = float(np.sum(np.abs(first) * (abs(matrix) @ np.abs(first))))
-    # Two bases that continue each other have energy 0 at the start: then the scale must stay clear of rounding.
-    f_scale = max(float(np.sum(first * (matrix @ first))), 1e-4 * magnitude)
+    # Two bases that continue each other have energy 0: then the scale must stay clear of rounding.
+    f_scale = max(min(float(np.sum(first * (matrix @ first))), energy_scale), LEAST_SCALE * magnitude)
 
     owned, prescribed = _prescribed(problem, p)
     seams = [ca.vec(seam) for seam in _seam_conditions(problem, p)]
@@ -196,6 +222,43 @@ def solve_constrained(problem: BlendProblem) -> ConstrainedSolution:
         IPOPT did not converge; the message names its status and what to try.
     """
     nlp = constrained_problem(problem)
+    result, stats = _optimum(nlp, nlp.start)
+    iterations = int(stats["iter_count"])
+    reached = float(result["f"])
+    if reached < RESCALED:
+        nlp = constrained_problem(problem, reached * nlp.f_scale)
+        result, stats = _optimum(nlp, result["x"])
+        iterations += int(stats["iter_count"])
+    n_points = 3 * problem.form.offsets[-1]
+    shape, pressure = (np.asarray(result[name]).ravel()[n_points:] for name in ("x", "lam_x"))
+    low, high = nlp.lower[n_points:], nlp.upper[n_points:]
+    multipliers = ca.MX.sym("multipliers", nlp.g.shape[0])
+    gradient = ca.Function("gradient", [nlp.x, multipliers], [ca.gradient(nlp.f + ca.dot(multipliers, nlp.g), nlp.x)])
+    slope = np.abs(np.asarray(gradient(result["x"], result["lam_g"]) + result["lam_x"])).max()
+    unused = np.maximum(-pressure, 0) * (shape - low), np.maximum(pressure, 0) * (high - shape)
+    kkt = float(max(slope, np.abs(unused).max()))
+    infeasible = float(np.abs(np.asarray(result["g"])).max())
+    if not (kkt <= KKT_LIMIT and infeasible <= FEASIBILITY_LIMIT):
+        raise ComputationError(
+            f"IPOPT ended with {stats['return_status']} after {iterations} steps, KKT residual {kkt:.1e} and "
+            f"constraints missed by {infeasible:.1e}; try other middle curves, or bases of similar size"
+        )
+    # An interior-point method ends a little off an active bound: where the multiplier is the larger one, on it.
+    shape = np.where(-pressure > shape - low, low, np.where(pressure > high - shape, high, shape))
+    found = dict(zip(nlp.parameters, shape.tolist(), strict=True))
+    a, b = (
+        min(max(found[name] ** 2 * natural, bounds[0]), bounds[1]) if name in found else fixed
+        for name, natural, bounds, fixed in zip(
+            ("alpha", "beta"), problem.natural, problem.bounds, problem.start, strict=True
+        )
+    )
+    jacobian = ca.Function("jacobian", [nlp.x], [ca.jacobian(nlp.g, nlp.x)])(result["x"]).sparse()
+    rank = sparse_rank(jacobian), jacobian.shape[0]
+    return ConstrainedSolution(a, b, iterations, str(stats["return_status"]), kkt, rank)
+
+
+def _optimum(nlp: ConstrainedProblem, start: Any) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Return what IPOPT finds from a start, and its statistics."""
     options: Any = {
         "print_time": False,
         "hess_lag": nlp.hessian,
@@ -210,24 +273,4 @@ def solve_constrained(problem: BlendProblem) -> ConstrainedSolution:
         },
     }
     solver = ca.nlpsol("blend", "ipopt", {"x": nlp.x, "f": nlp.f, "g": nlp.g}, options)
-    result = solver(x0=nlp.start, lbx=nlp.lower, ubx=nlp.upper, lbg=0, ubg=0)
-    stats = solver.stats()
-    multipliers = ca.MX.sym("multipliers", nlp.g.shape[0])
-    gradient = ca.Function("gradient", [nlp.x, multipliers], [ca.gradient(nlp.f + ca.dot(multipliers, nlp.g), nlp.x)])
-    kkt = float(np.abs(np.asarray(gradient(result["x"], result["lam_g"]) + result["lam_x"])).max())
-    infeasible = float(np.abs(np.asarray(result["g"])).max())
-    if not (kkt <= KKT_LIMIT and infeasible <= FEASIBILITY_LIMIT):
-        raise ComputationError(
-            f"IPOPT ended with {stats['return_status']} after {stats['iter_count']} steps, KKT residual {kkt:.1e} and "
-            f"constraints missed by {infeasible:.1e}; try other middle curves, or bases of similar size"
-        )
-    values = np.asarray(result["x"]).ravel()
-    shape = dict(zip(nlp.parameters, values[3 * problem.form.offsets[-1] :], strict=True))
-    a, b = (
-        float(shape[name] ** 2 * natural) if name in shape else fixed
-        for name, natural, fixed in zip(("alpha", "beta"), problem.natural, problem.start, strict=True)
-    )
-    jacobian = ca.Function("jacobian", [nlp.x], [ca.jacobian(nlp.g, nlp.x)])(result["x"])
-    return ConstrainedSolution(
-        a, b, int(stats["iter_count"]), str(stats["return_status"]), kkt, sp.csr_array(jacobian.sparse())
-    )
+    return solver(x0=start, lbx=nlp.lower, ubx=nlp.upper, lbg=0, ubg=0), solver.stats()

@@ -1,21 +1,22 @@
 """The constrained problem: its derivatives against SymPy's, a Taylor test, and its solution against a plain search."""
 
-from dataclasses import replace
 from fractions import Fraction
 
 import casadi as ca
 import numpy as np
 import pytest
 import scipy.sparse as sp
+from hypothesis import given
+from hypothesis import strategies as st
 from scipy.optimize import minimize
 
 from derivations.energy import Basis as ExactBasis
 from derivations.energy import ExactSurface
 from derivations.problem import ExactBase, blend_problem, derivatives_at, lagrangian
-from helpers.bases import facing_pair
-from solver import Base, BSplineSurface, blend
+from helpers.bases import FACING, facing_pair, moved, patch
+from solver import Base, BSplineSurface, ComputationError, blend
 from solver.correspondence import Correspondence
-from solver.nlp import constrained_problem, solve_constrained
+from solver.nlp import constrained_problem, solve_constrained, sparse_rank
 from solver.problem import ProblemOptions, make_problem
 from solver.sides import make_side, matched_sides
 
@@ -160,9 +161,49 @@ def test_constraints_have_full_rank():
 
 
 def test_a_redundant_constraint_would_be_seen():
-    solution = solve_constrained(small_problem(1))
-    doubled = replace(solution, jacobian=sp.vstack([solution.jacobian, solution.jacobian[[0]]], format="csr"))
-    assert doubled.rank() == (solution.rank()[0], solution.rank()[1] + 1)
+    nlp = constrained_problem(small_problem(1))
+    jacobian = ca.Function("J", [nlp.x], [ca.jacobian(nlp.g, nlp.x)])(nlp.start).sparse()
+    doubled = sp.vstack([jacobian, jacobian[[0]]], format="csr")
+    assert sparse_rank(jacobian) == jacobian.shape[0]
+    assert sparse_rank(doubled) == jacobian.shape[0]
+
+
+@given(st.integers(0, 10**6), st.integers(1, 12), st.integers(1, 12), st.sampled_from([0.1, 0.3, 0.8]))
+def test_sparse_rank_is_the_dense_one(seed, rows, columns, density):
+    # Small whole numbers: the dense rank is beyond doubt, and dependent rows are common.
+    rng = np.random.default_rng(seed)
+    matrix = rng.integers(-2, 3, (rows, columns)) * (rng.random((rows, columns)) < density)
+    assert sparse_rank(sp.csr_array(matrix.astype(float))) == np.linalg.matrix_rank(matrix)
+
+
+def test_the_objective_is_scaled():
+    # By the energy of the start; where that falls to a small part, the search goes on with the new scale.
+    nlp = constrained_problem(small_problem(1))
+    objective = ca.Function("f", [nlp.x], [nlp.f])
+    assert float(objective(nlp.start)) == pytest.approx(1, rel=1e-12)
+    again = constrained_problem(small_problem(1), 0.01 * nlp.f_scale)
+    assert again.f_scale == pytest.approx(0.01 * nlp.f_scale, rel=1e-12)
+
+
+def test_what_ipopt_did_not_solve_is_an_error(monkeypatch):
+    monkeypatch.setattr("solver.nlp.KKT_LIMIT", 1e-30)
+    with pytest.raises(ComputationError, match=r"IPOPT ended with .* KKT residual .* try"):
+        solve_constrained(small_problem(0))
+
+
+@pytest.mark.parametrize("pair", [("G2", "G2"), ("G1", "C1"), ("G2", "G0")])
+@pytest.mark.parametrize("seed", range(8))
+def test_active_bounds_are_met_and_nothing_is_warned_of(seed, pair):
+    # A box above where the energy is least: both methods must end on its lower bound, and say so.
+    rng = np.random.default_rng(seed)
+    a = Base(patch(rng, degrees=(3, 3), counts=(4, 6), height=0.02), "u0")
+    b = Base(moved(patch(rng, degrees=(3, 2), counts=(5, 5), height=0.02), FACING, (-2.0, 0.1, 0.6)), "u0")
+    proved, local = (blend(a, b, continuity=pair, method=m, box=(6.0, 7.0)) for m in ("reduced", "casadi"))
+    assert proved.active_bounds
+    assert local.active_bounds == proved.active_bounds
+    assert local.energy == pytest.approx(proved.energy, rel=1e-10)
+    assert local.warnings == proved.warnings
+    assert local.alpha2 == pytest.approx(proved.alpha2, rel=1e-6)
 
 
 @pytest.mark.parametrize("seed", range(5))
