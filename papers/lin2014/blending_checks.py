@@ -15,7 +15,7 @@ from derivations.splines import basis_pieces, end_derivative_step, end_derivativ
 from papers.ledger import Case, Check, Formula, Strength
 from papers.lin2014 import printed as pr
 from papers.lin2014.contact_checks import ORDERS
-from papers.lin2014.exact import Meaning, UndefinedError, clamped, de_boor, difference_case, net_ring
+from papers.lin2014.exact import Meaning, UndefinedError, clamped, de_boor, difference_case, given, net_ring
 from papers.lin2014.property_checks import contained, insertion_cases, premises, sharp_continuity_cases, union
 from papers.lin2014.spline_checks import Counting, domain_ends, functions_on, last_knot
 
@@ -108,7 +108,7 @@ def knot_line_cases() -> Iterator[Case]:
 
 def layout_cases(formula: Formula | None) -> Iterator[Case]:
     """Decide the bound on m: what it admits has disjoint first and last three curves, and enough rows for order k."""
-    relation = _given(formula).relation
+    relation = given(formula).relation
     least = sp.Symbol("m_0", integer=True)
     over, more = sp.symbols("r s", integer=True, nonnegative=True)
     # The least m that the bound admits, for k = 4 + r; then s more.
@@ -140,7 +140,7 @@ def u_length() -> Counting:
 
 def uniform_knot_cases(formula: Formula | None) -> Iterator[Case]:
     """Decide u_i: the inner knots divide [0, 1] into equal spans."""
-    relation = _given(formula).relation
+    relation = given(formula).relation
     printed = relation.rhs
     inner = last_knot(pr.m, pr.k) + 1 - 2 * pr.k
     # On the left Y(i) itself, or another knot: its distance in i.
@@ -162,7 +162,7 @@ def uniform_knot_cases(formula: Formula | None) -> Iterator[Case]:
             for i in range(1, inner + 1):
                 at = {int(r): Fraction(r, inner + 1) for r in range(1, inner + 1)}
                 meaning = Meaning({pr.i: i, pr.m: m, pr.k: k}, {"Y": lambda r, at=at: _looked_up(at, int(r))})
-                yield difference_case(_given(formula), f"k = {k}, m = {m}, u_{i}", meaning, own=k == CUBIC)
+                yield difference_case(given(formula), f"k = {k}, m = {m}, u_{i}", meaning, own=k == CUBIC)
 
 
 def _looked_up(values: dict[int, Any], key: int) -> Any:
@@ -203,7 +203,7 @@ def row_check_of(row: Callable[[Any, Any], Any]) -> Check:
     """Return the check of the index of a row, which follows from the last and the first row that contact sets."""
 
     def cases(formula: Formula | None) -> Iterator[Case]:
-        residual = sp.expand(_given(formula).relation.rhs - row(*set_rows(2)))
+        residual = sp.expand(given(formula).relation.rhs - row(*set_rows(2)))
         yield Case("every m", bool(residual == 0), residual=residual)
 
     return Check(cases, Strength.SYMBOLIC_ORDER, _ROWS_SET, proof=True)
@@ -215,7 +215,7 @@ def middle_count_check(count: int) -> Check:
     def cases(formula: Formula | None) -> Iterator[Case]:
         at_start, at_end = set_rows(2)
         (m,) = sp.solve((at_end - 1) - (at_start + 1) + 1 - count, pr.m)
-        residual = _given(formula).relation.rhs - m
+        residual = given(formula).relation.rhs - m
         yield Case(f"rows between {at_start} and {at_end}: {count}", bool(residual == 0), residual=residual)
 
     return Check(cases, Strength.SYMBOLIC_ORDER, _ROWS_SET, proof=True)
@@ -234,7 +234,7 @@ def paired_cases(last_pair: Callable[[Any], Any]) -> Callable[[Formula | None], 
     def cases(formula: Formula | None) -> Iterator[Case]:
         half = sp.Symbol("q", integer=True, positive=True)
         for n in (2 * half, 2 * half + 1):
-            yield _pair_case(_given(formula), n, last_pair(n))
+            yield _pair_case(given(formula), n, last_pair(n))
         for name in PRINTED_PAIRS:
             v = merged(name)
             knots = {r + 1: value for r, value in enumerate(v)}
@@ -245,7 +245,7 @@ def paired_cases(last_pair: Callable[[Any], Any]) -> Callable[[Formula | None], 
                     "Y": lambda r, pairs=pairs: _looked_up(pairs, int(r)),
                 }
                 label = f"{name}, n = {len(v)}, i = {i}"
-                yield difference_case(_given(formula), label, Meaning({pr.i: i}, functions))
+                yield difference_case(given(formula), label, Meaning({pr.i: i}, functions))
 
     return cases
 
@@ -280,7 +280,7 @@ def sliding_cases(_: Formula | None) -> Iterator[Case]:
 def bezier_end_cases(formula: Formula | None) -> Iterator[Case]:
     """Decide how often v_s and v_e stand: so that the curve starts and ends in a control point, all knots in use."""
     start, end = domain_ends(pr.n, pr.ell)
-    relation = _given(formula).relation
+    relation = given(formula).relation
     # Knots 0 .. start, and those from the end of the domain to the last one.
     for label, run in (("v_s", start + 1), ("v_e", last_knot(pr.n, pr.ell) - end + 1)):
         residual = sp.expand(relation.rhs - run)
@@ -308,9 +308,3 @@ def side_cases() -> Iterator[Case]:
     ):
         letters = getattr(pr, f"COND_{name[1]}_{name[3]}").relation.free_symbols
         yield Case(name, bool(letters & rows) and bool(letters & base) and not letters & others)
-
-
-def _given(formula: Formula | None) -> Formula:
-    if formula is None:
-        raise ValueError("formula: found None, expected a relation")
-    return formula

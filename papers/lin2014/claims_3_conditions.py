@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from functools import partial
 
 from sympy import Eq
 
-from papers.ledger import Claim, Correction, Formula, Part, Reading, Verdict
+from papers.ledger import Case, Claim, Correction, Formula, Part, Reading, Verdict
 from papers.lin2014 import printed as pr
 from papers.lin2014.consequences import measured_rows
 from papers.lin2014.contact_checks import (
+    ROWS,
+    Side,
     row_check,
     row_counterexample,
     t_ks1,
@@ -18,7 +21,17 @@ from papers.lin2014.contact_checks import (
     unconditional,
     w_kr1,
 )
-from papers.lin2014.objective_checks import direction_check, shape_parameter_cases
+from papers.lin2014.geometry_checks import shape_parameter_cases, special_contact_cases
+from papers.lin2014.normal_checks import (
+    EXCESS_3_1,
+    EXCESS_3_1_SQUARES,
+    EXCESS_3_2,
+    EXCESS_3_2_SQUARES,
+    along_normal,
+    excess_check,
+    normal_counterexample,
+)
+from papers.lin2014.objective_checks import direction_check
 from papers.lin2014.property_checks import proved
 from papers.lin2014.records import ambiguous, fails, holds_if, part
 
@@ -92,6 +105,40 @@ _SECOND_ORDER_TEXT = (
     "everything else as in the checked G2 blend"
 )
 
+# What the scan shows of signs and indices, said wherever it matters.
+_MINUS = (
+    "The scan has lost minus signs in (2.1) to (3.2), as in (w_{k_r} - w_s), (1 - u_{m-3}) and R_0j - R_1j; they are "
+    "supplied where no other sign gives a knot distance or a difference."
+)
+_MISREAD = (
+    "u_{m-3} may be a misread u_{m-k+1}, the last inner knot, which is the same for k = 4; then the index is right."
+)
+
+
+def _normal_part(side: Side, formula: Formula) -> Part:
+    return Part(row_check(side, 2, "normal"), along_normal(formula, side))
+
+
+_FIRST_TWO_ROWS = (
+    Part(row_check("start", 0), pr.COND_1_1),
+    Part(row_check("end", 0), pr.COND_1_2),
+    Part(row_check("start", 1), pr.COND_2_1),
+)
+
+
+def all_rows(*parts: Part) -> tuple[Part, ...]:
+    """Return parts, and one more that finds all six rows next to the contacts set by the formulas of these."""
+    cases = partial(set_rows_cases, tuple(p.formula for p in parts))
+    return (*parts, Part(proved(cases, "left sides of the formulas, all six rows next to the contacts")))
+
+
+def set_rows_cases(formulas: tuple[Formula | None, ...]) -> Iterator[Case]:
+    """Yield the six rows next to the contacts: each one is set by one formula."""
+    left = [formula.relation.lhs for formula in formulas if formula is not None]
+    for row in ROWS["start"] + ROWS["end"]:
+        yield Case(f"{row} is set", left.count(row) == 1)
+
+
 CLAIMS = (
     Claim(
         "cond-1.1",
@@ -114,7 +161,7 @@ CLAIMS = (
         Verdict.HOLDS,
         (Reading((Part(row_check("start", 1), pr.COND_2_1),)),),
         remark="The sign is that of a blend which leaves the base backwards: right here, wrong in (17). Reading u_1 by "
-        "the numbering of Definition 1 instead of (13) would make it 0; see sec-3.u-numbering.",
+        "the numbering of Definition 1 instead of (13) would make it 0; see sec-3.u-numbering. " + _MINUS,
     ),
     Claim(
         "cond-2.2",
@@ -125,45 +172,67 @@ CLAIMS = (
         Correction("The last inner knot of U has the index m-k+1.", (Part(row_check("end", 1), TRUE_2_2),)),
         partial(row_counterexample, "end", 1, pr.COND_2_2),
         remark="For k < 4 the printed u_{m-3} is an earlier inner knot; for k > 4 it is past the inner knots, where U "
-        "is 1 and row m-1 would fall on row m.",
+        "is 1 and row m-1 would fall on row m. " + _MISREAD + " " + _MINUS,
     ),
     Claim(
         "cond-3.1",
         _WHERE,
-        "Row 2 that makes the contact with R curvature-continuous, P_uu = alpha^4 R_ww, for every order k and k_r.",
+        "Row 2 that makes the contact with R curvature-continuous (G2) after (1.1) and (2.1), for every order k and "
+        "k_r, all knots and regular bases.",
         Verdict.FAILS,
         (
-            Reading((Part(row_check("start", 2), pr.COND_3_1),), label="u_1 and w_{k_r} - w_s as printed"),
-            Reading((Part(row_check("start", 2), pr.COND_3_1_SQUARES),), label="both squared, if the scan lost that"),
+            Reading((_normal_part("start", pr.COND_3_1),), label="u_1 and w_{k_r} - w_s as printed"),
+            Reading((_normal_part("start", pr.COND_3_1_SQUARES),), label="both squared, if the scan lost that"),
         ),
         Correction(
             "Each second difference must be one of divided differences: over u_1 and u_2 on the blend, over the first "
-            "two spans of the base on R.",
-            (Part(row_check("start", 2), TRUE_3_1),),
+            "two spans of the base on R. Along the normal the printed row, and the squared one, miss alpha^4 R_ww by "
+            "what the other two formulas say.",
+            (
+                Part(row_check("start", 2), TRUE_3_1),
+                Part(excess_check("start", pr.COND_3_1), EXCESS_3_1),
+                Part(excess_check("start", pr.COND_3_1_SQUARES), EXCESS_3_1_SQUARES),
+            ),
         ),
-        partial(row_counterexample, "start", 2, pr.COND_3_1),
+        partial(normal_counterexample, "start", (pr.COND_3_1, pr.COND_3_1_SQUARES)),
         partial(measured_rows, "start", {2: pr.COND_3_1}, _SECOND_ORDER_TEXT),
-        remark="The blend gets the base's second derivative along the normal times (w_{k_r+1} - w_s) / u_2. It happens "
-        "to hold where u_1 = u_2 = w_{k_r} - w_s = w_{k_r+1} - w_s, for instance between Bezier "
-        "surfaces over [0, 1]; but (13) asks for m >= k+1, so that U has inner knots and u_1 < u_2 unless they "
-        "coincide. With the paper's uniform u_i, u_2 = 2 u_1, and it never holds.",
+        remark="G2 leaves the part of P_uu within the tangent plane free, by (16), so the part along the normal alone "
+        "is judged. As printed it is that of the base times (w_{k_r+1} - w_s) / u_2: right for every base exactly "
+        "where w_{k_r+1} - w_s = u_2. With squares it is right exactly where (w_{k_r} - w_s) / (w_{k_r+1} - w_s) "
+        "= u_1 / u_2: with the paper's uniform u_i, where the first two spans of the base across the contact have "
+        "one length. Either reading is right, too, where R_ww has no part along the normal, as for k_r = 2 or a "
+        "base that is straight across. Why both fail: W is given, and neither equation is asked of it; a base "
+        "over [0, 1] without inner knots across, which (7) admits and Table 1 has (4 x 10 for Fig. 11, cubic), "
+        "meets neither, since u_2 = 2 u_1 < 1. "
+        + _MINUS,
     ),
     Claim(
         "cond-3.2",
         _WHERE,
-        "Row m-2 that makes the contact with S curvature-continuous, P_uu = beta^4 S_tt, for every order k and k_s.",
+        "Row m-2 that makes the contact with S curvature-continuous (G2) after (1.2) and a right row m-1, for every "
+        "order k and k_s, all knots and regular bases.",
         Verdict.FAILS,
         (
-            Reading((Part(row_check("end", 2), pr.COND_3_2),), label="1 - u_{m-3} and t_{k_s} - t_s as printed"),
-            Reading((Part(row_check("end", 2), pr.COND_3_2_SQUARES),), label="both squared, if the scan lost that"),
+            Reading((_normal_part("end", pr.COND_3_2),), label="1 - u_{m-3} and t_{k_s} - t_s as printed"),
+            Reading((_normal_part("end", pr.COND_3_2_SQUARES),), label="both squared, if the scan lost that"),
         ),
         Correction(
             "As for (3.1), with the distances of the last two inner knots of U from 1.",
-            (Part(row_check("end", 2), TRUE_3_2),),
+            (
+                Part(row_check("end", 2), TRUE_3_2),
+                Part(excess_check("end", pr.COND_3_2), EXCESS_3_2),
+                Part(excess_check("end", pr.COND_3_2_SQUARES), EXCESS_3_2_SQUARES),
+            ),
         ),
-        partial(row_counterexample, "end", 2, pr.COND_3_2),
+        partial(normal_counterexample, "end", (pr.COND_3_2, pr.COND_3_2_SQUARES)),
         partial(measured_rows, "end", {2: pr.COND_3_2}, _SECOND_ORDER_TEXT),
-        remark="Two errors in one formula: that of (3.1), and for k other than 4 the index of (2.2).",
+        remark="Two errors in one formula: that of (3.1), and for k other than 4 the index of (2.2). For k = 4 it is "
+        "right for every base exactly where t_{k_s+1} - t_s = 1 - u_{m-k}; with squares exactly where (t_{k_s} - "
+        "t_s) / (t_{k_s+1} - t_s) = (1 - u_{m-k+1}) / (1 - u_{m-k}), with uniform u_i where the first two spans "
+        "of S have one length. Why both fail: see cond-3.1. "
+        + _MISREAD
+        + " "
+        + _MINUS,
     ),
     holds_if("sec-3.sufficient-g1", _WHERE, "For all alpha, beta, (1.1), (1.2), (2.1), (2.2) suffice for G1.",
              "k = 4 (as (2.2) needs), alpha and beta are not zero, and the bases are regular along their contacts",
@@ -171,21 +240,25 @@ CLAIMS = (
              part(unconditional(row_check("end", 0)), pr.COND_1_2),
              part(unconditional(row_check("start", 1)), pr.COND_2_1),
              part(row_check("end", 1), pr.COND_2_2),
-             part(proved(shape_parameter_cases,
-                         "the normal of the blend for any regular base and alpha; the implicit equation of a base; for "
+             part(proved(partial(shape_parameter_cases, 1),
+                         "tangent planes for any regular base and alpha; the implicit equation of a base; for "
                          "alpha = 0 and a singular base an example is enough")),
              counterexample=partial(row_counterexample, "end", 1, pr.COND_2_2),
              remark="At alpha = 0 rows 0 and 1 of the blend coincide and it has no tangent plane at the contact; "
              "nothing in the method keeps the search away from there (see sec-4.unconstrained)."),
     fails("sec-3.sufficient-g2", _WHERE, "(1.1) to (3.2) together suffice for G2.",
-          *(part(row_check("start", row), getattr(pr, f"COND_{row + 1}_1")) for row in range(3)),
+          *_FIRST_TWO_ROWS, part(row_check("end", 1), pr.COND_2_2),
+          _normal_part("start", pr.COND_3_1), _normal_part("end", pr.COND_3_2),
           correction=Correction(
-              "With (3.1) and (3.2) corrected they do, for alpha and beta not zero.",
-              (Part(row_check("start", 0), pr.COND_1_1), Part(row_check("start", 1), pr.COND_2_1),
-               Part(row_check("start", 2), TRUE_3_1), Part(row_check("end", 2), TRUE_3_2))),
-          counterexample=partial(row_counterexample, "start", 2, pr.COND_3_1),
+              "For regular bases, alpha and beta not zero: (1.1), (1.2), (2.1), with (2.2), (3.1) and (3.2) corrected.",
+              (*all_rows(*_FIRST_TWO_ROWS, Part(row_check("end", 1), TRUE_2_2),
+                         Part(row_check("start", 2), TRUE_3_1), Part(row_check("end", 2), TRUE_3_2)),
+               part(proved(partial(special_contact_cases, 2),
+                           "second fundamental forms for any regular base, alpha not zero")))),
+          counterexample=partial(normal_counterexample, "start", (pr.COND_3_1, pr.COND_3_1_SQUARES)),
           consequence=partial(measured_rows, "start", {1: pr.COND_2_1, 2: pr.COND_3_1},
-                              "The made pair with rows 1 and 2 as printed, the rest as in the checked G2 blend")),
+                              "The made pair with rows 1 and 2 as printed, the rest as in the checked G2 blend"),
+          remark="When they do: k = 4 for (2.2), and what cond-3.1 and cond-3.2 say for (3.1) and (3.2)."),
     ambiguous("sec-3.parametric-c1", "Section 3, parametric continuity",
               "With alpha = beta = 1 the G1 conditions become C1 conditions.",
               Reading((part(direction_check(1), PARAMETRIC_2_1),),
@@ -195,9 +268,9 @@ CLAIMS = (
               remark="At S the parameters run the same way and P_u = S_t."),
     fails("sec-3.parametric-c2", "Section 3, parametric continuity",
           "With alpha = beta = 1 the G2 conditions become C2 conditions.",
-          part(row_check("start", 2, parametric=True), PARAMETRIC_3_1),
+          part(row_check("start", 2, "parametric"), PARAMETRIC_3_1),
           correction=Correction("With (3.1) corrected they do.",
-                                (Part(row_check("start", 2, parametric=True), TRUE_PARAMETRIC_3_1),)),
+                                (Part(row_check("start", 2, "parametric"), TRUE_PARAMETRIC_3_1),)),
           counterexample=partial(row_counterexample, "start", 2, PARAMETRIC_3_1, parametric=True),
           consequence=partial(measured_rows, "start", {2: pr.COND_3_1}, "The made pair's C2 blend, row 2 as printed",
                               "C2")),

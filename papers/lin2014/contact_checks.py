@@ -19,43 +19,45 @@ from derivations.contact import A, contact_rows, contact_rows_from_pieces
 from derivations.splines import end_derivative_step, end_derivatives, end_derivatives_from_pieces, span_symbols
 from papers.ledger import Case, Check, Counterexample, Formula, Strength
 from papers.lin2014 import printed as pr
-from papers.lin2014.exact import Meaning, interpret
+from papers.lin2014.exact import Meaning, given, interpret
 from papers.search import smallest_assignment
 
 ORDERS = range(2, 9)
 CUBIC = 4
 
 Side = Literal["start", "end"]
+# What a row is compared in: all coordinates; these with alpha = beta = 1; or, as (16) asks, the one along the normal.
+# There R_0 and R_1 are the same, since R_w, a multiple of R_1 - R_0, is tangent, and so are P_0 and P_1.
+Mode = Literal["all", "parametric", "normal"]
 
 # Symbols of corrected formulas that the paper does not print there.
 u_last, u_before = sp.symbols("u_{m-k+1} u_{m-k}", positive=True)
 w_kr1, t_ks1 = sp.symbols("w_{k_r+1} t_{k_s+1}", real=True)
 
 # For which k the printed index m - 3 is that of the last inner knot, m - k + 1.
-_SAME_INDEX = sp.solve(pr.m - 3 - (pr.m - pr.k + 1), pr.k)
+SAME_INDEX = sp.solve(pr.m - 3 - (pr.m - pr.k + 1), pr.k)
 
-_H, _BASE_H = span_symbols(3), span_symbols(2, "H")
-_ROWS = {"start": (pr.P_0, pr.P_1, pr.P_2), "end": (pr.P_m, pr.P_m1, pr.P_m2)}
-_BASE_ROWS = {"start": (pr.R_0, pr.R_1, pr.R_2), "end": (pr.S_0, pr.S_1, pr.S_2)}
+BLEND_H, BASE_H = span_symbols(3), span_symbols(2, "H")
+ROWS = {"start": (pr.P_0, pr.P_1, pr.P_2), "end": (pr.P_m, pr.P_m1, pr.P_m2)}
+BASE_ROWS = {"start": (pr.R_0, pr.R_1, pr.R_2), "end": (pr.S_0, pr.S_1, pr.S_2)}
 
 
 @cache
-def row_check(side: Side, row: int, *, parametric: bool = False) -> Check:
-    """Return the check of the condition for row 0, 1 or 2 counted from the contact at `side`.
-
-    With `parametric` alpha and beta are 1.
-    """
+def row_check(side: Side, row: int, mode: Mode = "all") -> Check:
+    """Return the check of the condition for row 0, 1 or 2 counted from the contact at `side`."""
     return Check(
-        partial(_row_cases, side, row, parametric),
+        partial(_row_cases, side, row, mode),
         Strength.SYMBOLIC_ORDER,
-        "the row from end derivatives and the chain rule for symbolic orders and knots, and from the Cox-de Boor "
+        ("what the row gives along the normal, against the one " if mode == "normal" else "the row ")
+        + "from end derivatives and the chain rule for symbolic orders and knots, and from the Cox-de Boor "
         "pieces for each pair of orders from 2 to 8"
         + (", in each of which u_{m-3} is counted from the end" if side == "end" and row else ""),
         proof=True,
-        probe=partial(_row_probe, side, parametric),
+        probe=partial(_row_probe, side, mode),
     )
 
 
+@cache
 def unconditional(check: Check) -> Check:
     """Return the check of a part that needs nothing of the condition of its claim: every instance must be true."""
 
@@ -79,42 +81,43 @@ def derivative_check(surface: Literal["P", "R"], order: int) -> Check:
 
 # Rational values without any relation between them, at which mutants are told apart.
 _PROBE = {
-    **dict(zip(_H, (sp.Rational(2, 17), sp.Rational(5, 19), sp.Rational(11, 23)), strict=True)),
-    **dict(zip(_BASE_H, (sp.Rational(7, 3), sp.Rational(31, 7)), strict=True)),
+    **dict(zip(BLEND_H, (sp.Rational(2, 17), sp.Rational(5, 19), sp.Rational(11, 23)), strict=True)),
+    **dict(zip(BASE_H, (sp.Rational(7, 3), sp.Rational(31, 7)), strict=True)),
     **{pr.alpha: sp.Rational(13, 11), pr.beta: sp.Rational(13, 11)},
-    **dict(zip(_BASE_ROWS["start"] + _BASE_ROWS["end"], map(sp.Integer, (3, 10, 29, 3, 10, 29)), strict=True)),
+    **dict(zip(BASE_ROWS["start"] + BASE_ROWS["end"], map(sp.Integer, (3, 10, 29, 3, 10, 29)), strict=True)),
     **{pr.w_s: sp.Rational(5, 7), pr.t_s: sp.Rational(5, 7)},
 }
 
 
-def _row_probe(side: Side, parametric: bool, formula: Formula) -> tuple[Any, ...]:
+def _row_probe(side: Side, mode: Mode, formula: Formula) -> tuple[Any, ...]:
     difference = formula.relation.lhs - formula.relation.rhs
     orders = ((4, 4), (5, 3), (3, 5))
-    return tuple(difference.xreplace(_probe_values(side, parametric, *pair)) for pair in orders)
+    return tuple(difference.xreplace(_probe_values(side, mode, *pair)) for pair in orders)
 
 
 @cache
-def _probe_values(side: Side, parametric: bool, k: int, k_b: int) -> dict[Any, Any]:
-    values = _symbols(side, k, k_b, _rows_from_pieces(2, k - 1, k_b - 1, side))
-    probe = _PROBE | _ONES if parametric else _PROBE
+def _probe_values(side: Side, mode: Mode, k: int, k_b: int) -> dict[Any, Any]:
+    values = letter_values(side, k, k_b, rows_from_pieces(2, k - 1, k_b - 1, side), mode)
+    probe = _PROBE | _ONES if mode == "parametric" else _PROBE
     return probe | {symbol: sp.sympify(value).subs(probe) for symbol, value in values.items()}
 
 
-def _row_cases(side: Side, row: int, parametric: bool, formula: Formula | None) -> Iterator[Case]:
-    relation = _relation(formula)
+def _row_cases(side: Side, row: int, mode: Mode, formula: Formula | None) -> Iterator[Case]:
+    relation = given(formula).relation
     _require_induction(side)
-    every = _field_values(side, parametric, 0, 0)
+    every, flat = _field_values(side, mode, 0, 0), mode == "normal"
     if not relation.has(pr.u_m3):
-        yield _row_case(relation, side, "every order", every, own=True, meets=True)
+        yield _row_case(relation, side, "every order", every, own=True, meets=True, flat=flat)
     else:
         label = "every order of the base, and of the blend as if u_{m-3} were the last inner knot, as for k = 4 alone"
-        yield _row_case(relation.xreplace({pr.u_m3: u_last}), side, label, every, own=False, meets=True)
+        yield _row_case(relation.xreplace({pr.u_m3: u_last}), side, label, every, own=False, meets=True, flat=flat)
     for k in ORDERS:
         for k_b in ORDERS:
             if k > row:
-                values = _field_values(side, parametric, k, k_b)
+                values = _field_values(side, mode, k, k_b)
                 own = k == CUBIC and k_b == CUBIC
-                yield _row_case(relation, side, f"orders {k}, {k_b}", values, own=own, meets=k in _SAME_INDEX)
+                meets = k in SAME_INDEX
+                yield _row_case(relation, side, f"orders {k}, {k_b}", values, own=own, meets=meets, flat=flat)
 
 
 @cache
@@ -125,53 +128,55 @@ def _require_induction(side: Side) -> None:
         raise ValueError(f"end derivatives at the {side}: found the step {step}, expected zero")
 
 
-def _row_case(relation: Any, side: Side, label: str, values: dict[Any, Any], *, own: bool, meets: bool) -> Case:
+def _row_case(
+    relation: Any, side: Side, label: str, values: dict[Any, Any], *, own: bool, meets: bool, flat: bool
+) -> Case:
     left, right = (interpret(x, Meaning(values)) for x in relation.args)
     difference = right - left
     if difference == 0:
         return Case(label, True, own, meets, sp.Integer(0))
     expression = difference.as_expr()
     # In the paper's own setting the residual is shown, and should be readable.
-    return Case(label, False, own, meets, difference_form(expression, _BASE_ROWS[side]) if own else expression)
+    shown = difference_form(expression, BASE_ROWS[side], flat=flat) if own else expression
+    return Case(label, False, own, meets, shown)
 
 
 @cache
-def _field_values(side: Side, parametric: bool, k: int, k_b: int) -> dict[Any, Any]:
+def _field_values(side: Side, mode: Mode, k: int, k_b: int) -> dict[Any, Any]:
     """Return what each printed letter stands for, in a field of rational functions; order 0 means every order."""
-    orders = (pr.k, _base_order(side)) if not k else (k, k_b)
+    orders = (pr.k, base_order(side)) if not k else (k, k_b)
     matrix = (
-        _rows_from_pieces(min(2, k - 1), k - 1, k_b - 1, side)
+        rows_from_pieces(min(2, k - 1), k - 1, k_b - 1, side)
         if k
-        else contact_rows(2, pr.k - 1, _H, _base_order(side) - 1, _BASE_H)
+        else contact_rows(2, pr.k - 1, BLEND_H, base_order(side) - 1, BASE_H)
     )
-    values = _symbols(side, orders[0], orders[1], matrix, parametric)
-    letters = [*_H, *_BASE_H, *_BASE_ROWS[side], pr.alpha, pr.beta, pr.w_s, pr.t_s, pr.k, pr.k_r, pr.k_s]
+    values = letter_values(side, orders[0], orders[1], matrix, mode)
+    letters = [*BLEND_H, *BASE_H, *BASE_ROWS[side], pr.alpha, pr.beta, pr.w_s, pr.t_s, pr.k, pr.k_r, pr.k_s]
     field = sp.QQ.frac_field(*letters)
     return {s: field.from_sympy(sp.sympify(x)) for s, x in ({s: s for s in letters} | values).items()}
 
 
-def _relation(formula: Formula | None) -> Any:
-    if formula is None:
-        raise ValueError("formula: found None, expected a relation")
-    return formula.relation
-
-
-def _base_order(side: Side) -> Any:
+def base_order(side: Side) -> Any:
+    """Return k_r or k_s."""
     return pr.k_r if side == "start" else pr.k_s
 
 
 @cache
-def _rows_from_pieces(order: int, degree: int, base_degree: int, side: Side) -> sp.Matrix:
+def rows_from_pieces(order: int, degree: int, base_degree: int, side: Side) -> sp.Matrix:
+    """Return the matrix of contact rows from the Cox-de Boor pieces, once."""
     return contact_rows_from_pieces(order, degree, base_degree, side)
 
 
-def _symbols(side: Side, k: Any, k_b: Any, matrix: sp.Matrix, parametric: bool = False) -> dict[Any, Any]:
+def letter_values(side: Side, k: Any, k_b: Any, matrix: sp.Matrix, mode: Mode = "all") -> dict[Any, Any]:
     """Return what each printed letter stands for: knots as distances from the contact, blend rows by the oracle."""
-    shape = sp.Integer(1) if parametric else pr.alpha if side == "start" else pr.beta
-    base = _BASE_ROWS[side]
+    shape = sp.Integer(1) if mode == "parametric" else pr.alpha if side == "start" else pr.beta
+    base = BASE_ROWS[side]
     rows = matrix.subs(A, shape**2) * sp.Matrix(base[: matrix.cols])
-    values = dict(zip(_ROWS[side], rows, strict=False)) | {_base_order(side): sp.sympify(k_b), pr.k: sp.sympify(k)}
-    h, b = _H, _BASE_H
+    values = dict(zip(ROWS[side], rows, strict=False)) | {base_order(side): sp.sympify(k_b), pr.k: sp.sympify(k)}
+    if mode == "normal":
+        flat = {base[1]: base[0]}
+        values = {s: sp.expand(x.subs(flat)) for s, x in values.items()} | flat
+    h, b = BLEND_H, BASE_H
     if side == "start":
         return values | {pr.u_1: h[0], pr.u_2: h[1], pr.w_kr: pr.w_s + b[0], w_kr1: pr.w_s + b[1]}
     values |= {u_last: 1 - h[0], u_before: 1 - h[1], pr.t_ks: pr.t_s + b[0], t_ks1: pr.t_s + b[1]}
@@ -183,7 +188,7 @@ def _symbols(side: Side, k: Any, k_b: Any, matrix: sp.Matrix, parametric: bool =
 
 
 def _derivative_cases(surface: Literal["P", "R"], order: int, formula: Formula | None) -> Iterator[Case]:
-    relation = _relation(formula)
+    relation = given(formula).relation
     is_blend = surface == "P"
     rows = (pr.P_0, pr.P_1, pr.P_2) if is_blend else (pr.R_0, pr.R_1, pr.R_2)
     k = pr.k if is_blend else pr.k_r
@@ -206,23 +211,24 @@ def _derivative_probe(formula: Formula) -> tuple[Any, ...]:
     relation = formula.relation
     found = []
     for number in (3, 4, 5):
-        values = _PROBE | {pr.u_1: _PROBE[_H[0]], pr.u_2: _PROBE[_H[1]], pr.k: number, pr.k_r: number}
-        values |= {pr.w_kr: pr.w_s + _PROBE[_H[0]], w_kr1: pr.w_s + _PROBE[_H[1]]}
-        values |= dict(zip(_ROWS["start"], map(sp.Integer, (2, 7, 31)), strict=True))
+        values = _PROBE | {pr.u_1: _PROBE[BLEND_H[0]], pr.u_2: _PROBE[BLEND_H[1]], pr.k: number, pr.k_r: number}
+        values |= {pr.w_kr: pr.w_s + _PROBE[BLEND_H[0]], w_kr1: pr.w_s + _PROBE[BLEND_H[1]]}
+        values |= dict(zip(ROWS["start"], map(sp.Integer, (2, 7, 31)), strict=True))
         numbers = {s: sp.sympify(x).xreplace(_PROBE) for s, x in values.items()}
         # The derivative itself, on the left, stays a letter.
         found.append((relation.lhs - relation.rhs).xreplace(numbers))
     return tuple(found)
 
 
-def difference_form(expression: Any, rows: tuple[Any, ...]) -> Any:
+def difference_form(expression: Any, rows: tuple[Any, ...], *, flat: bool = False) -> Any:
     """Return an expression, linear in control rows, by differences of neighbouring rows and powers of alpha, beta.
 
-    Each coefficient is factored, so that equal things look the same and zero is literally 0.
+    Each coefficient is factored, so that equal things look the same and zero is literally 0. With `flat` the first two
+    rows are the same, and the second one does not occur.
     """
     first, second, third = rows
     d1, d2 = sp.Symbol(f"({second}-{first})"), sp.Symbol(f"({third}-{second})")
-    moved = expression.subs({second: first + d1, third: first + d1 + d2}, simultaneous=True)
+    moved = expression.subs({second: first + d1, third: first + d2 + (0 if flat else d1)}, simultaneous=True)
     numerator, denominator = sp.fraction(sp.together(moved))
     generators = (first, d1, d2, pr.alpha, pr.beta)
     polynomial = sp.Poly(numerator, *generators)
@@ -250,21 +256,21 @@ def row_counterexample(side: Side, row: int, formula: Formula, *, parametric: bo
 
 
 _ONES = {pr.alpha: sp.Integer(1), pr.beta: sp.Integer(1)}
-_OWN_KNOTS = {_H[0]: sp.Rational(1, 3), _H[1]: sp.Rational(2, 3), _H[2]: sp.Integer(1)}
+_OWN_KNOTS = {BLEND_H[0]: sp.Rational(1, 3), BLEND_H[1]: sp.Rational(2, 3), BLEND_H[2]: sp.Integer(1)}
 
 
 def _counterexample_at(
     side: Side, row: int, formula: Formula, orders: tuple[int, int], fixed: dict[Any, Any]
 ) -> Counterexample | None:
     degree = orders[0] - 1
-    values = _symbols(side, *orders, _rows_from_pieces(min(2, degree), degree, orders[1] - 1, side))
-    wrong = _relation(formula).rhs.subs(values, simultaneous=True).subs(fixed)
-    true = values[_ROWS[side][row]].subs(fixed)
+    values = letter_values(side, *orders, rows_from_pieces(min(2, degree), degree, orders[1] - 1, side))
+    wrong = given(formula).relation.rhs.subs(values, simultaneous=True).subs(fixed)
+    true = values[ROWS[side][row]].subs(fixed)
     found = _smallest_difference(wrong, true)
     if found is None:
         return None
-    names = zip(("k", str(_base_order(side))), map(str, orders), strict=True)
-    at = _named(side, {h: x for h, x in fixed.items() if h != _H[2] and h not in _ONES} | found)
+    names = zip(("k", str(base_order(side))), map(str, orders), strict=True)
+    at = named(side, {h: x for h, x in fixed.items() if h != BLEND_H[2] and h not in _ONES} | found)
     return Counterexample((*names, *at), str(wrong.subs(found)), str(true.subs(found)))
 
 
@@ -272,8 +278,8 @@ def _smallest_difference(wrong: Any, true: Any) -> dict[Any, Any] | None:
     residual = sp.numer(sp.together(wrong - true))
     if sp.expand(residual) == 0:
         return None
-    h = [x for x in _H if wrong.has(x) or true.has(x)]
-    b = [x for x in _BASE_H if wrong.has(x) or true.has(x)]
+    h = [x for x in BLEND_H if wrong.has(x) or true.has(x)]
+    b = [x for x in BASE_H if wrong.has(x) or true.has(x)]
     others = sorted((wrong - true).free_symbols - set(h) - set(b), key=str)
     symbols = [*h, *b, *others]
     evaluate = sp.lambdify(symbols, residual, "math")
@@ -287,13 +293,13 @@ def _smallest_difference(wrong: Any, true: Any) -> dict[Any, Any] | None:
     return smallest_assignment(symbols, counts)
 
 
-def _named(side: Side, at: dict[Any, Any]) -> tuple[tuple[str, str], ...]:
+def named(side: Side, at: dict[Any, Any]) -> tuple[tuple[str, str], ...]:
     """Return an instance in the paper's letters."""
     if side == "start":
-        names = {_H[0]: "u_1", _H[1]: "u_2", _BASE_H[0]: "w_{k_r} - w_s", _BASE_H[1]: "w_{k_r+1} - w_s"}
+        names = {BLEND_H[0]: "u_1", BLEND_H[1]: "u_2", BASE_H[0]: "w_{k_r} - w_s", BASE_H[1]: "w_{k_r+1} - w_s"}
     else:
-        names = dict(zip(_H, ("1 - u_{m-k+1}", "1 - u_{m-k}", "1 - u_{m-k-1}"), strict=True))
-        names |= {_BASE_H[0]: "t_{k_s} - t_s", _BASE_H[1]: "t_{k_s+1} - t_s"}
+        names = dict(zip(BLEND_H, ("1 - u_{m-k+1}", "1 - u_{m-k}", "1 - u_{m-k-1}"), strict=True))
+        names |= {BASE_H[0]: "t_{k_s} - t_s", BASE_H[1]: "t_{k_s+1} - t_s"}
     return tuple((names.get(symbol, str(symbol)), str(value)) for symbol, value in at.items())
 
 
@@ -303,11 +309,12 @@ def derivative_counterexample(surface: Literal["P", "R"], order: int, formula: F
     rows = (pr.P_0, pr.P_1, pr.P_2) if is_blend else (pr.R_0, pr.R_1, pr.R_2)
     for k in range(2, ORDERS[-1] + 1):
         true = (end_derivatives_from_pieces(2, k - 1)[order, :] * sp.Matrix(rows))[0]
-        knots = {pr.u_1: _H[0], pr.u_2: _H[1], pr.w_kr: pr.w_s + _H[0], w_kr1: pr.w_s + _H[1], pr.k: k, pr.k_r: k}
+        h1, h2, _ = BLEND_H
+        knots = {pr.u_1: h1, pr.u_2: h2, pr.w_kr: pr.w_s + h1, w_kr1: pr.w_s + h2, pr.k: k, pr.k_r: k}
         wrong = formula.relation.rhs.subs(knots, simultaneous=True)
         found = _smallest_difference(wrong, true)
         if found is not None:
-            values = (("k" if is_blend else "k_r", str(k)), *_named("start", found))
+            values = (("k" if is_blend else "k_r", str(k)), *named("start", found))
             return Counterexample(values, str(wrong.subs(found)), str(true.subs(found)))
     return None
 
@@ -315,19 +322,19 @@ def derivative_counterexample(surface: Literal["P", "R"], order: int, formula: F
 def mirror_check(row: int) -> Check:
     """Return the check of (1.2), (2.2) or (3.2): the printed row at R, mirrored at u = 1/2 and with S for R."""
     at_r = (pr.COND_1_1, pr.COND_2_1, pr.COND_3_1)[row].relation
-    names = dict(zip(_ROWS["start"] + _BASE_ROWS["start"], _ROWS["end"] + _BASE_ROWS["end"], strict=True))
+    names = dict(zip(ROWS["start"] + BASE_ROWS["start"], ROWS["end"] + BASE_ROWS["end"], strict=True))
     names |= {pr.alpha: pr.beta, pr.k_r: pr.k_s, pr.w_kr: pr.t_ks, pr.w_s: pr.t_s, pr.u_1: 1 - u_last}
 
     def cases(formula: Formula | None) -> Iterator[Case]:
-        relation = _relation(formula)
+        relation = given(formula).relation
         left, right = (side.xreplace(names) for side in at_r.args)
         for k in (pr.k, *range(max(row + 1, ORDERS[0]), ORDERS[-1] + 1)):
             every = k is pr.k
-            last = {pr.u_m3: u_last} if every or k in _SAME_INDEX else {}
+            last = {pr.u_m3: u_last} if every or k in SAME_INDEX else {}
             left_s, right_s = (side.xreplace(last) for side in relation.args)
             residual = sp.expand(((right_s - left_s) - (right - left)).subs(pr.k, k))
             # The last row, which is that of S, has no knot.
-            meets = every or k in _SAME_INDEX or row == 0
+            meets = every or k in SAME_INDEX or row == 0
             label = "every k, as if u_{m-3} were the last inner knot, as for k = 4 alone" if every else f"k = {k}"
             yield Case(label, bool(residual == 0), own=k == CUBIC, meets=meets, residual=residual)
 

@@ -20,7 +20,7 @@ from derivations.problem import ExactBase, blend_problem, exact_minimum
 from derivations.splines import X, end_derivatives
 from papers.ledger import Case, Formula
 from papers.lin2014 import printed as pr
-from papers.lin2014.exact import Meaning, clamped, difference_case
+from papers.lin2014.exact import Meaning, clamped, difference_case, given
 
 CUBIC = 4
 
@@ -95,11 +95,10 @@ def gram_entry_cases(formula: Formula | None) -> Iterator[Case]:
     matrix, index = _gram()
     free = [n for n, (i, _) in enumerate(index) if i == 3]
     pairs = [(r, c) for r in free for c in free] + [(r, c) for r in range(len(index)) for c in range(0, len(index), 5)]
-    given = _given(formula)
     for r, c in pairs:
         (i, j), (other, at) = index[r], index[c]
         label = f"control points {i},{j} and {other},{at}"
-        yield difference_case(given, label, Meaning(_entry_values(i, j, other, at, matrix[r, c])))
+        yield difference_case(given(formula), label, Meaning(_entry_values(i, j, other, at, matrix[r, c])))
 
 
 def _entry_values(i: int, j: int, other: int, at: int, true: Any) -> dict[Any, Any]:
@@ -144,16 +143,16 @@ def integrals_vanish_cases() -> Iterator[Case]:
 
 def density_cases(formula: Formula | None) -> Iterator[Case]:
     """Decide the integrand of (11): the thin-plate density, which a rotation of (u, v) does not change."""
-    given = _given(formula)
+    relation = given(formula).relation
     names = {sp.Symbol(str(s)): s for s in (pr.P_uu, pr.P_uv, pr.P_vv)}
     true = thin_plate_density().subs(names)
-    yield Case("thin plate", (residual := sp.expand(given.relation.rhs - true)) == 0, residual=residual)
+    yield Case("thin plate", (residual := sp.expand(relation.rhs - true)) == 0, residual=residual)
     half = sp.Symbol("t", real=True)
     c, s = (1 - half**2) / (1 + half**2), 2 * half / (1 + half**2)
     hessian = sp.Matrix([[pr.P_uu, pr.P_uv], [pr.P_uv, pr.P_vv]])
     turned = sp.Matrix([[c, -s], [s, c]]) * hessian * sp.Matrix([[c, s], [-s, c]])
     values = {pr.P_uu: turned[0, 0], pr.P_uv: turned[0, 1], pr.P_vv: turned[1, 1]}
-    change = sp.cancel(given.relation.rhs.subs(values, simultaneous=True) - given.relation.rhs)
+    change = sp.cancel(relation.rhs.subs(values, simultaneous=True) - relation.rhs)
     yield Case("rotation by every angle, t the tangent of its half", change == 0, residual=change)
 
 
@@ -282,9 +281,9 @@ def middle_knot_energies() -> tuple[Any, Any]:
 
 def strain_cases(formula: Formula | None) -> Iterator[Case]:
     """Decide the integrand of the strain energy: the measure of a surface must not depend on its parametrisation."""
-    given = _given(formula)
+    relation = given(formula).relation
     scale = sp.Symbol("c", positive=True)
-    density = given.relation.rhs
+    density = relation.rhs
     # Under u -> u/c the area element becomes c times as large and the range 1/c as long.
     change = sp.factor(density.subs(pr.area, scale * pr.area) / scale - density)
     yield Case("u replaced by u / c", change == 0, residual=change)
@@ -303,9 +302,3 @@ def isometric_cases() -> Iterator[Case]:
         plate = sp.simplify(sum(c * x.dot(x) for c, x in zip((1, 2, 1), second, strict=True)))
         curvature = {"plane": sp.Integer(0), "cylinder of radius 2": sp.Rational(1, 4)}[label]
         yield Case(label, sp.simplify(plate - curvature) == 0)
-
-
-def _given(formula: Formula | None) -> Formula:
-    if formula is None:
-        raise ValueError("formula: found None, expected a relation")
-    return formula

@@ -41,6 +41,19 @@ class Meaning:
     functions: Mapping[str, Any] = field(default_factory=dict)
 
 
+def given(formula: Formula | None) -> Formula:
+    """Return the formula that a check was handed.
+
+    Raises
+    ------
+    ValueError
+        There is none: the check decides relations only.
+    """
+    if formula is None:
+        raise ValueError("formula: found None, expected a relation")
+    return formula
+
+
 def interpret(expression: Any, meaning: Meaning) -> Any:
     """Return the exact value of an expression of sums, products, powers, binomials, indexed letters and functions.
 

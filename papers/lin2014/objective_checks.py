@@ -21,7 +21,7 @@ from papers.lin2014 import energy_checks as energy
 from papers.lin2014 import geometry_checks as geometry
 from papers.lin2014 import printed as pr
 from papers.lin2014.abstract import coefficient
-from papers.lin2014.exact import Meaning, difference_case
+from papers.lin2014.exact import Meaning, difference_case, given
 from papers.lin2014.property_checks import identity_cases, premises
 
 # One row of (14): blocks A and B, unknown X and known N control points.
@@ -50,7 +50,7 @@ def gram_entry_cases(formula: Formula | None) -> Iterator[Case]:
     Each term of the integrand is a function of u times one of v, so that its integral is a product A_d G_e (Fubini).
     Letters of single integrals stand for themselves: no product of them is an integral of products.
     """
-    relation = _given(formula).relation
+    relation = given(formula).relation
     n, b = _N, _B
     of_u = {pr.A_0: n[0][0] * n[1][0], pr.A_1: n[0][1] * n[1][1], pr.A_2: n[0][2] * n[1][2], pr.A_10: n[0][1] * n[1][0]}
     of_v = {pr.G_0: b[0][0] * b[1][0], pr.G_1: b[0][1] * b[1][1], pr.G_2: b[0][2] * b[1][2], pr.G_12: b[0][1] * b[1][2]}
@@ -129,7 +129,7 @@ def minimum_check(order: int) -> Check:
 
 def normal_equation_cases(formula: Formula | None) -> Iterator[Case]:
     """Decide A X = -B N in row r: the stationarity condition, its control points sorted into free and known ones."""
-    relation = _given(formula).relation
+    relation = given(formula).relation
     place = sp.Symbol("a", integer=True, nonnegative=True)
     condition = stationarity_condition()
     matrix, points = sp.IndexedBase("K"), sp.IndexedBase("P")
@@ -157,9 +157,9 @@ def degree_check(order: int, geometric: bool) -> Check:
 
     def cases(formula: Formula | None) -> Iterator[Case]:
         value = objective_degree(order, geometric)
-        yield difference_case(_given(formula), "every order, knots and count", Meaning({pr.degree: value}))
+        yield difference_case(given(formula), "every order, knots and count", Meaning({pr.degree: value}))
         instance = energy.substituted(order, geometric).total_degree()
-        yield difference_case(_given(formula), "k = 4, one middle curve, a strip", Meaning({pr.degree: instance}))
+        yield difference_case(given(formula), "k = 4, one middle curve, a strip", Meaning({pr.degree: instance}))
 
     return Check(
         cases,
@@ -192,26 +192,13 @@ def objective_degree(order: int, geometric: bool) -> int:
     return int(max(in_points, total_degrees(degrees[-1], degrees[-1])[1]))
 
 
-def regular_cases() -> Iterator[Case]:
-    """Yield that P_u = -a R_w keeps the tangent plane of any base, and has one where a is not zero and R is regular."""
-    r_w, r_v = (sp.Matrix(sp.symbols(f"{name}_x:z")) for name in ("R_w", "R_v"))
-    residual = ((-A * r_w).cross(r_v) + A * r_w.cross(r_v)).expand()
-    yield Case("every base and alpha: the normal of P is -alpha^2 times that of R", bool(residual.is_zero_matrix))
-
-
-def shape_parameter_cases() -> Iterator[Case]:
-    """Yield that P_u = -alpha^2 R_w is G1 for every alpha but 0 and every regular base, and instances."""
-    yield from premises(regular_cases())
-    yield from geometry.shape_parameter_cases(1)
-
-
 def single_minimum_of_shape_cases() -> Iterator[Case]:
-    """Yield why the blend of least energy is G1 where its a and b are positive, and plates on both sides of that.
+    """Yield why a blend with positive a and b is G1, and plates whose least energy has such a and b, or has not.
 
-    The normal of P is -a times that of R; plates that face each other have positive a and b over every
-    gap, by which the whole figure is scaled.
+    Plates that face each other have positive a and b over every gap, by which the whole figure is scaled. That a least
+    energy exists for any two bases is not shown.
     """
-    yield from premises(regular_cases())
+    yield from premises(geometry.special_contact_cases(1))
     a, b, gap = sp.symbols("a b d", positive=True)
     strip = energy.end_energy(4, 6, (0, a, 0, gap, b, 0))
     best = sp.solve([sp.diff(strip, a), sp.diff(strip, b)], [a, b], dict=True)[0]
@@ -221,10 +208,9 @@ def single_minimum_of_shape_cases() -> Iterator[Case]:
 
 SHAPE_CHECK = Check(
     lambda _: single_minimum_of_shape_cases(),
-    Strength.SYMBOLIC_ORDER,
-    "the normal of the blend along the contact for any base; plates over any gap, the energy an exact polynomial in "
-    "alpha^2, beta^2; for what the condition excludes an example is enough",
-    proof=True,
+    Strength.RATIONAL,
+    "checked on plates, the energy an exact polynomial in alpha^2, beta^2; that positive alpha^2, beta^2 mean G1 is "
+    "proved for any base",
 )
 
 
@@ -271,7 +257,7 @@ def isometric_cases(formula: Formula | None) -> Iterator[Case]:
     With E = G = 1, F = 0 second derivatives are normal and are the entries of the shape operator, whose eigenvalues the
     principal curvatures are.
     """
-    relation = _given(formula).relation
+    relation = given(formula).relation
     operator = sp.Matrix([[pr.P_uu, pr.P_uv], [pr.P_uv, pr.P_vv]])
     curvatures = [value for value, times in operator.eigenvals().items() for _ in range(times)]
     values = dict(zip((pr.kappa_1, pr.kappa_2), curvatures, strict=True))
@@ -299,7 +285,7 @@ def direction_check(sign: int) -> Check:
     """Return the check of row 1 with alpha = 1 against P_u = `sign` R_w, for every order and knots."""
 
     def cases(formula: Formula | None) -> Iterator[Case]:
-        relation = _given(formula).relation
+        relation = given(formula).relation
         h, base_h = span_symbols(1)[0], span_symbols(1, "H")[0]
         printed = (relation.rhs - relation.lhs + pr.P_1).subs({pr.u_1: h, pr.w_kr: pr.w_s + base_h})
         residual = sp.factor(printed - _row_by_direction(sign))
@@ -316,9 +302,3 @@ def _row_by_direction(sign: int) -> Any:
     slope_r = end_derivatives(1, pr.k_r - 1, span_symbols(1, "H"))[1, :] * sp.Matrix([pr.R_0, pr.R_1])
     (row,) = sp.solve(slope_p[0] - sign * slope_r[0], pr.P_1)
     return row
-
-
-def _given(formula: Formula | None) -> Formula:
-    if formula is None:
-        raise ValueError("formula: found None, expected a relation")
-    return formula

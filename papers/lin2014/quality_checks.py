@@ -15,6 +15,7 @@ from sympy import Eq
 from papers.ledger import Case, Counterexample, Formula
 from papers.lin2014 import energy_checks as energy
 from papers.lin2014 import printed as pr
+from papers.lin2014.exact import given
 from papers.search import smallest_assignment
 
 CUBIC = 4
@@ -49,13 +50,13 @@ def fewer_cases(formula: Formula | None) -> Iterator[Case]:
         ("a slope that stops", (0, 1, 0, 0, 0, 0)),
         ("curvature at both ends", (0, 0, 1, 0, 0, 1)),
     ):
-        few, more = (side.subs(least_energies(*map(sp.Integer, data))) for side in _relation(formula).args)
+        few, more = (side.subs(least_energies(*map(sp.Integer, data))) for side in given(formula).relation.args)
         yield Case(f"{label}: 6 against 7 rows", bool(few <= more), residual=sp.Max(few - more, 0))
 
 
 def difference_cases(formula: Formula | None) -> Iterator[Case]:
     """Decide the difference of the least energies for all contact data, and that it is never negative."""
-    left, right = _relation(formula).args
+    left, right = given(formula).relation.args
     residual = sp.expand(right - left.subs(least_energies(*DATA)))
     yield Case("any contact data", residual == 0, residual=residual)
     form = sp.hessian(right, DATA)
@@ -67,7 +68,7 @@ def nested_cases(formula: Formula | None) -> Iterator[Case]:
 
     More control points are added one after another; where h is zero so is g, and nothing is gained.
     """
-    left, right = _relation(formula).args
+    left, right = given(formula).relation.args
     x, c = sp.symbols("x c", real=True)
     value = c + 2 * _G * x + _H * x**2
     (best,) = sp.solve(value.diff(x), x)
@@ -87,9 +88,3 @@ def fewer_counterexample() -> Counterexample | None:
     return Counterexample(
         values, f"energy {none.subs(found)} with 6 rows is the least", f"{one.subs(found)} with 7 rows is less"
     )
-
-
-def _relation(formula: Formula | None) -> Any:
-    if formula is None:
-        raise ValueError("formula: found None, expected a relation")
-    return formula.relation

@@ -24,6 +24,7 @@ from papers.lin2014.exact import (
     clamped,
     de_boor,
     difference_case,
+    given,
     indexed,
     net_ring,
     rational_points,
@@ -101,7 +102,7 @@ def triangle_cases() -> Iterator[Case]:
 
 def _coefficient_case(formula: Formula | None, unit: Any, true: Any) -> Case:
     """Decide a printed sum for every order, knots and counts: what multiplies one control point."""
-    residual = sp.factor_terms(coefficient(_formula(formula).relation.rhs, unit) - true)
+    residual = sp.factor_terms(coefficient(given(formula).relation.rhs, unit) - true)
     return Case(f"every order, knots and count: factor of {unit}", bool(residual == 0), residual=residual)
 
 
@@ -112,7 +113,7 @@ def _curve_factor(i: Any) -> Any:
 
 def surface_cases(formula: Formula | None) -> Iterator[Case]:
     """Decide (1), (3) or (13): the printed sum against the triangle, for all control points at once."""
-    by_curves = _formula(formula).relation.rhs.has(pr.C)
+    by_curves = given(formula).relation.rhs.has(pr.C)
     across = WITHIN(0, _A, pr.m) * pr.B(_A, pr.k, pr.u, pr.U)
     true = across if by_curves else across * _curve_factor(_A)
     yield _coefficient_case(formula, pr.C(_A, pr.v) if by_curves else pr.P[_A, _B], true)
@@ -137,12 +138,12 @@ def surface_instances(formula: Formula | None) -> Iterator[Case]:
                 },
             )
             label = f"orders {sample.k}, {sample.l} at u = {u}, v = {v}"
-            yield difference_case(_formula(formula), label, meaning, own=sample.k == sample.l == CUBIC)
+            yield difference_case(given(formula), label, meaning, own=sample.k == sample.l == CUBIC)
 
 
 def curve_cases(formula: Formula | None) -> Iterator[Case]:
     """Decide (2), a v-control curve, against the triangle."""
-    i = _formula(formula).relation.lhs.args[0]
+    i = given(formula).relation.lhs.args[0]
     yield _coefficient_case(formula, pr.P[_A, _B], SAME(i, _A) * _curve_factor(i))
     yield from triangle_cases()
     yield from curve_instances(formula)
@@ -163,7 +164,7 @@ def curve_instances(formula: Formula | None) -> Iterator[Case]:
                 },
             )
             label = f"curve {i}, order {sample.l}, {sample.sizes[i]} points, at v = {v}"
-            yield difference_case(_formula(formula), label, meaning, own=sample.l == CUBIC)
+            yield difference_case(given(formula), label, meaning, own=sample.l == CUBIC)
 
 
 def base_cases(letter: str) -> Callable[[Formula | None], Iterator[Case]]:
@@ -197,7 +198,7 @@ def base_cases(letter: str) -> Callable[[Formula | None], Iterator[Case]]:
                         "Y": lambda *_, value=value: value,
                     },
                 )
-                yield difference_case(_formula(formula), f"orders {k}, {length} at {at}, {v}", meaning)
+                yield difference_case(given(formula), f"orders {k}, {length} at {at}, {v}", meaning)
 
     return cases
 
@@ -214,12 +215,6 @@ def _within(i: Any, m: int) -> int:
     if not 0 <= i <= m:
         raise UndefinedError(f"curve {i} of 0..{m}")
     return int(i)
-
-
-def _formula(formula: Formula | None) -> Formula:
-    if formula is None:
-        raise ValueError("formula: found None, expected a relation")
-    return formula
 
 
 @dataclass(frozen=True)
@@ -242,11 +237,11 @@ def count_check(counting: Counting, method: str) -> Check:
     """Return a check of a relation between counts."""
 
     def cases(formula: Formula | None) -> Iterator[Case]:
-        relation = _formula(formula).relation
+        relation = given(formula).relation
         residual = sp.expand((relation.rhs - relation.lhs).subs(counting.exact))
         yield Case("every order and count", residual == 0, residual=residual)
         for label, values, own in counting.instances():
-            yield difference_case(_formula(formula), label, Meaning(values), own=own)
+            yield difference_case(given(formula), label, Meaning(values), own=own)
 
     return Check(cases, Strength.SYMBOLIC_ORDER, method, proof=True)
 
