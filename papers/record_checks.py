@@ -44,7 +44,7 @@ def _problems(claim: Claim) -> Iterator[str]:
 def _check_problems(check: Check) -> Iterator[str]:
     if not check.method.strip():
         yield "a check without a method, expected what is compared with what"
-    if not isinstance(check.strength, Strength):
+    if check.strength not in list(Strength):
         yield f"strength {check.strength!r}, expected one of {', '.join(Strength.__members__)}"
     elif check.proof and check.strength is Strength.FLOAT:
         yield "a proof in floating point, expected an exact one, or a check that is none"

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from papers.ledger import Case, Check, Claim, Reading, Strength
 from papers.lin2014 import blending_checks as blending
 from papers.lin2014 import figure_checks as figures
+from papers.lin2014 import hartmann_checks as hartmann
 from papers.lin2014 import printed as pr
 from papers.lin2014 import related_checks as related
 from papers.lin2014.claims_3_conditions import TRUE_3_1
@@ -36,9 +37,16 @@ CLAIMS: tuple[Claim, ...] = (
                       label="what the representation can do, with the right conditions"),
               Reading((part(row_check("start", 2), pr.COND_3_1),),
                       label="what the conditions as printed do")),
-    holds("sec-1.superfluous-knots", "Section 1", "Giving both contact curves the same knots adds control points.",
+    not_checkable("sec-0.validated", "Abstract", "The examples validate that the method is effective and efficient.",
+                  "no measure of either is named, and the control points of the examples are not printed; what rivals "
+                  "do on bases of our own is in the study's findings"),
+    holds("sec-1.superfluous-knots", "Section 1",
+          "Giving contact curves with different knots the same ones by knot insertion adds control points.",
+          part(proved(figures.added_cases, "multiplicities of any knot in both vectors and in their union")),
           part(proved(figures.superfluous_cases, "rows on their own knots and on the union, all printed pairs",
-                      Strength.RATIONAL))),
+                      Strength.RATIONAL)),
+          remark="To each curve as many as the other one has knots that it lacks: none to a curve whose knots contain "
+          "the other's. How many are lots is not said."),
     holds("sec-1.knot-insertion", "Section 1", "Knot insertion makes the knots of both contact curves identical.",
           part(proved(blending.nested_space_cases,
                       "knot insertion by induction on the order, every order and knots; spline spaces over the "
@@ -61,18 +69,22 @@ CLAIMS: tuple[Claim, ...] = (
     holds("sec-1.cubic", _RELATED, "A cubic blend with inner knots does the same.",
           part(proved(related.cubic_cases, "determinant of the end derivatives of a cubic, any inner knots"))),
     holds("sec-1.hartmann-contact", _RELATED, "Hartmann's combination of two bases is G^n.",
-          part(proved(related.hartmann_contact_cases, "derivatives of f at the ends, n = 1 to 3", Strength.EACH_ORDER)),
-          remark="For f = mu (1-t)^(n+1) / (mu (1-t)^(n+1) + (1-mu) t^(n+1)), well known; [17] itself is not here."),
+          part(proved(hartmann.hartmann_contact_cases,
+                      "derivatives of X up to order n at both contacts, every n and mu")),
+          remark="For f = mu (1-t)^(n+1) / (mu (1-t)^(n+1) + (1-mu) t^(n+1)), well known; [17] itself is not here. "
+          "X is even C^n with its pieces, hence G^n where these are regular and join the bases so."),
     ambiguous("sec-1.hartmann-nurbs", _RELATED, "Such a blend can be written as NURBS only approximately.",
               Reading((part(proved(related.sine_base_cases,
                                    "solving for a base with a sine, which is no quotient of polynomials")),),
                       label="for parametric bases in general"),
-              Reading((part(proved(related.hartmann_rational_cases, "numerator and denominator, every n and mu")),),
+              Reading((part(proved(hartmann.hartmann_rational_cases, "numerator and denominator, every n and mu")),),
                       label="for B-spline bases with a common parameter"),
               remark="f is rational with a positive denominator: for spline bases the blend is exactly rational, of "
               "degree p + n + 1 across."),
     not_checkable("sec-1.bezier-shapes", _RELATED, "[9, 10] reach C1 G2 by moving control points.", _OTHERS),
     not_checkable("sec-1.ref-13", _RELATED, "[13] needs equal knot vectors and reaches just G1 (or C1).", _OTHERS),
+    not_checkable("sec-1.only-work", _RELATED, "Only [13] blends two B-spline surfaces with a B-spline surface.",
+                  "what the authors knew. P. Kiciak's bicubic B-spline blending patches, CAD 43 (2011), do so too"),
     not_checkable("sec-1.few-g2-methods", _RELATED, "Few methods give G2 or higher parametric blends [1].", _OTHERS),
     not_checkable("sec-1.pde", _RELATED, "PDE blends [14, 15] are usually found by numerical approximation.", _OTHERS),
     not_checkable("sec-1.ref-16", _RELATED, "[16] needs derivatives that may be hard to compute exactly.", _OTHERS),

@@ -68,6 +68,15 @@ SIZE = {
     for figure, pair in SIZES.items()
 }
 CONE_COUNTS_11 = _printed("N", Numbers(*CONE_COUNTS))
+# Middle curves of Figs. 5, 6, 8 to 11, as section 5 begins; for Figs. 10 and 11 their own paragraphs say it again.
+_COUNTS = Numbers(1, 1, 1, 1, 0, 0)
+NO_MIDDLE_CURVE_AGAIN = ("fig-10", "fig-11")
+MIDDLE_CURVES = _printed(
+    "N",
+    _COUNTS,
+    "that this figure has a middle curve is said once, and no printed number depends on it",
+    [x for x in number_changes(_COUNTS) if set(x) <= {0, 1} and x[4:] == _COUNTS[4:]],
+)
 
 # Fig. 3: x is the argument of the Bernstein polynomials. Control values between the first and the last one only bend a
 # curve.

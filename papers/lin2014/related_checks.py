@@ -1,4 +1,4 @@
-"""Deciding what the paper says of other methods and of measures: Hartmann, rolling balls, Hermite, curvature."""
+"""Deciding what the paper says of other methods: rolling balls, Hermite blends with Bezier and C-curves."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from typing import Any
 import sympy as sp
 
 from derivations.splines import end_derivatives, span_symbols
-from papers.ledger import Case, Formula
+from papers.ledger import Case, Formula, given
 from papers.lin2014 import printed as pr
 from papers.lin2014.blending_checks import PRINTED_PAIRS, printed_pair
 from papers.lin2014.property_checks import contained, union
@@ -27,56 +27,6 @@ SECTION_SQUARED = Formula(
 )
 
 
-def hull_cases() -> Iterator[Case]:
-    """Yield that f(t) of Hartmann's blend and 1 - f(t) are not negative on [0, 1] and sum to 1, for every n and mu.
-
-    With x = 1 - t and y = t, both positive inside (0, 1), and mu, nu = 1 - mu positive.
-    """
-    x, y, mu, nu = sp.symbols("x y mu nu", positive=True)
-    n = sp.Symbol("n", integer=True, positive=True)
-    up, down = mu * x ** (n + 1), nu * y ** (n + 1)
-    shares = (up / (up + down), down / (up + down))
-    yield Case("f and 1 - f are positive inside", all(bool(share.is_positive) for share in shares))
-    residual = sp.cancel(sum(shares) - 1)
-    yield Case("they sum to 1", residual == 0, residual=residual)
-    t = sp.Symbol("t")
-    f = _hartmann(n, sp.Rational(1, 3), t)
-    yield Case("1 and 0 at the ends", [sp.simplify(f.subs(t, end)) for end in (0, 1)] == [1, 0])
-
-
-def reverse_cases() -> Iterator[Case]:
-    """Yield degrees n: at t = 0 the blend X = f S1 + (1 - f) S2 leaves along S1 itself, X_t = S1_t."""
-    t = sp.Symbol("t")
-    for n in (1, 2, 3):
-        f = _hartmann(n, sp.Rational(1, 2), t)
-        slope = sp.diff(f, t).subs(t, 0)
-        yield Case(f"n = {n}", f.subs(t, 0) == 1 and slope == 0)
-
-
-def hartmann_contact_cases() -> Iterator[Case]:
-    """Yield degrees n: f is 1 at 0 and 0 at 1, and its derivatives up to order n vanish at both."""
-    t = sp.Symbol("t")
-    for n in (1, 2, 3):
-        f = _hartmann(n, sp.Rational(1, 3), t)
-        flat = all(sp.diff(f, t, d).subs(t, end) == 0 for d in range(1, n + 1) for end in (0, 1))
-        yield Case(f"n = {n}", flat and f.subs(t, 0) == 1 and f.subs(t, 1) == 0)
-
-
-def hartmann_rational_cases() -> Iterator[Case]:
-    """Yield, for every n and mu, that the blend of two spline pieces a(t), b(t) has *no* exact rational form.
-
-    f a + (1 - f) b is up a + down b over up + down, with x = 1 - t and y = t: polynomials, the weight positive.
-    """
-    x, y, mu, nu = sp.symbols("x y mu nu", positive=True)
-    n = sp.Symbol("n", integer=True, positive=True)
-    a, b = sp.symbols("a b", real=True)
-    up, down = mu * x ** (n + 1), nu * y ** (n + 1)
-    blend = up / (up + down) * a + down / (up + down) * b
-    same = sp.cancel(blend - (up * a + down * b) / (up + down)) == 0
-    polynomial = bool((n + 1).is_integer and (n + 1).is_positive)
-    yield Case("pieces of splines", not (same and polynomial and (up + down).is_positive is True))
-
-
 def sine_base_cases() -> Iterator[Case]:
     """Yield that a blend X = f sin t + (1 - f) b, b polynomial, is not rational: else sin t would be a quotient."""
     X, b, f, wave = sp.symbols("X b f S", positive=True)
@@ -85,63 +35,18 @@ def sine_base_cases() -> Iterator[Case]:
     yield from c_curve_cases()
 
 
-def _hartmann(n: int, mu: Any, t: Any) -> Any:
-    up, down = mu * (1 - t) ** (n + 1), (1 - mu) * t ** (n + 1)
-    return up / (up + down)
-
-
-def mean_curvature_cases() -> Iterator[Case]:
-    """Yield that for a tangent-continuous join equal mean curvature along the contact means equal curvatures.
-
-    L = N . P_uu is the only second-order quantity that can differ, and H depends on it with the factor G / 2(EG - F^2).
-    """
-    E, F, G, L, M, N = sp.symbols("E F G L M N", real=True)
-    mean = (E * N - 2 * F * M + G * L) / (2 * (E * G - F**2))
-    factor = sp.diff(mean, L)
-    yield Case("H is linear in L", sp.diff(factor, L) == 0)
-    yield Case("with a factor that is not zero", sp.simplify(factor - G / (2 * (E * G - F**2))) == 0)
-
-
-def invisible_cases() -> Iterator[Case]:
-    """Yield joins of one plane that are not C2: true where a normal or the mean curvature shows it."""
-    u, v = sp.symbols("u v", real=True)
-    for label, surface in (
-        ("(-u - u^2, v, 0) after (w, v, 0)", sp.Matrix([-u - u**2, v, 0])),
-        ("(-u, v + u^2 v, 0) after (w, v, 0)", sp.Matrix([-u, v + u**2 * v, 0])),
-    ):
-        # The other side, (w, v, 0), has second derivatives zero, normal (0, 0, 1) and no curvature.
-        parametric = surface.diff(u, 2).subs(u, 0).is_zero_matrix
-        normal = surface.diff(u).cross(surface.diff(v))
-        bends = any(x.diff(y) != 0 for x in normal[:2] for y in (u, v))
-        yield Case(label, bool(parametric or bends))
-
-
-def bending_cases(*, saddle: bool) -> Any:
-    """Return the check that kappa_1^2 + kappa_2^2 is 4 H^2: for kappa_2 = 0, or for any principal curvatures."""
-
-    def cases() -> Iterator[Case]:
-        first, second = sp.symbols("kappa_1 kappa_2", real=True)
-        other = second if saddle else sp.Integer(0)
-        residual = sp.expand(first**2 + other**2 - (first + other) ** 2)
-        yield Case("any kappa_2" if saddle else "kappa_2 = 0", bool(residual == 0), residual=residual)
-
-    return cases
-
-
 def hermite_cases(formula: Formula | None) -> Iterator[Case]:
     """Yield degrees d of a Bezier curve across: six conditions (value, two derivatives at both ends) can be met.
 
     From degree 5 on the conditions of the two ends concern different control points, three each, by triangles with the
     diagonal 1, d, d (d - 1): for every such degree. A lower one has fewer than six control points.
     """
-    if formula is None:
-        raise ValueError("formula: found None, expected a relation")
     ones = (sp.Integer(1), sp.Integer(1))
     d = sp.Symbol("d", integer=True, positive=True)
     end = end_derivatives(2, d + 5, ones)
     diagonal = sp.prod(end[i, i] for i in range(3))
     lower = all(end[i, j] == 0 for i in range(3) for j in range(i + 1, 3))
-    yield Case("every degree from 6 on", bool(lower and diagonal.expand().is_positive and _asks(formula, d + 5)))
+    yield Case("every degree from 6 on", bool(lower and diagonal.expand().is_positive and _asks(given(formula), d + 5)))
     for degree in range(2, 6):
         rows = sp.zeros(6, degree + 1)
         for k in range(3):
@@ -149,7 +54,7 @@ def hermite_cases(formula: Formula | None) -> Iterator[Case]:
                 entry = end_derivatives(2, degree, ones)[k, i]
                 rows[k, i] += entry
                 rows[3 + k, degree - i] += (-1) ** k * entry
-        yield Case(f"degree {degree}", bool(rows.rank() == 6) == _asks(formula, degree))
+        yield Case(f"degree {degree}", bool(rows.rank() == 6) == _asks(given(formula), degree))
 
 
 def _asks(formula: Formula, degree: Any) -> bool:
@@ -157,13 +62,15 @@ def _asks(formula: Formula, degree: Any) -> bool:
     return formula.relation.subs(pr.degree, degree) == True  # noqa: E712  # a relation may stay undecided
 
 
-def quartic_cases() -> Iterator[Case]:
+_QUARTIC = ((0, 0), (sp.Rational(1, 2), 0), (sp.Rational(5, 3), sp.Rational(1, 3)), (2, sp.Rational(1, 2)), (2, 1))
+
+
+def quartic_cases(given_points: Any = _QUARTIC) -> Iterator[Case]:
     """Yield a Bezier curve of degree four: true where it misses points, tangents or curvatures that are prescribed.
 
     Prescribed: from (0, 0) along (1, 0) to (2, 1) along (0, 1), of curvature 1 at both ends.
     """
-    points = [sp.Matrix(p) for p in ((0, 0), (sp.Rational(1, 2), 0), (sp.Rational(5, 3), sp.Rational(1, 3)),
-                                     (2, sp.Rational(1, 2)), (2, 1))]  # fmt: skip
+    points = [sp.Matrix(p) for p in given_points]
     t = sp.Symbol("t")
     curve = sum((sp.binomial(4, i) * t**i * (1 - t) ** (4 - i) * p for i, p in enumerate(points)), sp.zeros(2, 1))
     misses = []
@@ -176,33 +83,32 @@ def quartic_cases() -> Iterator[Case]:
     yield Case(label, any(sp.simplify(x) != 0 for x in misses))
 
 
-def cubic_cases() -> Iterator[Case]:
+def cubic_cases(degree: int = 3, inner: int = 2) -> Iterator[Case]:
     """Yield a cubic with two inner knots or more, anywhere: six conditions at its ends are independent.
 
-    Those of the two ends concern different rows where there are six rows or more.
+    Those of each end concern three rows, and the two ends different ones where there are six rows or more.
     """
-    h = span_symbols(2)
-    determinant = sp.factor(end_derivatives(2, 3, h).det())
-    yield Case("any knots", bool(determinant.is_positive))
-    for m in (5, 6, 7):
-        yield Case(f"{m + 1} rows: two ends with three rows each", not {0, 1, 2} & {m - 2, m - 1, m})
+    ends = end_derivatives(2, degree, span_symbols(2))
+    determinant = sp.factor(ends.det())
+    yield Case("any knots: those of one end", bool(ends.is_lower and determinant.is_positive))
+    more = sp.Symbol("r", integer=True, nonnegative=True)
+    # Rows 0 .. 2, and m-2 .. m, with m + 1 rows in all.
+    m = degree + inner + more
+    yield Case("two inner knots or more: different rows at both ends", bool((m - 2 - 2).is_positive))
 
 
 def jump_cases(formula: Formula | None) -> Iterator[Case]:
     """Decide the curvature jump across the contact for every radius and every curvature of the base, from a circle."""
-    if formula is None:
-        raise ValueError("formula: found None, expected a relation")
     t = sp.Symbol("t", real=True)
     circle = sp.Matrix([BALL_RADIUS * sp.cos(t), BALL_RADIUS * sp.sin(t)])
     first, second = circle.diff(t), circle.diff(t, 2)
     curvature = sp.simplify(first.row_join(second).det() / sp.sqrt(first.dot(first)) ** 3)
-    residual = sp.factor(formula.relation.rhs - (curvature - BASE_CURVATURE))
+    residual = sp.factor(given(formula).relation.rhs - (curvature - BASE_CURVATURE))
     yield Case("any ball, any base", residual == 0, residual=residual)
 
 
-def g2_cases() -> Iterator[Case]:
+def g2_cases(jump: Any = JUMP.relation.rhs) -> Iterator[Case]:
     """Yield rolling balls of radius r on bases of curvature c: G1 at the most unless the jump is zero, c = 1/r."""
-    jump = JUMP.relation.rhs
     zeros = sp.solve(jump, BASE_CURVATURE)
     yield Case("c other than 1/r", zeros == [1 / BALL_RADIUS])
     yield Case("c = 1/r", bool(jump.subs(BASE_CURVATURE, 1 / BALL_RADIUS) != 0), own=False, meets=False)
@@ -214,8 +120,6 @@ def canal_cases(formula: Formula | None) -> Iterator[Case]:
     In the frame of the spine X - C = a T + rho (cos N + sin B). On the envelope |X - C|^2 = r^2, and the derivative
     of this by t: (X - C) . C' = -r r'. Both fix a and rho, not the angle, so that it runs through a whole circle.
     """
-    if formula is None:
-        raise ValueError("formula: found None, expected a relation")
     axial, angle = sp.symbols("a theta", real=True)
     point = sp.Matrix([axial, SECTION * sp.cos(angle), SECTION * sp.sin(angle)])
     velocity = sp.Matrix([SPEED, 0, 0])
@@ -223,7 +127,7 @@ def canal_cases(formula: Formula | None) -> Iterator[Case]:
     squared = sp.Symbol("q", positive=True)
     distance = sp.trigsimp(sp.expand(point.dot(point))).subs(SECTION, sp.sqrt(squared)).subs(axial, on_envelope)
     (true,) = sp.solve(distance - RADIUS**2, squared)
-    left, right = (side.subs(SECTION, sp.sqrt(true)) for side in formula.relation.args)
+    left, right = (side.subs(SECTION, sp.sqrt(true)) for side in given(formula).relation.args)
     residual = sp.factor(right - left)
     yield Case("any spine, any radius", residual == 0, residual=residual)
     yield Case("no dependence on the angle", angle not in distance.free_symbols)

@@ -24,7 +24,7 @@ from derivations.trimming import (
     inside_square,
     trimmed_rows,
 )
-from papers.ledger import Case, Formula
+from papers.ledger import Case, Formula, given
 from papers.lin2014 import printed_figures as printed
 
 
@@ -85,11 +85,13 @@ def hole() -> Hole:
     ValueError
         A printed function is no Bezier function over its interval.
     """
-    sides = {name: side_of(name, formula) for name, formula in printed.SIDE_CURVES.items()}
-    wrong = [name for name, side in sides.items() if side is None]
-    if wrong:
-        raise ValueError(f"sides: found no Bezier function for {', '.join(wrong)}, expected four")
-    return Hole(**sides)  # type: ignore[arg-type]
+    sides = {}
+    for name, formula in printed.SIDE_CURVES.items():
+        side = side_of(name, formula)
+        if side is None:
+            raise ValueError(f"sides: found no Bezier function for {name}, expected four")
+        sides[name] = side
+    return Hole(**sides)
 
 
 def curve_cases(name: str) -> Any:
@@ -121,7 +123,7 @@ def parameter_cases(name: str) -> Any:
     """Return the check that a local parameter, such as (v - 0.4)/0.2, runs over [0, 1] on the printed interval."""
 
     def cases(formula: Formula | None) -> Iterator[Case]:
-        ends = _local_ends(_relation(formula).rhs, _interval(name))
+        ends = _local_ends(given(formula).relation.rhs, _interval(name))
         yield Case(f"{name}: from {ends[0]} to {ends[1]}", ends == [0, 1])
 
     return cases
@@ -131,7 +133,7 @@ def interval_cases(name: str) -> Any:
     """Return the check that a printed interval is the one on which the printed local parameter runs over [0, 1]."""
 
     def cases(formula: Formula | None) -> Iterator[Case]:
-        interval = _relation(formula).rhs
+        interval = given(formula).relation.rhs
         whole = len(interval) == 2 and _local_ends(printed.SIDE_PARAMETERS[name].relation.rhs, interval) == [0, 1]
         yield Case(f"{name}: {interval}", whole)
 
@@ -147,7 +149,7 @@ def tiling_cases(formula: Formula | None) -> Iterator[Case]:
     bicubic = [[Fraction(i * j) for j in range(4)] for i in range(4)]
     lengths = [{len(row) for row in piece} for piece in trimmed_rows(bicubic, region).values()]
     counts = [sum(len(found) > 1 for found in lengths), sum(len(found) == 1 for found in lengths)]
-    yield Case(f"{counts[0]} semi-structured, {counts[1]} ordinary", list(_relation(formula).rhs) == counts)
+    yield Case(f"{counts[0]} semi-structured, {counts[1]} ordinary", list(given(formula).relation.rhs) == counts)
     yield Case(
         "boundaries of the eight pieces add up to those of the square and the hole", not boundary_residual(region)
     )
@@ -158,12 +160,6 @@ def tiling_cases(formula: Formula | None) -> Iterator[Case]:
 
 def first_split_cases(formula: Formula | None) -> Iterator[Case]:
     """Decide the construction of Q_1: the strip holds all of c1 and no more, and c1 divides it across u."""
-    strip = tuple(_relation(formula).rhs)
+    strip = tuple(given(formula).relation.rhs)
     yield Case("c1 is defined over the whole strip", strip == _interval("left"))
     yield Case("c1 stays inside the strip's range of u", all(0 < c < 1 for c in hole().left.coefficients))
-
-
-def _relation(formula: Formula | None) -> Any:
-    if formula is None:
-        raise ValueError("formula: found None, expected a relation")
-    return formula.relation
