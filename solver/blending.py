@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Literal, TypeAlias, get_args
 
 import numpy as np
@@ -13,9 +13,8 @@ from solver.arrays import FloatArray
 from solver.base import Base
 from solver.blend_result import BlendResult
 from solver.certificate import check_certificate
-from solver.closing import snapped_seam
 from solver.continuity import Contact, check_regular_edge, measure_contact
-from solver.correspondence import Correspondence, Flip, correspond, is_closed
+from solver.correspondence import Correspondence, Flip, correspond, is_closed, snapped_seam
 from solver.errors import ContactError, FoldError, OptionError
 from solver.gram import thin_plate_energy
 from solver.knots import inner_knots
@@ -217,7 +216,7 @@ def state_problem(
     )
     # The bases as the blend sees them: contact at w = 0, one parameter v, coordinates of size 1.
     sides = make_side(a, pair[0], "base a"), make_side(b, pair[1], "base b")
-    matched = _matched(a, b, flip, sides[1])
+    matched = snapped_seam(a, b, correspond(a, b, flip))
     sides = matched_sides(*sides, matched)
     frame = _frame(*sides)
     problem = make_problem(sides[0].moved(*frame), sides[1].moved(*frame), options)
@@ -251,12 +250,6 @@ def _checked_shape(alpha: Shape | tuple[Shape, Shape]) -> tuple[Shape, Shape]:
         raise OptionError(f"alpha: found {len(pair)} values, expected one or a pair")
     first, second = (value if isinstance(value, str) else float(value) ** 2 for value in pair)
     return first, second
-
-
-def _matched(a: Base, b: Base, flip: Flip, side_b: Side) -> Correspondence:
-    """Return how edge b runs along edge a; a new seam of b close to one of its knots is moved onto the knot."""
-    matched = correspond(a, b, flip)
-    return replace(matched, shift=snapped_seam(side_b.along, matched.shift)) if matched.shift else matched
 
 
 def _frame(a: Side, b: Side) -> tuple[FloatArray, float]:

@@ -16,8 +16,6 @@ from solver.surfaces import BSplineCurve
 
 # Derivatives at both ends of a seam that differ by less than this, relative to the largest, count as equal.
 SEAM_TOLERANCE = 1e-9
-# A new seam this close to a knot, as a fraction of the domain, is moved onto it: no tiny spans.
-SNAP = 1e-4
 
 
 def seam_order(along: Basis, rows: FloatArray) -> int:
@@ -29,23 +27,17 @@ def seam_order(along: Basis, rows: FloatArray) -> int:
     rows : ndarray, shape (K, n, 3)
     """
     order = -1
+    rounding = 16 * np.finfo(float).eps * float(np.abs(rows).max())
     for d in range(along.degree):
         # The first and the last control point of a derivative are its values at the ends.
         points = derivative_points(along.degree, along.knots, rows.transpose(1, 0, 2), d)
-        largest = float(np.abs(points).max())
-        if np.abs(points[0] - points[-1]).max() > SEAM_TOLERANCE * max(largest, float(np.ptp(rows, axis=1).max())):
+        largest = max(float(np.abs(points).max()), float(np.ptp(rows, axis=1).max()))
+        # A narrow span at an end amplifies the rounding of the control points.
+        amplified = rounding * np.abs(derivative_matrix(along.degree, along.knots, d)[[0, -1]]).sum(axis=1).max()
+        if np.abs(points[0] - points[-1]).max() > SEAM_TOLERANCE * largest + amplified:
             break
         order = d
     return order
-
-
-def snapped_seam(along: Basis, shift: float) -> float:
-    """Return the shift, moved onto a knot of the edge where it is close to one."""
-    start, end = along.knots[0], along.knots[-1]
-    nearest = float(along.knots[np.abs(along.knots - (start + shift)).argmin()])
-    if abs(nearest - (start + shift)) > SNAP * (end - start):
-        return shift
-    return float((nearest - start) % (end - start))
 
 
 def reseamed(along: Basis, rows: FloatArray, shift: float) -> tuple[Basis, FloatArray]:
@@ -118,10 +110,10 @@ def end_conditions(basis: Basis, order: int) -> tuple[FloatArray, FloatArray]:
 
 
 def with_least_size(basis: Basis, size: int) -> Basis:
-    """Return the basis, its longest spans halved until it has `size` functions."""
+    """Return the basis, its longest spans halved until it has at least `size` functions; equal ones together."""
     knots = basis.knots
     while len(knots) - basis.degree - 1 < size:
         widths = np.diff(knots)
-        i = int(widths.argmax())
-        knots = np.insert(knots, i + 1, knots[i] + widths[i] / 2)
+        longest = np.flatnonzero(widths > (1 - SEAM_TOLERANCE) * widths.max())
+        knots = np.insert(knots, longest + 1, knots[longest] + widths[longest] / 2)
     return replace(basis, knots=knots)

@@ -14,8 +14,8 @@ from scipy.sparse.linalg import splu
 from solver.arrays import FloatArray
 from solver.closing import periodic_points, seam_order, with_least_size
 from solver.errors import ComputationError, EdgeError, OptionError
-from solver.gram import Basis, EnergyForm
-from solver.knots import affine_knots, basis_matrix, derivative_points, greville
+from solver.gram import Basis, EnergyForm, gauss_rule
+from solver.knots import affine_knots, basis_matrix, breakpoints, derivative_points, greville, merge_breakpoints
 from solver.layout import ROWS_PER_SIDE, blend_u_basis, middle_bases
 from solver.sides import Side
 
@@ -25,6 +25,9 @@ TRUSTED_CORRECTION = 1e-8
 _MOST_REFINEMENTS = 20
 # Lengths below this fraction of the model count as zero.
 VANISHING = 1e-10
+# Means over v: points of the whole contact, and degree of the rule on each span where spans are many.
+_MOST_POINTS = 512
+_LEAST_RULE = 3
 
 VScale: TypeAlias = Literal["paper", "unit", "length"]
 
@@ -75,7 +78,7 @@ class BlendProblem:
     bounds : pair of (float, float)
         Boxes of alpha^2 and beta^2; low = high where the parameter is fixed.
     seam_order : int
-        How many derivatives free rows keep across the seam of closed contact curves; -1 where these are open.
+        How many derivatives both bases keep across the seam of closed contact curves; -1 where these are open.
     """
 
     form: EnergyForm
@@ -115,8 +118,15 @@ class BlendProblem:
         return range(self.a.order + 1, len(self.rows) - self.b.order - 1)
 
     def seam_order_of(self, row: int) -> int:
-        """How many derivatives a free row keeps across the seam: as many as it has control points for."""
-        return min(self.seam_order, self.form.rows[row].size // 2 - 1)
+        """How many derivatives a free row keeps across the seam, if it has control points for as many.
+
+        A middle curve is as smooth there as at its other knots: the blend does not show where the seam is.
+        """
+        if self.seam_order < 0:
+            return -1
+        basis = self.form.rows[row]
+        middle = ROWS_PER_SIDE <= row < len(self.rows) - ROWS_PER_SIDE
+        return min(basis.degree - 1 if middle else self.seam_order, basis.size // 2 - 1)
 
     @cached_property
     def free_system(self) -> FreeSystem:
@@ -267,11 +277,12 @@ def make_problem(a: Side, b: Side, options: ProblemOptions) -> BlendProblem:
     closed = min(orders)
     middle = middle_bases(a.along, b.along, options.middle_curves, options.middle_knots, closed=closed >= 0)
     if closed >= 0 and options.middle_knots is None:
-        middle = [with_least_size(basis, 2 * closed + 2) for basis in middle]
+        middle = [with_least_size(basis, 2 * basis.degree) for basis in middle]
     rows = ((a.along,) * ROWS_PER_SIDE) + tuple(middle) + ((b.along,) * ROWS_PER_SIDE)
-    gap, lengths = _gap_and_lengths(a, b)
+    means = _means(a, b)
     natural_a, natural_b = (
-        gap / speed if (speed := _cross_speed(side, name)) else 1.0 for name, side in zip("ab", (a, b), strict=True)
+        means.gap / speed if _checked_speed(side, speed, name) else 1.0
+        for name, side, speed in zip("ab", (a, b), means.cross_speeds, strict=True)
     )
     bounds_a, bounds_b = (
         (1.0, 1.0) if not side.has_shape_parameter else _bounds(size, shape, options.box)
@@ -279,7 +290,7 @@ def make_problem(a: Side, b: Side, options: ProblemOptions) -> BlendProblem:
     )
     form = EnergyForm(u, rows)
     if options.v_scale != "paper":
-        length = 1.0 if options.v_scale == "unit" else sum(lengths) / 2 / gap
+        length = 1.0 if options.v_scale == "unit" else sum(means.lengths) / 2 / means.gap
         form = EnergyForm(u, tuple(Basis(row.degree, affine_knots(row.knots, 0.0, length)) for row in rows))
     return BlendProblem(form, rows, a, b, (natural_a, natural_b), (bounds_a, bounds_b), closed)
 
@@ -291,19 +302,49 @@ def _bounds(natural: float, shape: float | Literal["free", "natural"], box: tupl
     return fixed, fixed
 
 
-def _gap_and_lengths(a: Side, b: Side) -> tuple[float, list[float]]:
-    """Return the mean distance of the contact curves and their lengths, in coordinates of size 1."""
+@dataclass(frozen=True)
+class _Means:
+    """Means over v of two contacts that face each other, in coordinates of size 1."""
+
+    gap: float
+    lengths: tuple[float, float]
+    cross_speeds: tuple[float, float]
+
+
+def _means(a: Side, b: Side) -> _Means:
+    """Measure by quadrature over the spans of both sides: neither where the seam is nor their order matters.
+
+    Raises
+    ------
+    EdgeError
+        A contact curve has zero length, or both coincide.
+    """
+    breaks = merge_breakpoints(breakpoints(a.along.knots), breakpoints(b.along.knots))
+    nodes, weights = gauss_rule(breaks, max(_LEAST_RULE, _MOST_POINTS // len(breaks)))
+    x, weights = nodes.ravel(), weights.ravel()
+    domain = float(breaks[-1] - breaks[0])
+    curves, lengths, speeds = [], [], []
+    for name, side in (("a", a), ("b", b)):
+        degree, knots = side.along.degree, side.along.knots
+        values = basis_matrix(degree, knots, x)
+        along = basis_matrix(degree - 1, knots[1:-1], x) @ derivative_points(degree, knots, side.rows[0])
+        across = values @ (side.rows[1] - side.rows[0]) * (side.degree / side.spans[0])
+        curves.append(values @ side.rows[0])
+        lengths.append(float(weights @ np.linalg.norm(along, axis=1)))
+        speeds.append(float(weights @ np.linalg.norm(across, axis=1)) / domain)
+        if lengths[-1] < VANISHING:
+            raise EdgeError(f"base {name}: the contact curve has zero length; choose another edge")
+    if _coincide(a, b):
+        raise EdgeError("bases: the contact curves coincide, there is nothing to blend; choose another edge")
+    gap = float(weights @ np.linalg.norm(curves[0] - curves[1], axis=1)) / domain
+    return _Means(gap, (lengths[0], lengths[1]), (speeds[0], speeds[1]))
+
+
+def _coincide(a: Side, b: Side) -> bool:
     start, end = a.along.knots[0], a.along.knots[-1]
     x = start + (end - start) * np.arange(129) / 128
     curves = [basis_matrix(side.along.degree, side.along.knots, x) @ side.rows[0] for side in (a, b)]
-    lengths = [float(np.linalg.norm(np.diff(curve, axis=0), axis=1).sum()) for curve in curves]
-    for name, length in zip("ab", lengths, strict=True):
-        if length < VANISHING:
-            raise EdgeError(f"base {name}: the contact curve has zero length; choose another edge")
-    gap = float(np.linalg.norm(curves[0] - curves[1], axis=1).mean())
-    if _largest_distance(curves[0], curves[1], b) < VANISHING:
-        raise EdgeError("bases: the contact curves coincide, there is nothing to blend; choose another edge")
-    return gap, lengths
+    return _largest_distance(curves[0], curves[1], b) < VANISHING
 
 
 def _largest_distance(points: FloatArray, samples: FloatArray, side: Side) -> float:
@@ -325,9 +366,8 @@ def _largest_distance(points: FloatArray, samples: FloatArray, side: Side) -> fl
     return float(np.linalg.norm(basis_matrix(degree, knots, x) @ side.rows[0] - points, axis=1).max())
 
 
-def _cross_speed(side: Side, name: str) -> float:
+def _checked_speed(side: Side, speed: float, name: str) -> float:
     """Return the mean speed across the contact, refused where contact needs it and it vanishes."""
-    speed = side.mean_cross_speed()
     if side.order > 0 and speed * side.spans[0] < VANISHING:
         raise EdgeError(f"base {name}: the cross derivative vanishes along the contact curve; choose another edge")
     return speed

@@ -84,11 +84,6 @@ class Side:
         powers = matrix.reshape(order + 1, order + 1, order + 1)
         return np.asarray(np.einsum("kij,jnd->kind", powers, self.rows[: order + 1]))
 
-    def mean_cross_speed(self) -> float:
-        """Return the mean |R_w| along the contact."""
-        speed = np.linalg.norm(self.rows[1] - self.rows[0], axis=1) * self.degree / self.spans[0]
-        return float(speed.mean())
-
     def moved(self, centre: FloatArray, size: float) -> Side:
         """Return the same side in coordinates (x - centre) / size."""
         return replace(self, rows=(self.rows - centre) / size)

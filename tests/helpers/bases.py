@@ -5,6 +5,7 @@ from scipy.interpolate import make_interp_spline
 
 from solver import Base, BSplineSurface
 from solver.de_boor import curve_points
+from solver.refinement import clamp_knots
 
 IDENTITY = np.eye(3)
 
@@ -105,3 +106,28 @@ def cylinder(n_spans, radius, heights, *, seam=0.0, tilt=0.0, offset=(0.0, 0.0))
         r = radius * (1 + tilt * i)
         rows.append(np.column_stack([r * points + np.array(offset), np.full(len(points), z)]))
     return BSplineSurface(3, 3, knots_u, knots_v, np.array(rows))
+
+
+def tube(
+    rng,
+    n_spans,
+    *,
+    degree=3,
+    radius=1.0,
+    heights=(0.0, 1.0),
+    phase=0.0,
+    noise=0.0,
+    backwards=False,
+    v_range=(0.0, 1.0),
+):
+    """Closed along v, C^(degree - 1) everywhere, of n_spans equal spans; its control points dented at random."""
+    low, high = v_range
+    angle = phase + (-1 if backwards else 1) * 2 * np.pi * np.arange(n_spans) / n_spans
+    dented = radius * (1 + noise * rng.standard_normal((5, n_spans)))
+    z = np.repeat(np.linspace(*heights, 5)[:, None], n_spans, axis=1)
+    ring = np.stack([dented * np.cos(angle), dented * np.sin(angle), z], axis=-1)
+    ring = np.concatenate([ring, ring[:, :degree]], axis=1)
+    knots = low + (high - low) * np.arange(-degree, n_spans + degree + 1) / n_spans
+    knots_v, points = clamp_knots(degree, knots, ring.transpose(1, 0, 2).reshape(-1, 15))
+    net = points.reshape(-1, 5, 3).transpose(1, 0, 2)
+    return BSplineSurface(3, degree, [0, 0, 0, 0, 0.5, 1, 1, 1, 1], knots_v, net)

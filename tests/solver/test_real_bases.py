@@ -16,10 +16,11 @@ from solver import (
     blend,
     thin_plate_energy,
 )
+from solver.blending import state_problem
 from solver.closing import periodic_points, reseamed, seam_order
 from solver.de_boor import curve_points, surface_points
 from solver.gram import Basis
-from solver.operations import map_domain
+from solver.operations import insert_knots, map_domain
 
 
 @pytest.mark.parametrize("order", [0, 1, 2])
@@ -250,15 +251,50 @@ def test_closed_and_creased(corner):
     assert result.seam.gap < 1e-13
 
 
-@pytest.mark.parametrize("v_scale", ["unit", "length"])
-@pytest.mark.parametrize("seam", [0.1, 0.4])
-def test_order_of_closed_bases_does_not_matter(v_scale, seam):
-    a = Base(cylinder(8, 1.0, (0.0, 1.0)), "u0")
-    b = Base(cylinder(6, 0.7, (-1.5, -2.5), seam=seam), "u0")
-    one, other = blend(a, b, v_scale=v_scale), blend(b, a, v_scale=v_scale)
-    # A shift is moved onto a knot within 1e-4 of the domain; what remains of the energy is of second order in it.
-    energies = [thin_plate_energy(map_domain(r.surface, v_range=(0.0, 1.0))) for r in (one, other)]
-    assert energies[0] == pytest.approx(energies[1], rel=1e-7)
+def flat(x, y, height=0.0, v_range=(0.0, 1.0)):
+    """The rectangle over [x0, x1] x [y0, y1]."""
+    k = [0, 0, 1, 1]
+    knots_v = np.repeat(v_range, 2)
+    return BSplineSurface(1, 1, k, knots_v, [[[a, b, height] for b in y] for a in x])
+
+
+def energy_length(a, b, v_scale):
+    """Length of the v-domain that the energy is taken over."""
+    knots = state_problem(a, b, v_scale=v_scale).problem.form.rows[0].knots
+    return knots[-1] - knots[0]
+
+
+def test_length_is_mean_contact_length_over_mean_gap():
+    # Straight and parallel, 3 long, 0.5 apart.
+    a = Base(flat((0, 1), (0, 3), v_range=(0, 7)), "u1")
+    b = Base(flat((1.5, 3), (0, 3)), "u0")
+    assert energy_length(a, b, "length") == pytest.approx(6, rel=1e-12)
+    assert energy_length(a, b, "unit") == 1
+    assert energy_length(a, b, "paper") == 7
+    # In one plane, the gap from 0.5 to 2.5, lengths 3 and the root of 13.
+    k = [0, 0, 1, 1]
+    slanted = BSplineSurface(1, 1, k, k, [[[1.5, 0, 0], [3.5, 3, 0]], [[4, 0, 0], [4, 3, 0]]])
+    assert energy_length(a, Base(slanted, "u0"), "length") == pytest.approx((3 + 13**0.5) / 2 / 1.5, rel=1e-12)
+
+
+def test_length_of_circles():
+    # Coaxial, radii 1 and 2, planes 1.5 apart: every distance is the root of 1 + 1.5^2, mean length 3 pi.
+    a, b = Base(cylinder(40, 1.0, (0, -1)), "u0"), Base(cylinder(40, 2.0, (1.5, 3)), "u0")
+    # A cubic spline through 40 points of a circle is about (2 pi / 40)^4 / 400 off.
+    assert energy_length(a, b, "length") == pytest.approx(3 * np.pi / 3.25**0.5, rel=1e-5)
+
+
+def test_natural_size_is_mean_gap_over_mean_cross_speed():
+    # Base a is 1 wide over a range of 1, base b 1.5 wide over a range of 1; the gap is 0.5.
+    a, b = Base(flat((0, 1), (0, 3)), "u1"), Base(flat((1.5, 3), (0, 3)), "u0")
+    assert state_problem(a, b).problem.natural == pytest.approx((0.5, 1 / 3), rel=1e-12)
+    # Cross speed from 1 to 2, linear along v, is 1.5 in the mean, wherever the control points are.
+    k = [0, 0, 1, 1]
+    wider = BSplineSurface(1, 1, k, k, [[[-1, 0, 0], [-2, 3, 0]], [[0, 0, 0], [0, 3, 0]]])
+    knotted = insert_knots(wider, knots_v=[0.1, 0.2, 0.3])
+    c = Base(flat((0.5, 2), (0, 3)), "u0")
+    for surface in (wider, knotted):
+        assert state_problem(Base(surface, "u1"), c).problem.natural[0] == pytest.approx(0.5 / 1.5, rel=1e-12)
 
 
 def test_a_closed_and_an_open_contact_curve_are_warned_of():

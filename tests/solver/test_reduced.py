@@ -354,7 +354,7 @@ def crooked_pair(seed):
 
 
 # Found among 3000 random pairs: from the natural shape parameters a local method ends in a worse minimum.
-@pytest.mark.parametrize(("seed", "excess"), [(770, 1.003), (1328, 1.015)])
+@pytest.mark.parametrize(("seed", "excess"), [(770, 1.0025), (1328, 1.015)])
 def test_a_local_method_stops_at_a_worse_minimum(seed, excess):
     a, b = crooked_pair(seed)
     proved, local = (blend(a, b, flip="no", method=m) for m in ("reduced", "casadi"))
