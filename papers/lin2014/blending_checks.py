@@ -11,10 +11,11 @@ from typing import Any
 import sympy as sp
 
 from derivations.contact import A, contact_rows
-from derivations.splines import basis_pieces, end_derivative_step, end_derivatives, span_symbols
+from derivations.splines import X, basis_pieces, end_derivative_step, end_derivatives, span_symbols
 from papers.ledger import Case, Check, Formula, Strength
 from papers.lin2014 import printed as pr
 from papers.lin2014.contact_checks import ORDERS
+from papers.lin2014.energy_checks import u_basis
 from papers.lin2014.exact import Meaning, UndefinedError, clamped, de_boor, difference_case, given, net_ring
 from papers.lin2014.property_checks import contained, insertion_cases, premises, sharp_continuity_cases, union
 from papers.lin2014.spline_checks import Counting, domain_ends, functions_on, last_knot
@@ -94,12 +95,7 @@ def nested_space_cases() -> Iterator[Case]:
 
 
 def knot_line_cases() -> Iterator[Case]:
-    """Yield that the union of two knot vectors, neither part of the other, is larger than either; printed pairs too."""
-    shared, more, others = sp.symbols("c x y", integer=True, nonnegative=True)
-    # Each has the shared knots and at least one more.
-    a, b = shared + 1 + more, shared + 1 + others
-    both = a + b - shared
-    yield Case("every count of knots", bool((both - a).is_positive and (both - b).is_positive))
+    """Yield printed pairs of contact curves: the union of their inner knots is larger than either."""
     for name, keys in PRINTED_PAIRS.items():
         vectors = [set(inner_knots(key)) for key in keys]
         union_of_knots = set.union(*vectors)
@@ -184,27 +180,59 @@ def three_row_cases() -> Iterator[Case]:
             yield Case(f"orders {k}, {k_r}", bool(rows.shape == (3, 3) and needed), own=k == k_r == CUBIC)
 
 
+@cache
 def set_rows(order: int) -> tuple[Any, Any]:
     """Return the last row that contact of an order sets at u = 0, and the first one at u = 1, for every m.
 
-    The matrix of end derivatives 0 .. n is triangular without a zero on its diagonal: it sets rows 0 .. n, each.
+    Of the first few rows those are set that enter an end derivative up to the order; later ones enter later derivatives
+    only, by induction (`end_derivative_step`). Each of them is determined: the matrix of these derivatives and rows is
+    regular. Rows and knots are counted from the contact, so that u = 1 is the same.
     """
-    matrix = end_derivatives(order, pr.k - 1, span_symbols(order))
-    diagonal = [sp.factor(matrix[d, d]) for d in range(order + 1)]
-    if not matrix.is_lower or any(entry == 0 for entry in diagonal):
-        raise ValueError(f"end derivatives: found the diagonal {diagonal}, expected a triangular matrix without zero")
-    return sp.Integer(matrix.rows - 1), pr.m - (matrix.rows - 1)
+    more = order + 2
+    matrix = end_derivatives(more, pr.k - 1, span_symbols(more))[: order + 1, :]
+    touched = [i for i in range(matrix.cols) if any(matrix[:, i])]
+    if not end_derivative_step(more).is_zero_matrix or sp.factor(matrix[:, touched].det()) == 0:
+        raise ValueError(f"end derivatives: found a singular matrix of rows {touched}, expected a regular one")
+    return sp.Integer(touched[-1]), pr.m - touched[-1]
 
 
-_ROWS_SET = "rows that contact of order 2 sets: end derivatives are triangular in them, every order, knots and m"
+@cache
+def contact_matrix(k: int, m: int, order: int) -> sp.Matrix:
+    """Return derivatives 0 .. n at u = 0, and below them those at u = 1, of the m + 1 functions over U of (13)."""
+    matrix = sp.zeros(2 * (order + 1), m + 1)
+    spans = u_basis(k, m).spans
+    for span, x, top in ((spans[0], 0, 0), (spans[-1], 1, order + 1)):
+        for r, piece in enumerate(span.pieces):
+            for d in range(order + 1):
+                matrix[top + d, span.first + r] = (piece.diff((X, d)) if d else piece).eval(x)
+    return matrix
+
+
+def counted_rows(order: int) -> Iterator[tuple[str, int, tuple[int, int], bool]]:
+    """Yield layouts, m, and which rows enter the contact at u = 0 (the last) and at u = 1 (the first), counted."""
+    for k in range(order + 1, 6):
+        for m in range(max(k, 2 * order + 1), k + 5):
+            matrix = contact_matrix(k, m, order)
+            halves = matrix[: order + 1, :], matrix[order + 1 :, :]
+            at_start, at_end = ([i for i in range(m + 1) if any(half[:, i])] for half in halves)
+            yield f"k = {k}, m = {m}", m, (at_start[-1], at_end[0]), k == CUBIC
+
+
+_ROWS_SET = (
+    "rows that enter end derivatives up to order 2, every order, knots and m; counted in the functions of orders 3 to 5"
+)
 
 
 def row_check_of(row: Callable[[Any, Any], Any]) -> Check:
     """Return the check of the index of a row, which follows from the last and the first row that contact sets."""
 
     def cases(formula: Formula | None) -> Iterator[Case]:
-        residual = sp.expand(given(formula).relation.rhs - row(*set_rows(2)))
+        printed = given(formula).relation.rhs
+        residual = sp.expand(printed - row(*set_rows(2)))
         yield Case("every m", bool(residual == 0), residual=residual)
+        for label, m, ends, own in counted_rows(2):
+            off = printed.subs(pr.m, m) - row(*ends)
+            yield Case(label, bool(off == 0), own=own, residual=off)
 
     return Check(cases, Strength.SYMBOLIC_ORDER, _ROWS_SET, proof=True)
 
@@ -215,8 +243,12 @@ def middle_count_check(count: int) -> Check:
     def cases(formula: Formula | None) -> Iterator[Case]:
         at_start, at_end = set_rows(2)
         (m,) = sp.solve((at_end - 1) - (at_start + 1) + 1 - count, pr.m)
-        residual = given(formula).relation.rhs - m
+        printed = given(formula).relation.rhs
+        residual = printed - m
         yield Case(f"rows between {at_start} and {at_end}: {count}", bool(residual == 0), residual=residual)
+        for label, last, (start, end), own in counted_rows(2):
+            if end - start - 1 == count:
+                yield Case(label, bool(printed == last), own=own, residual=printed - last)
 
     return Check(cases, Strength.SYMBOLIC_ORDER, _ROWS_SET, proof=True)
 

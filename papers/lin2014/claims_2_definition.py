@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from fractions import Fraction
 
 import sympy as sp
 
@@ -21,10 +22,14 @@ from papers.ledger import (
 from papers.lin2014 import printed as pr
 from papers.lin2014 import property_checks as properties
 from papers.lin2014.consequences_2 import one_function_for_all
+from papers.lin2014.exact import clamped, given
+from papers.lin2014.figure_checks import CONTACTS
 from papers.lin2014.property_checks import identity_cases, premises, proof_check, proved
 from papers.lin2014.spline_checks import (
+    CUBIC,
     CURVE_CHECK,
     SURFACE_CHECK,
+    Sample,
     count_check,
     curve_instances,
     knot_count_instances,
@@ -41,9 +46,7 @@ _EITHER_ORDER = "what multiplies one control point, summed in either order; tria
 
 
 def _figure_1_cases(formula: Formula | None) -> Iterator[Case]:
-    if formula is None:
-        raise ValueError("formula: found None, expected a relation")
-    counts = tuple(formula.relation.rhs)
+    counts = tuple(given(formula).relation.rhs)
     yield Case("seven curves, m = 6", len(counts) == 7)
     yield Case("the first three agree, as (13) asks", len(set(counts[:3])) == 1)
     yield Case("the last three agree, as (13) asks", len(set(counts[-3:])) == 1)
@@ -65,6 +68,31 @@ def _wrong_basis_counterexample() -> Counterexample:
         if not case.true:
             return Counterexample((("instance", case.label),), f"off by {case.residual}", "0")
     raise ValueError("the search found no counterexample")
+
+
+# How many of the knot vectors V_0 .. V_m differ: each from each other, as the text after (2) has it.
+COUNT_OF_VECTORS = Formula(sp.Eq(pr.last, pr.m + 1), (pr.last, pr.m), (pr.m >= 5,))
+
+
+def _different_vector_cases(formula: Formula | None) -> Iterator[Case]:
+    """Decide the number of different knot vectors against the blends of (13): three are V^r, three V^s."""
+    printed = given(formula).relation.rhs
+    for figure, (first, second) in CONTACTS.items():
+        for middle in (0, 1):
+            m = 5 + middle
+            vectors = [pr.KNOTS[first]] * 3 + ["middle"] * middle + [pr.KNOTS[second]] * 3
+            residual = printed.subs(pr.m, m) - len(set(vectors))
+            yield Case(f"{figure}, m = {m}", bool(residual == 0), residual=residual)
+
+
+def _vectors_may_differ_cases() -> Iterator[Case]:
+    """Yield surfaces whose curves all have knot vectors of their own: defined on the whole domain, like any other."""
+    for order in (2, 3, 4):
+        vectors = [clamped(order, sp.Rational(i, 7)) for i in range(1, 6)]
+        sample = Sample(4, order, clamped(4, sp.Rational(1, 2)), tuple(vectors))
+        factors = properties.weights(sample, Fraction(2, 7), Fraction(3, 7))
+        different = len(set(vectors)) == sample.m + 1
+        yield Case(f"order {order}, {sample.m + 1} vectors", different and sum(factors) == 1, own=order == CUBIC)
 
 
 def _domain_cases() -> Iterator[Case]:
@@ -100,7 +128,7 @@ CLAIMS = (
         _WHERE,
         "The double sum over control points and the skin of the v-control curves are one surface.",
         Verdict.HOLDS,
-        (Reading((Part(SURFACE_CHECK, pr.EQ_1), Part(proof_check("partition of unity")))),),
+        (Reading((Part(SURFACE_CHECK, pr.EQ_1),)),),
     ),
     Claim(
         "sec-2.u-knots",
@@ -133,6 +161,43 @@ CLAIMS = (
         "Each v-control curve is a B-spline curve over its own knots.",
         Verdict.HOLDS,
         (Reading((Part(CURVE_CHECK, pr.EQ_2),)),),
+    ),
+    Claim(
+        "sec-2.different-vectors",
+        _WHERE,
+        "Each v-control curve has a different knot vector.",
+        Verdict.AMBIGUOUS,
+        (
+            Reading(
+                (
+                    Part(
+                        Check(
+                            _different_vector_cases,
+                            Strength.RATIONAL,
+                            "counting the vectors of (13) over the printed knots of the figures: one counterexample "
+                            "is enough",
+                            proof=True,
+                        ),
+                        COUNT_OF_VECTORS,
+                    ),
+                ),
+                label="no two of V_0 .. V_m are the same",
+            ),
+            Reading(
+                (
+                    Part(
+                        proved(
+                            _vectors_may_differ_cases,
+                            "surfaces with as many vectors as curves: one example is enough",
+                            Strength.RATIONAL,
+                        )
+                    ),
+                ),
+                label="they may differ, as the sentence before (2) has it",
+            ),
+        ),
+        remark="(13) asks for equal vectors in the first three curves and in the last three, and Fig. 1 shows equal "
+        "counts there; classical surfaces, which are said to be a special case, have one vector.",
     ),
     Claim(
         "eq-3",
@@ -192,21 +257,33 @@ CLAIMS = (
         _PROPERTIES,
         "The surface lies in the convex hull of its control points.",
         Verdict.HOLDS,
-        (Reading((Part(proof_check("convex hull", "partition of unity", "non-negative")),)),),
+        (Reading((Part(proof_check("convex hull", instances=properties.weight_cases)),)),),
     ),
     Claim(
         "sec-2.affine-invariance",
         _PROPERTIES,
         "An affine map of the control points maps the surface.",
         Verdict.HOLDS,
-        (Reading((Part(proof_check("affine invariance", "partition of unity")),)),),
+        (Reading((Part(proof_check("affine invariance", "partition of unity", instances=properties.affine_cases)),)),),
     ),
     Claim(
         "sec-2.localness",
         _PROPERTIES,
         "A control point moves only a part of the surface.",
         Verdict.HOLDS,
-        (Reading((Part(proof_check("locality")),)),),
+        (
+            Reading(
+                (
+                    Part(
+                        proved(
+                            properties.locality_cases,
+                            "where the two functions of lower order in the recurrence vanish, by induction on the "
+                            "order, every order and knots; the spans on which the functions of orders 2 to 8 live",
+                        )
+                    ),
+                )
+            ),
+        ),
         remark="P_ij acts on [u_i, u_{i+k}] x [v^i_j, v^i_{j+l}].",
     ),
     Claim(
@@ -217,7 +294,6 @@ CLAIMS = (
         (
             Reading(
                 (
-                    Part(proof_check("continuity")),
                     Part(
                         proved(
                             properties.continuity_control_cases,

@@ -2,20 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 import sympy as sp
 from sympy import Eq
 
-from derivations.contact import A, contact_rows
-from derivations.splines import span_symbols
+from derivations.splines import end_derivatives, span_symbols
 from papers.ledger import Case, Check, Claim, Correction, Counterexample, Formula, Part, Strength
 from papers.lin2014 import blending_checks as blending
 from papers.lin2014 import energy_checks as energy
 from papers.lin2014 import objective_checks as objective
 from papers.lin2014 import printed as pr
+from papers.lin2014.claims_3_conditions import TRUE_2_2, TRUE_3_1, TRUE_3_2
 from papers.lin2014.consequences_3 import single_integrals, third_term, vector_lengths, zero_system
-from papers.lin2014.exact import Meaning, difference_case, indexed
+from papers.lin2014.contact_checks import BASE_ROWS, ROWS, knots_as_spans
+from papers.lin2014.exact import Meaning, difference_case, given, indexed
 from papers.lin2014.property_checks import proved
 from papers.lin2014.records import fails, holds, holds_if, not_checkable, part
 
@@ -34,7 +35,7 @@ _TRUE_GRAM = Correction(
 )
 
 
-def _gram_counterexample(formula: Formula):  # type: ignore[no-untyped-def]
+def _gram_counterexample(formula: Formula) -> Callable[[], Counterexample | None]:
     """Return a search over pairs of control points of the free curve, in ascending order."""
 
     def search() -> Counterexample | None:
@@ -59,13 +60,14 @@ def _no_middle_cases() -> Iterator[Case]:
     """Yield m = 5: contact of order 2 at both ends sets all six rows; the end derivatives determine each of them."""
     at_start, at_end = blending.set_rows(2)
     between = (at_end - at_start - 1).subs(pr.m, 5)
-    yield Case("rows 0, 1, 2 from R, rows 3, 4, 5 from S, for every order and knots", between == 0)
+    yield Case("no row between those that R and S set, for every order and knots", between == 0)
+    matrix = blending.contact_matrix(4, 5, 2)
+    yield Case("k = 4: the six conditions have one solution", matrix.rows == matrix.cols == matrix.rank())
 
 
 def _cvv_cases(formula: Formula | None) -> Iterator[Case]:
     """Decide the last index of rows 3 and m-3 in C_vv, for rows of different lengths."""
-    if formula is None:
-        raise ValueError("formula: found None, expected a relation")
+    formula = given(formula)
     # In (1) the inner sum of row i ends with j = n_i.
     inner = pr.EQ_1.relation.rhs.atoms(sp.Sum) - {pr.EQ_1.relation.rhs}
     ends = [total.limits[0][2] for total in inner]
@@ -88,15 +90,26 @@ def _cvv_counterexample() -> Counterexample | None:
 
 
 def _initial_cases(formula: Formula | None) -> Iterator[Case]:
-    """Decide alpha = beta = 1: with it each row of a G2 blend is that of a C2 blend, for every order and knots."""
-    if formula is None:
-        raise ValueError("formula: found None, expected a relation")
-    h, H, base = span_symbols(2), span_symbols(2, "H"), (pr.R_0, pr.R_1, pr.R_2)
-    geometric, parametric = (contact_rows(2, pr.k - 1, h, pr.k_r - 1, H, shape) for shape in (A, 1))
-    difference = geometric.subs(A, formula.relation.rhs**2) - parametric
-    for row in range(difference.rows):
-        residual = sp.factor(sum(difference[row, c] * base[c] for c in range(difference.cols)))
-        yield Case(f"row {row}, every order and knots", bool(residual == 0), residual=residual)
+    """Decide alpha = beta = 1: the rows of a C2 blend satisfy the G2 conditions with it, for every order and knots.
+
+    The C2 rows are solved from P_u = -R_w and P_uu = R_ww; the conditions are (1.1), (2.1) as printed and (3.1)
+    corrected, and those at S corrected.
+    """
+    shape = given(formula).relation.rhs
+    h, H = span_symbols(2), span_symbols(2, "H")
+    for side, conditions in (
+        ("start", (pr.COND_1_1, pr.COND_2_1, TRUE_3_1)),
+        ("end", (pr.COND_1_2, TRUE_2_2, TRUE_3_2)),
+    ):
+        base = sp.Matrix(BASE_ROWS[side])
+        backwards = sp.diag(1, -1, 1) * end_derivatives(2, (pr.k_r if side == "start" else pr.k_s) - 1, H)
+        rows = end_derivatives(2, pr.k - 1, h).lower_triangular_solve(backwards * base)
+        values = knots_as_spans(side) | dict(zip(ROWS[side], rows, strict=True)) | {pr.alpha: shape, pr.beta: shape}
+        for row, condition in enumerate(conditions):
+            difference = condition.relation.rhs - condition.relation.lhs
+            residual = sp.cancel(difference.subs(values, simultaneous=True))
+            label = f"row {row} from the {side}, every order and knots"
+            yield Case(label, bool(residual == 0), residual=residual)
 
 
 # alpha = beta = 1; one of them stands for both.
@@ -163,18 +176,22 @@ CLAIMS: tuple[Claim, ...] = (
           remark="Misprints, or misreads by the scan: C_uu and C_uv beside it have the right indices."),
     holds("sec-4.g1-degree", _WHERE, "With the G1 conditions put in, the objective is of degree four.",
           part(objective.degree_check(1, True), pr.DEGREE_G1),
-          remark="In the free control points, alpha and beta together."),
-    holds("sec-4.g2-degree", _WHERE, "With the G2 conditions put in, the objective is of degree eight.",
-          part(objective.degree_check(2, True), pr.DEGREE_G2),
-          remark="Of degree four in alpha^2 and beta^2, and quadratic in the free control points: once these are "
-          "eliminated, a polynomial in two numbers is left. Where R_ww and S_tt vanish the degree is four."),
+          remark="In the free control points, alpha and beta together; for regular bases, whose R_w is not zero."),
+    holds_if("sec-4.g2-degree", _WHERE, "With the G2 conditions put in, the objective is of degree eight.",
+             "R_0 - 2 R_1 + R_2 or S_0 - 2 S_1 + S_2 is not zero (with the conditions corrected: R_ww or S_tt), and "
+             "that base has order 3 or more across the contact",
+             part(objective.degree_check(2, True), pr.DEGREE_G2),
+             remark="Of degree four in alpha^2 and beta^2, and quadratic in the free control points: once these are "
+             "eliminated, a polynomial in two numbers is left. Between bases whose rows run evenly across both "
+             "contacts, such as planes drawn with even nets, the degree is four."),
     holds_if("sec-4.unconstrained", _WHERE, "With the G1 or G2 conditions put in, the problem has no constraint left.",
              "the energy over alpha^2, beta^2 is not least at zero",
              part(objective.SHAPE_CHECK),
              remark="alpha, beta = 0 must be kept out: for two parallel plates, joined by a turn of 180 degrees, the "
              "least energy lies there, where the blend has no tangent plane at either contact."),
     holds("sec-4.initial-value", _WHERE, "The C2 solution is an admissible start for the G2 search.",
-          part(Check(_initial_cases, Strength.SYMBOLIC_ORDER, "the derived rows at alpha = 1, every order and knots",
+          part(Check(_initial_cases, Strength.SYMBOLIC_ORDER,
+                     "C2 rows solved from end derivatives, put into the corrected G2 conditions, every order and knots",
                      proof=True), SHAPE_ONE)),
     not_checkable("sec-4.fminunc", _WHERE, "fminunc is a BFGS quasi-Newton method with a cubic line search.",
                   "a statement on a version of another program, which is not here"),

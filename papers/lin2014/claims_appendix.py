@@ -77,7 +77,8 @@ CLAIMS = (
         (Reading((Part(general_check(1), pr.EQ_15),), condition=_REGULAR),),
         remark="Where p_1 vanishes P has no tangent plane, although the equation holds; where R_w vanishes smooth "
         "continuations exist that satisfy no such equation. The equation does not see the sign of p_1: a fold "
-        "(p_1 > 0 when both surfaces lie on the positive side of their parameters) satisfies it too.",
+        "(p_1 > 0 when both surfaces lie on the positive side of their parameters) satisfies it too, as tangent planes "
+        "alone are compared; eq-17 is judged by the join.",
     ),
     Claim(
         "eq-16",
@@ -95,7 +96,7 @@ CLAIMS = (
         "The blend leaves the base smoothly with P_u = +alpha^2 R_w at u = 0, w = w_s.",
         Verdict.FAILS,
         (Reading((Part(special_check(1), pr.EQ_17),)),),
-        Correction("The blend leaves R backwards: p_1 = -alpha^2.", (Part(special_check(1), TRUE_17),)),
+        Correction("The blend leaves R backwards, as (2.1) has it: p_1 = -alpha^2.", (Part(special_check(1), TRUE_17),)),
         partial(special_counterexample, 1, pr.EQ_17),
         partial(
             measured_rows,
@@ -103,8 +104,9 @@ CLAIMS = (
             {1: ROW_1_BY_17},
             "The made pair with row 1 by (17) and the first derivatives of the appendix",
         ),
-        remark="R lies on w >= w_s and P on u >= 0: with the printed sign the blend runs back over the base. It also "
-        "contradicts (2.1), which has the right sign. Open CASCADE compares tangent planes and curvatures with normals "
+        remark="The paper contradicts itself: (2.1), said to follow from (17), has the opposite sign, which is the right "
+        "one. R lies on w >= w_s and P on u >= 0: with the sign of (17) the blend runs back over the base, a fold with "
+        "one tangent plane, so that (15) holds and smoothness does not. Open CASCADE compares tangent planes and curvatures with normals "
         "up to sign: it does not see a fold, so that its verdict stands beside a normal that turns by 180 degrees.",
     ),
     Claim(

@@ -176,15 +176,20 @@ def letter_values(side: Side, k: Any, k_b: Any, matrix: sp.Matrix, mode: Mode = 
     if mode == "normal":
         flat = {base[1]: base[0]}
         values = {s: sp.expand(x.subs(flat)) for s, x in values.items()} | flat
-    h, b = BLEND_H, BASE_H
-    if side == "start":
-        return values | {pr.u_1: h[0], pr.u_2: h[1], pr.w_kr: pr.w_s + b[0], w_kr1: pr.w_s + b[1]}
-    values |= {u_last: 1 - h[0], u_before: 1 - h[1], pr.t_ks: pr.t_s + b[0], t_ks1: pr.t_s + b[1]}
-    if isinstance(k, int):
+    values |= knots_as_spans(side)
+    if side == "end" and isinstance(k, int):
         # u_(m-3) counted from the end of the inner knots u_1 .. u_(m-k+1); past them the vector goes on with ones.
         from_end = 5 - k
-        values[pr.u_m3] = 1 - h[from_end - 1] if from_end > 0 else sp.Integer(1)
+        values[pr.u_m3] = 1 - BLEND_H[from_end - 1] if from_end > 0 else sp.Integer(1)
     return values
+
+
+def knots_as_spans(side: Side) -> dict[Any, Any]:
+    """Return the knots next to a contact by their distances from it."""
+    h, b = BLEND_H, BASE_H
+    if side == "start":
+        return {pr.u_1: h[0], pr.u_2: h[1], pr.w_kr: pr.w_s + b[0], w_kr1: pr.w_s + b[1]}
+    return {u_last: 1 - h[0], u_before: 1 - h[1], pr.t_ks: pr.t_s + b[0], t_ks1: pr.t_s + b[1]}
 
 
 def _derivative_cases(surface: Literal["P", "R"], order: int, formula: Formula | None) -> Iterator[Case]:

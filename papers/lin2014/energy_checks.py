@@ -222,14 +222,15 @@ def _pivots(block: DomainMatrix) -> list[Any]:
 
 
 @cache
-def substituted(order: int, geometric: bool) -> sp.Poly:
+def substituted(order: int, geometric: bool, *, flat: bool = False) -> sp.Poly:
     """Return the energy of a strip with one free row after the contact rows of an order are put in.
 
-    The base data are symbols; alpha and beta too where contact is geometric.
+    The base data are symbols, with `flat` but for the second derivatives, which are zero; alpha and beta too where
+    contact is geometric.
     """
     space = u_basis(4, 6)
     gram = gram_matrix(2, space, space)
-    first, last = sp.symbols("d0:3"), sp.symbols("e0:3")
+    first, last = ([*sp.symbols(f"{letter}0:2"), 0 if flat else sp.Symbol(f"{letter}2")] for letter in "de")
     spans = [space.knots[3 + r] for r in (1, 2)]
     solve = end_derivatives(order, 3, spans[:order]).inv()
     a, b = (pr.alpha**2, pr.beta**2) if geometric else (1, 1)

@@ -27,6 +27,7 @@ from papers.lin2014.contact_checks import (
     ROWS,
     Side,
     base_order,
+    knots_as_spans,
     letter_values,
     named,
     rows_from_pieces,
@@ -109,7 +110,7 @@ def excess_check(side: Side, printed: Formula) -> Check:
 def _excess_cases(side: Side, printed: Formula, formula: Formula | None) -> Iterator[Case]:
     relation = given(formula).relation
     second, base = _second_derivatives(side, printed)
-    values = _knots(side) | {pr.P_uu: second, (pr.R_ww if side == "start" else S_tt): base}
+    values = knots_as_spans(side) | {pr.P_uu: second, (pr.R_ww if side == "start" else S_tt): base}
     residual = sp.cancel((relation.rhs - relation.lhs).subs(values, simultaneous=True))
     yield Case("every order, knots and base, along the normal", bool(residual == 0), residual=residual)
 
@@ -119,18 +120,11 @@ def _second_derivatives(side: Side, printed: Formula) -> tuple[Any, Any]:
     """Return P_uu by the printed row and the base's second derivative, along the normal: R_0 = R_1 = P_0 = P_1."""
     first, _, last = BASE_ROWS[side]
     flat = dict.fromkeys((*BASE_ROWS[side][:2], *ROWS[side][:2]), first)
-    row = printed.relation.rhs.xreplace(flat).xreplace({pr.u_m3: u_last}).subs(_knots(side), simultaneous=True)
+    row = printed.relation.rhs.xreplace(flat).xreplace({pr.u_m3: u_last}).subs(knots_as_spans(side), simultaneous=True)
     ends = end_derivatives(2, pr.k - 1, BLEND_H[:2]), end_derivatives(2, base_order(side) - 1, BASE_H)
     rows = sp.Matrix([first, first, row]), sp.Matrix([first, first, last])
     second, base = (sp.factor((end[2, :] * column)[0]) for end, column in zip(ends, rows, strict=True))
     return second, base
-
-
-def _knots(side: Side) -> dict[Any, Any]:
-    (h1, h2, _), (b1, b2) = BLEND_H, BASE_H
-    if side == "start":
-        return {pr.u_1: h1, pr.u_2: h2, pr.w_kr: pr.w_s + b1, w_kr1: pr.w_s + b2}
-    return {u_last: 1 - h1, u_before: 1 - h2, pr.t_ks: pr.t_s + b1, t_ks1: pr.t_s + b2}
 
 
 def normal_counterexample(side: Side, formulas: Sequence[Formula]) -> Counterexample | None:

@@ -14,7 +14,6 @@ import sympy as sp
 
 from derivations.contact import A, contact_rows
 from derivations.energy import SECOND_DERIVATIVES, quadratic_form, stationarity_condition, thin_plate_density
-from derivations.shape import total_degrees
 from derivations.splines import end_derivative_step, end_derivatives, span_symbols
 from papers.ledger import Case, Check, Formula, Strength
 from papers.lin2014 import energy_checks as energy
@@ -153,43 +152,74 @@ NORMAL_EQUATION_CHECK = Check(
 
 
 def degree_check(order: int, geometric: bool) -> Check:
-    """Return the check of the degree of the objective after substitution of contact of an order."""
+    """Return the check of the degree of the objective after substitution of contact of an order.
+
+    For G2 it is the rows as printed, too; both where the base is not flat across the contact, and where it is.
+    """
 
     def cases(formula: Formula | None) -> Iterator[Case]:
-        value = objective_degree(order, geometric)
-        yield difference_case(given(formula), "every order, knots and count", Meaning({pr.degree: value}))
-        instance = energy.substituted(order, geometric).total_degree()
-        yield difference_case(given(formula), "k = 4, one middle curve, a strip", Meaning({pr.degree: instance}))
+        rows = {"derived rows": _derived_rows(order)}
+        if geometric:
+            rows["printed rows"] = _printed_rows(order)
+        bases = (False, True) if geometric and order == 2 else (False,)
+        for name, (column, flat_base) in rows.items():
+            for flat in bases:
+                value = objective_degree([x.subs(flat_base) for x in column] if flat else column, geometric)
+                label = f"every order, knots and count, {name}" + (", second difference zero at both contacts" * flat)
+                meaning = Meaning({pr.degree: value})
+                yield difference_case(given(formula), label, meaning, own=not flat, meets=not flat)
+        for flat in bases:
+            instance = energy.substituted(order, geometric, flat=flat).total_degree()
+            label = "k = 4, one middle curve, a strip" + ", R_ww = S_tt = 0" * flat
+            meaning = Meaning({pr.degree: instance})
+            yield difference_case(given(formula), label, meaning, own=not flat, meets=not flat)
 
     return Check(
         cases,
         Strength.SYMBOLIC_ORDER,
-        "the degree of the derived rows in alpha and beta for symbolic orders and knots, put into the quadratic form; "
-        "the term of highest degree is an energy, not zero; the exact energy of a strip, k = 4",
+        "the degree of the rows in alpha and beta for symbolic orders and knots, put into the quadratic form; the term "
+        "of highest degree is an energy, not zero; the exact energy of a strip, k = 4",
         proof=True,
     )
 
 
+_FIRST_ROWS = (pr.R_0, pr.R_1, pr.R_2)
+
+
 @cache
-def objective_degree(order: int, geometric: bool) -> int:
+def _derived_rows(order: int) -> tuple[list[Any], dict[Any, Any]]:
+    """Return rows 0 .. n that contact with R sets, and the R_2 for which R_ww = 0."""
+    base_spans = span_symbols(2, "H")
+    rows = contact_rows(order, pr.k - 1, span_symbols(order), pr.k_r - 1, base_spans[:order]).subs(A, pr.alpha**2)
+    second = end_derivatives(2, pr.k_r - 1, base_spans)[2, :] * sp.Matrix(_FIRST_ROWS)
+    (flat,) = sp.solve(second[0], pr.R_2)
+    return list(rows * sp.Matrix(_FIRST_ROWS[: order + 1])), {pr.R_2: flat}
+
+
+@cache
+def _printed_rows(order: int) -> tuple[list[Any], dict[Any, Any]]:
+    """Return the rows by (1.1), (2.1), (3.1) as printed, and the R_2 for which their second difference is zero."""
+    values: dict[Any, Any] = {}
+    for condition in (pr.COND_1_1, pr.COND_2_1, pr.COND_3_1)[: order + 1]:
+        values[condition.relation.lhs] = condition.relation.rhs.subs(values)
+    return list(values.values()), {pr.R_2: 2 * pr.R_1 - pr.R_0}
+
+
+def objective_degree(rows: list[Any], geometric: bool) -> int:
     """Return the degree of (11) in free control points, alpha and beta, for every order, knots and count.
 
-    (11) is quadratic in control points. Row i of the contact rows is of degree i in a = alpha^2, and a^n stands in row
-    n alone: so the coefficient of alpha^(4n) is the energy of N_n(u) times a curve. It is not zero: N_n is not linear,
-    since its derivatives below the n-th vanish at u = 0, the n-th does not, and at u = 1 N_n and its slope vanish.
-    With beta it is the same.
+    (11) is quadratic in control points. Let alpha^d be the highest power in the rows next to u = 0, as a factor of a
+    sum of N_0 .. N_2 times curves. The coefficient of alpha^(2d) is the energy of that sum. It is not zero: a sum of
+    zero energy is linear in u on each v-line, and at u = 1 it vanishes with its slope, so that it is zero itself. With
+    beta it is the same.
     """
     term = quadratic_form().function
     points = [x for x in term.atoms(sp.Indexed) if x.base == sp.IndexedBase("P")]
-    in_points = term.as_poly(*points).total_degree()
+    in_points = int(term.as_poly(*points).total_degree())
     if not geometric:
-        return int(in_points)
-    rows = contact_rows(order, pr.k - 1, span_symbols(order), pr.k_r - 1, span_symbols(order, "H"))
-    degrees = [max(sp.degree(entry, A) for entry in rows[i, :] if entry != 0) for i in range(order + 1)]
-    ends = end_derivatives(order, pr.k - 1, span_symbols(order))
-    if degrees != list(range(order + 1)) or ends[order, order] == 0 or any(ends[:order, order]):
-        raise ValueError(f"rows: found degrees {degrees} in a, expected 0 .. {order} with a^{order} in the last alone")
-    return int(max(in_points, total_degrees(degrees[-1], degrees[-1])[1]))
+        return in_points
+    highest = max(sp.Poly(sp.numer(sp.together(row)), pr.alpha).degree() for row in rows)
+    return int(max(in_points, in_points * highest))
 
 
 def single_minimum_of_shape_cases() -> Iterator[Case]:

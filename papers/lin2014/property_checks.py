@@ -13,28 +13,37 @@ import sympy as sp
 from sympy.polys.domains import QQ
 from sympy.polys.matrices import DomainMatrix
 
-from derivations.properties import contact_orders, proofs
+from derivations.properties import (
+    contact_orders,
+    least_bernstein_coefficient,
+    partition_residuals,
+    proofs,
+    supports,
+)
 from derivations.splines import X, basis_pieces
 from papers.ledger import Case, Check, Formula, Strength
 from papers.lin2014 import printed as pr
 from papers.lin2014.abstract import WITHIN, coefficient
 from papers.lin2014.exact import clamped, de_boor, net_ring, rational_points, spline_basis
-from papers.lin2014.spline_checks import CUBIC, samples, triangle_cases
+from papers.lin2014.spline_checks import CUBIC, Sample, samples, triangle_cases
 
 HALF, THIRD = Fraction(1, 2), Fraction(1, 3)
 
 
-def proof_check(*names: str, instances: Callable[[], Iterator[Case]] = lambda: iter(())) -> Check:
+def proof_check(*names: str, instances: Callable[[], Iterator[Case]]) -> Check:
     """Return the check that the identities behind some properties are zero, for every degree and knot vector.
 
-    The instances are run after them.
+    The instances, which take the functions themselves, are run after them.
     """
 
     def cases(_: Formula | None) -> Iterator[Case]:
         yield from identity_cases(*names)
         yield from instances()
 
-    method = f"identities for symbolic degree and knots ({', '.join(names)}; argument in derivations.properties)"
+    method = (
+        f"identities for symbolic degree and knots ({', '.join(names)}; argument in derivations.properties), and the "
+        "Cox-de Boor functions at instances"
+    )
     return Check(cases, Strength.SYMBOLIC_ORDER, method, proof=True)
 
 
@@ -81,6 +90,88 @@ def _sums_to_one(vector: Sequence[Fraction], v: Fraction) -> bool:
     inside = vector[0] <= v <= vector[-1]
     basis = spline_basis({"V": vector})
     return inside and sum(basis(i, CUBIC, v, "V") for i in range(len(vector) - CUBIC)) == 1
+
+
+def weight_cases() -> Iterator[Case]:
+    """Yield surfaces: what multiplies their control points sums to 1 and is nowhere negative."""
+    for order in range(2, 6):
+        knots = ["0"] * order + ["h"] + ["1"] * order
+        one = all(residual.is_zero for residual in partition_residuals(order - 1, knots))
+        yield Case(f"order {order}, any inner knot h: sum 1", one, own=order == CUBIC)
+    for order in range(2, 9):
+        least = least_bernstein_coefficient(order - 1, clamped_exact(order))
+        label = f"order {order}, inner knots 1/3, 1/2, 1/2: least Bernstein coefficient"
+        yield Case(label, bool(least >= 0), own=order == CUBIC)
+    for sample in samples():
+        for u, v in ((Fraction(2, 7), Fraction(3, 7)), (Fraction(0), Fraction(1)), (Fraction(4, 5), Fraction(1, 3))):
+            factors = weights(sample, u, v)
+            convex = sum(factors) == 1 and min(factors) >= 0
+            yield Case(f"orders {sample.k}, {sample.l} at {u}, {v}", convex, own=sample.k == sample.l == CUBIC)
+
+
+def clamped_exact(order: int) -> list[Any]:
+    """Return a clamped vector with a single and a double inner knot."""
+    return [sp.Rational(*t.as_integer_ratio()) for t in clamped(order, THIRD, *[HALF] * min(2, order - 1))]
+
+
+def weights(sample: Sample, u: Fraction, v: Fraction) -> list[Fraction]:
+    """Return what each control point of a surface is multiplied by at (u, v): Cox-de Boor, function by function."""
+    basis = spline_basis({"U": sample.U} | dict(enumerate(sample.V)))
+    return [
+        basis(i, sample.k, u, "U") * basis(j, sample.l, v, i)
+        for i, size in enumerate(sample.sizes)
+        for j in range(size)
+    ]
+
+
+def affine_cases() -> Iterator[Case]:
+    """Yield surfaces: the affine map x -> a x + b of all control points maps each point, by de Boor's triangle."""
+    for sample in samples():
+        net = net_ring(*sample.sizes)
+        a, b = Fraction(-3, 2), Fraction(5, 7)
+        for u, v in ((Fraction(2, 7), Fraction(3, 7)), (Fraction(4, 5), Fraction(1, 3))):
+            mapped = sample.value({place: a * p + b for place, p in net.items()}, u, v)
+            same = mapped == a * sample.value(net, u, v) + b
+            yield Case(f"orders {sample.k}, {sample.l} at {u}, {v}", bool(same), own=sample.k == sample.l == CUBIC)
+
+
+def locality_cases() -> Iterator[Case]:
+    """Yield that N_i,k vanishes on span c, [t_c, t_(c+1)), unless i <= c < i + k, for every order and knots.
+
+    By induction on the order: on a span outside of that both functions of order k - 1 in the recurrence vanish by
+    the claim for k - 1. N_i,1 is 1 on span i alone. Then f_ij = N_i(u) N_ij(v) vanishes where either factor does. That
+    N_i,k lives on all of these spans is found at instances of every order from 2 to 8.
+    """
+    i = sp.Symbol("i", integer=True)
+    k = 2 + sp.Symbol("r", integer=True, nonnegative=True)
+    away = sp.Symbol("d", integer=True, nonnegative=True)
+    rising, falling = sp.symbols("omega psi")
+    functions = rising * sp.Function("N")(i) + falling * sp.Function("N")(i + 1)
+    for label, span in (("before its first knot", i - 1 - away), ("after its last knot", i + k + away)):
+        residual = functions.replace(sp.Function("N"), lambda j, c=span: _lower_function(j, k - 1, c))
+        yield Case(f"every order and knots, {label}", bool(residual == 0), residual=residual)
+    for order in range(2, 9):
+        distinct = list(range(3 * order))
+        found = supports(order - 1, distinct)
+        inside = range(order - 1, len(distinct) - order)
+        wanted = [tuple(c for c in inside if j <= c < j + order) for j in range(len(found))]
+        yield Case(f"order {order}: spans on which each function lives", found == wanted, own=order == CUBIC)
+    for sample in samples():
+        for u, v in ((Fraction(2, 7), Fraction(3, 7)), (Fraction(1, 9), Fraction(8, 9))):
+            felt = [factor != 0 for factor in weights(sample, u, v)]
+            near = [
+                across[i] <= u <= across[i + sample.k] and along[j] <= v <= along[j + sample.l]
+                for across in (sample.U,)
+                for i, along in enumerate(sample.V)
+                for j in range(sample.sizes[i])
+            ]
+            yield Case(f"orders {sample.k}, {sample.l} at {u}, {v}", felt == near, own=sample.k == sample.l == CUBIC)
+
+
+def _lower_function(j: Any, order: Any, span: Any) -> Any:
+    """Return N_j of an order on a span by the claim: zero where the span is known to be outside of its knots."""
+    outside = (j - span).is_positive or (span - (j + order - 1)).is_positive
+    return sp.Integer(0) if outside else sp.Symbol(f"N_{j}")
 
 
 def insertion_cases() -> Iterator[Case]:

@@ -6,7 +6,7 @@ check decides its formula for every order, knot vector and count first, and then
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache
@@ -247,14 +247,21 @@ def count_check(counting: Counting, method: str) -> Check:
 
 
 @cache
-def last_knot(count: Any, order: Any) -> Any:
-    """Return the index of the last knot that `count` + 1 functions of an order need.
+def functions_of_order(last: Any, order: Any) -> Any:
+    """Return how many functions of an order the knots 0 .. `last` have.
 
-    L + 1 knots have L functions of order 1. Each step of the recurrence makes one function of two neighbours.
+    Of order 1 there are `last`. Each step of the recurrence makes one function of two neighbours.
     """
-    functions, r, last = sp.Function("c"), sp.Symbol("r", integer=True), sp.Symbol("L")
-    number = sp.rsolve(functions(r + 1) - functions(r) + 1, functions(r), {functions(1): last}).subs(r, order)
-    (solution,) = sp.solve(number - (count + 1), last)
+    functions, r = sp.Function("c"), sp.Symbol("r", integer=True)
+    number = sp.rsolve(functions(r + 1) - functions(r) + 1, functions(r), {functions(1): last})
+    return sp.expand(number.subs(r, order))
+
+
+@cache
+def last_knot(count: Any, order: Any) -> Any:
+    """Return the index of the last knot that `count` + 1 functions of an order need."""
+    last = sp.Symbol("L")
+    (solution,) = sp.solve(functions_of_order(last, order) - (count + 1), last)
     return sp.expand(solution)
 
 
@@ -273,9 +280,10 @@ def domain_ends(count: Any, order: Any) -> tuple[Any, Any]:
 
     One step of the recurrence turns the sum of all functions of an order into that of the next lower one, but for its
     first and last function, which enter with a factor: so the sum is 1 where these two vanish, from the end of the
-    first one on, up to the start of the last one.
+    first one on, up to the start of the last one, which is the knot of its own index.
     """
-    return support_end(sp.Integer(0), order - 1), count + 1
+    last_below = functions_of_order(last_knot(count, order), order - 1) - 1
+    return support_end(sp.Integer(0), order - 1), sp.expand(last_below)
 
 
 def knot_count_instances(count: Any, order: Any) -> Counting:
@@ -293,9 +301,21 @@ def knot_count_instances(count: Any, order: Any) -> Counting:
 
 @cache
 def functions_on(n_knots: int, order: int) -> int:
-    """Return how many basis functions of an order live on n distinct knots, by running Cox-de Boor."""
+    """Return how many basis functions of an order live on n distinct knots, by running Cox-de Boor.
+
+    On fewer knots than twice the order, too few for a span where the functions sum to 1, it is 0.
+    """
     table = basis_table(order - 1, list(range(n_knots))) if n_knots >= 2 * order else {}
-    return len(next(iter(table.values()))) if table else max(n_knots - order, 0)
+    return len(next(iter(table.values()))) if table else 0
+
+
+def _cox_de_boor(i: int, order: int, knots: Sequence[int], x: Fraction) -> Fraction:
+    """Return B_i,order(x) by the recurrence alone, on distinct knots."""
+    if order == 1:
+        return Fraction(knots[i] <= x < knots[i + 1])
+    rising = (x - knots[i]) / (knots[i + order - 1] - knots[i])
+    falling = (knots[i + order] - x) / (knots[i + order] - knots[i + 1])
+    return rising * _cox_de_boor(i, order - 1, knots, x) + falling * _cox_de_boor(i + 1, order - 1, knots, x)
 
 
 def domain_instances(count: Any, order: Any) -> Counting:
@@ -304,7 +324,11 @@ def domain_instances(count: Any, order: Any) -> Counting:
     def instances() -> Iterator[tuple[str, dict[Any, Any], bool]]:
         for k in range(2, 6):
             for m in range(k - 1, k + 3):
-                spans = sorted(basis_table(k - 1, list(range(m + k + 1))))
+                knots = range(m + k + 1)
+                # One point in each span: there all functions sum to 1, or to less.
+                points = [Fraction(2 * c + 1, 2) for c in knots[:-1]]
+                sums = [sum(_cox_de_boor(i, k, knots, x) for i in range(m + 1)) for x in points]
+                spans = [c for c, total in enumerate(sums) if total == 1]
                 values = {pr.last: spans[0], pr.first: spans[-1] + 1, count: m, order: k}
                 yield f"order {k}, {m + 1} functions", values, k == CUBIC
 
