@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from solver.continuity import Contact
+from solver.creases import Crease
 from solver.regularity import Regularity
 from solver.shape_search import Certificate
 from solver.sides import Continuity
@@ -41,14 +42,19 @@ class BlendResult:
         Closed contact curves: how the blend's own edges v0 and v1 meet.
     regularity : Regularity
         How far the blend is from folding.
+    creases : tuple of Crease
+        Knots of full multiplicity, across which (11) counts nothing, and how far the normal turns there.
     warnings : tuple of str
         What a user should look at: folds, creases, shape parameters out of their bounds.
     iterations : int
         Of the nonlinear solver; 0 where there is none.
     status : str or None
         The nonlinear solver's own word on how it ended.
+    search_excess : float or None
+        How much more energy the search left than this blend has, as a fraction: `blend` sets the free rows anew from
+        the alpha and beta found; only for method bfgs.
     kkt_residual : float or None
-        Largest entry of the gradient of the Lagrangian, scaled; only for method casadi.
+        Largest entry of the gradient of the Lagrangian and of multiplier times slack, scaled; only for method casadi.
     certificate : Certificate or None
         Proof that no admissible alpha and beta have less energy, in coordinates of size 1; only for method reduced.
     proven_gap : float or None
@@ -74,9 +80,11 @@ class BlendResult:
     contact_b: Contact
     seam: Contact | None
     regularity: Regularity
+    creases: tuple[Crease, ...]
     warnings: tuple[str, ...]
     iterations: int
     status: str | None
+    search_excess: float | None
     kkt_residual: float | None
     certificate: Certificate | None
     proven_gap: float | None

@@ -2,22 +2,23 @@
 
 from __future__ import annotations
 
+import reprlib
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Literal, TypeAlias, get_args
+from typing import Any, Literal, TypeAlias, cast, get_args
 
 import numpy as np
 
-from solver.arrays import FloatArray
+from solver.arrays import FloatArray, real_number, require
 from solver.base import Base
 from solver.blend_result import BlendResult
 from solver.certificate import check_certificate
 from solver.continuity import Contact, check_regular_edge, measure_contact
 from solver.correspondence import Correspondence, Flip, correspond, is_closed, snapped_seam
+from solver.creases import Crease, measure_creases
 from solver.errors import ContactError, FoldError, OptionError
 from solver.gram import thin_plate_energy
-from solver.knots import inner_knots
 from solver.limits import required_limits
 from solver.problem import BlendProblem, ProblemOptions, VScale, make_problem
 from solver.regularity import Regularity, measure_regularity
@@ -32,7 +33,13 @@ Shape: TypeAlias = float | Literal["free", "natural"]
 FOLD_TURN = 90.0
 # An area element this far below its mean is as good as a fold.
 PINCH = 1e-3
-_LEAST_ALPHA = 1e-100
+# A normal that turns this far across a knot of full multiplicity, in degrees, makes a crease: well below what CAD
+# systems take for tangent (0.01 and more), well above the rounding of a surface that is smooth there.
+SHARP = 1e-3
+_NAMED = 5
+# Energies have the fourth power of alpha^2 and of the box: far from any blend, and far from where floats end.
+_MOST_ALPHA = 1e15
+_MOST_BOX = 1e20
 
 
 def blend(
@@ -111,7 +118,9 @@ def blend(
     (12, 1.6875, 1.6875)
     """
     started = time.perf_counter()
-    if method not in get_args(Method):
+    if not isinstance(strict, bool):
+        raise OptionError(f"strict: found {strict!r}, expected True or False")
+    if not isinstance(method, str) or method not in get_args(Method):
         raise OptionError(f"method: found {method!r}, expected one of {', '.join(get_args(Method))}")
     stated = state_problem(
         a,
@@ -139,7 +148,8 @@ def blend(
         check_certificate(found.certificate)
     seam = _seam(surface, problem)
     regularity = measure_regularity(surface)
-    warnings = _warnings(surface, regularity) + _bound_warnings(problem, found) + _seam_warning(a, b)
+    creases = measure_creases(surface)
+    warnings = _warnings(regularity, creases) + _bound_warnings(problem, found) + _seam_warning(a, b)
     if strict and warnings:
         raise FoldError(f"{'; '.join(warnings)}; try other middle curves, alpha='natural', or without strict")
     return BlendResult(
@@ -158,9 +168,11 @@ def blend(
         contact_b=contact_b,
         seam=seam,
         regularity=regularity,
+        creases=creases,
         warnings=warnings,
         iterations=found.iterations,
         status=found.status,
+        search_excess=found.search_excess,
         kkt_residual=found.kkt_residual,
         certificate=found.certificate,
         proven_gap=found.proven_gap,
@@ -205,14 +217,19 @@ def state_problem(
     middle_knots: Sequence[Sequence[float]] | None = None,
 ) -> StatedProblem:
     """State the problem that `blend` solves; arguments and errors are those of `blend`."""
+    require(a, "a", Base)
+    require(b, "b", Base)
     pair = (continuity, continuity) if isinstance(continuity, str) else continuity
     if not isinstance(pair, tuple | list) or len(pair) != 2:
         raise OptionError(f"continuity: found {continuity!r}, expected one of C0..G2 or a pair of them")
-    ends = box if isinstance(box, tuple | list) and all(isinstance(end, int | float) for end in box) else ()
-    if len(ends) != 2 or not 0 < ends[0] <= ends[1] < np.inf:
-        raise OptionError(f"box: found {box!r}, expected (low, high) with 0 < low <= high")
     options = ProblemOptions(
-        middle_curves, degree_u, _checked_shape(alpha), box, v_scale, u_knots=u_knots, middle_knots=middle_knots
+        middle_curves,
+        degree_u,
+        _checked_shape(alpha),
+        _checked_box(box),
+        v_scale,
+        u_knots=u_knots,
+        middle_knots=middle_knots,
     )
     # The bases as the blend sees them: contact at w = 0, one parameter v, coordinates of size 1.
     sides = make_side(a, pair[0], "base a"), make_side(b, pair[1], "base b")
@@ -236,20 +253,38 @@ class _Found:
     proven_gap: float | None = None
     constraint_rank: tuple[int, int] | None = None
     status: str | None = None
+    search_excess: float | None = None
 
 
-def _checked_shape(alpha: Shape | tuple[Shape, Shape]) -> tuple[Shape, Shape]:
+def _checked_box(box: object) -> tuple[float, float]:
+    """Return both ends of the box as floats."""
+    if not isinstance(box, tuple | list | np.ndarray) or len(box) != 2:
+        raise OptionError(f"box: found {reprlib.repr(box)}, expected (low, high)")
+    low, high = (real_number(end, f"box[{i}]", OptionError) for i, end in enumerate(box))
+    if not 1 / _MOST_BOX <= low <= high <= _MOST_BOX:
+        raise OptionError(f"box: found ({low:g}, {high:g}), expected {1 / _MOST_BOX:g} <= low <= high <= {_MOST_BOX:g}")
+    return low, high
+
+
+def _checked_shape(alpha: object) -> tuple[Shape, Shape]:
     """Return "free", "natural" or alpha^2 for both sides."""
-    pair = tuple(alpha) if isinstance(alpha, tuple | list) else (alpha, alpha)
-    for value in pair:
-        number = isinstance(value, int | float) and not isinstance(value, bool)
-        # Its square must be a number too.
-        if value not in ("free", "natural") and not (number and _LEAST_ALPHA <= float(value) <= 1 / _LEAST_ALPHA):
-            raise OptionError(f"alpha: found {value!r}, expected free, natural or a positive number")
+    is_pair = isinstance(alpha, tuple | list) or (isinstance(alpha, np.ndarray) and alpha.ndim == 1)
+    pair = tuple(cast("Any", alpha)) if is_pair else (alpha, alpha)
     if len(pair) != 2:
         raise OptionError(f"alpha: found {len(pair)} values, expected one or a pair")
-    first, second = (value if isinstance(value, str) else float(value) ** 2 for value in pair)
+    first, second = map(_checked_alpha, pair)
     return first, second
+
+
+def _checked_alpha(value: object) -> Shape:
+    if isinstance(value, str):
+        if value in ("free", "natural"):
+            return cast("Shape", value)
+        raise OptionError(f"alpha: found {value!r}, expected free, natural or a positive number")
+    number = real_number(value, "alpha", OptionError)
+    if not 1 / _MOST_ALPHA <= number <= _MOST_ALPHA:
+        raise OptionError(f"alpha: found {number:g}, expected {1 / _MOST_ALPHA:g} to {_MOST_ALPHA:g}")
+    return number**2
 
 
 def _frame(a: Side, b: Side) -> tuple[FloatArray, float]:
@@ -284,7 +319,7 @@ def _shape_parameters(problem: BlendProblem, method: Method) -> _Found:
     from solver.quasi_newton import solve_quasi_newton
 
     rough = solve_quasi_newton(problem)
-    return _Found(rough.a, rough.b, method, rough.iterations, status=rough.status)
+    return _Found(rough.a, rough.b, method, rough.iterations, status=rough.status, search_excess=rough.excess)
 
 
 def _surface(
@@ -358,19 +393,24 @@ def _seam(surface: SemiStructuredSurface, problem: BlendProblem) -> Contact | No
     return measure_contact(Base(surface, "v1"), Base(surface, "v0"), flip="no")
 
 
-def _warnings(surface: SemiStructuredSurface, regularity: Regularity) -> tuple[str, ...]:
+def _warnings(regularity: Regularity, creases: tuple[Crease, ...]) -> tuple[str, ...]:
     """Return what a user should look at before the blend is used."""
     found = []
-    if regularity.largest_turn_degrees >= FOLD_TURN:
+    sharpest = max((crease.angle_degrees for crease in creases), default=0.0)
+    # A turn that a crease explains is no fold.
+    if regularity.largest_turn_degrees - sharpest >= FOLD_TURN:
         found.append(
             f"the blend folds: its normal turns by {regularity.largest_turn_degrees:.0f} degrees between samples"
         )
     elif regularity.least_area_ratio < PINCH:
         found.append(f"the blend is pinched: its area element falls to {regularity.least_area_ratio:.1e} of the mean")
-    creases = sorted({float(v) for c in surface.control_curves for v, n in _multiplicities(c) if n >= c.degree})
-    if creases:
+    sharp = [crease for crease in creases if crease.angle_degrees >= SHARP]
+    if sharp:
+        places = ", ".join(f"{crease.parameter} = {crease.at:g}" for crease in sharp[:_NAMED])
+        more = f" and {len(sharp) - _NAMED} more" if len(sharp) > _NAMED else ""
         found.append(
-            f"the blend may be creased at v = {', '.join(f'{v:g}' for v in creases)}: knots of full multiplicity"
+            f"the blend is creased at {places}{more}, by up to {sharpest:.2g} degrees: knots of full multiplicity, "
+            "across which the energy counts nothing"
         )
     return tuple(found)
 
@@ -391,8 +431,3 @@ def _seam_warning(a: Base, b: Base) -> tuple[str, ...]:
         return ()
     which = "a" if is_closed(a) else "b"
     return (f"contact curve {which} is closed, the other is open: the blend is open along the seam of {which}",)
-
-
-def _multiplicities(curve: BSplineCurve) -> list[tuple[float, int]]:
-    values, counts = np.unique(inner_knots(curve.knots, curve.degree), return_counts=True)
-    return list(zip(values.tolist(), counts.tolist(), strict=True))

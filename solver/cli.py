@@ -48,6 +48,7 @@ def blend_command(
         str, typer.Option(metavar="FLIP", help="Whether edge B runs against edge A: auto, yes or no.")
     ] = "auto",
     middle_curves: Annotated[int, typer.Option(metavar="N", help="v-control curves between the contacts.")] = 1,
+    degree_u: Annotated[int, typer.Option(metavar="P", help="Degree of the blend across.")] = 3,
     method: Annotated[
         str, typer.Option(metavar="METHOD", help="How alpha and beta are found: reduced, casadi or bfgs.")
     ] = "reduced",
@@ -69,7 +70,7 @@ def blend_command(
         list[str] | None,
         typer.Option(metavar="K1,K2,...", help="Inner knots of a middle curve, in v of edge A; once for each curve."),
     ] = None,
-    strict: Annotated[bool, typer.Option("--strict", help="Refuse a blend that folds or may be creased.")] = False,
+    strict: Annotated[bool, typer.Option("--strict", help="Refuse a blend with warnings: folds, creases.")] = False,
     report: Annotated[str | None, typer.Option(metavar="FILE", help="JSON with energy, alpha, beta, contact.")] = None,
 ) -> None:
     """Join an edge of A and an edge of B by a semi-structured surface of least energy."""
@@ -91,6 +92,7 @@ def blend_command(
             Base(second.surface, cast(Any, edge_b)),
             continuity=cast(Any, (continuity, continuity if continuity_b is None else continuity_b)),
             middle_curves=middle_curves,
+            degree_u=degree_u,
             method=cast(Any, method),
             flip=cast(Any, flip),
             alpha=(_shape(alpha), _shape(alpha if alpha_b is None else alpha_b)),
@@ -250,10 +252,12 @@ def report_record(result: BlendResult) -> dict[str, Any]:
         "control_points": result.surface.n_control_points,
         "iterations": result.iterations,
         "status": result.status,
+        "search_excess": result.search_excess,
         "kkt_residual": result.kkt_residual,
         "proven_gap": result.proven_gap,
         "constraint_rank": result.constraint_rank,
         "regularity": asdict(result.regularity),
+        "creases": [asdict(crease) for crease in result.creases],
         "seconds": result.seconds,
         "contact_a": contact_record(result.contact_a),
         "contact_b": contact_record(result.contact_b),

@@ -222,12 +222,14 @@ def solve_constrained(problem: BlendProblem) -> ConstrainedSolution:
         IPOPT did not converge; the message names its status and what to try.
     """
     nlp = constrained_problem(problem)
-    result, stats = _optimum(nlp, nlp.start)
+    result, stats = _optimum(nlp, x0=nlp.start)
     iterations = int(stats["iter_count"])
     reached = float(result["f"])
     if reached < RESCALED:
-        nlp = constrained_problem(problem, reached * nlp.f_scale)
-        result, stats = _optimum(nlp, result["x"])
+        larger = nlp.f_scale
+        nlp = constrained_problem(problem, reached * larger)
+        reached_multipliers = {f"lam_{name}0": result[f"lam_{name}"] * (larger / nlp.f_scale) for name in ("x", "g")}
+        result, stats = _optimum(nlp, x0=result["x"], **reached_multipliers)
         iterations += int(stats["iter_count"])
     n_points = 3 * problem.form.offsets[-1]
     shape, pressure = (np.asarray(result[name]).ravel()[n_points:] for name in ("x", "lam_x"))
@@ -257,20 +259,20 @@ def solve_constrained(problem: BlendProblem) -> ConstrainedSolution:
     return ConstrainedSolution(a, b, iterations, str(stats["return_status"]), kkt, rank)
 
 
-def _optimum(nlp: ConstrainedProblem, start: Any) -> tuple[dict[str, Any], dict[str, Any]]:
-    """Return what IPOPT finds from a start, and its statistics."""
-    options: Any = {
-        "print_time": False,
-        "hess_lag": nlp.hessian,
-        "ipopt": {
-            "print_level": 0,
-            "sb": "yes",
-            "tol": 1e-11,
-            "constr_viol_tol": 1e-11,
-            "max_iter": 200,
-            # Approximate minimum degree: systems are small, and finding a better order costs more than it saves.
-            "mumps_pivot_order": 0,
-        },
+def _optimum(nlp: ConstrainedProblem, **start: Any) -> tuple[Any, Any]:
+    """Return what IPOPT finds from a start, and its statistics; with multipliers it stays near the start."""
+    ipopt: dict[str, Any] = {
+        "print_level": 0,
+        "sb": "yes",
+        "tol": 1e-11,
+        "constr_viol_tol": 1e-11,
+        "max_iter": 200,
+        # Approximate minimum degree: systems are small, and finding a better order costs more than it saves.
+        "mumps_pivot_order": 0,
     }
+    if "lam_g0" in start:
+        pushes = ("bound_push", "bound_frac", "slack_bound_frac", "slack_bound_push", "mult_bound_push")
+        ipopt |= {"warm_start_init_point": "yes", "mu_init": 1e-9, **{f"warm_start_{push}": 1e-9 for push in pushes}}
+    options: Any = {"print_time": False, "hess_lag": nlp.hessian, "ipopt": ipopt}
     solver = ca.nlpsol("blend", "ipopt", {"x": nlp.x, "f": nlp.f, "g": nlp.g}, options)
-    return solver(x0=start, lbx=nlp.lower, ubx=nlp.upper, lbg=0, ubg=0), solver.stats()
+    return solver(**start, lbx=nlp.lower, ubx=nlp.upper, lbg=0, ubg=0), solver.stats()

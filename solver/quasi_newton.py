@@ -16,6 +16,7 @@ from solver.closing import periodic_points
 from solver.errors import ComputationError
 from solver.nlp import contact_rows
 from solver.problem import BlendProblem
+from solver.reduced import ZERO_ENERGY
 
 
 @dataclass(frozen=True)
@@ -26,19 +27,18 @@ class QuasiNewtonSolution:
     ----------
     a, b : float
         alpha^2 and beta^2.
-    iterations, evaluations : int
+    iterations : int
     status : str
         SciPy's word on how it ended.
-    energy : float
-        As the search left it, free rows included, in coordinates of size 1.
+    excess : float
+        Energy that the search left, less what its alpha and beta allow, as a fraction of the latter.
     """
 
     a: float
     b: float
     iterations: int
-    evaluations: int
     status: str
-    energy: float
+    excess: float
 
 
 def solve_quasi_newton(problem: BlendProblem) -> QuasiNewtonSolution:
@@ -61,7 +61,11 @@ def solve_quasi_newton(problem: BlendProblem) -> QuasiNewtonSolution:
         float(next(shape)) ** 2 if is_free else fixed
         for is_free, fixed in zip(problem.free, problem.start, strict=True)
     )
-    return QuasiNewtonSolution(a, b, int(found.nit), int(found.nfev), str(found.message), float(found.fun))
+    points = problem.control_points(a, b)
+    allowed = float(problem.form.products(points[None])[0, 0])
+    terms = float(np.sum(np.abs(points) * (abs(problem.form.matrix()) @ np.abs(points))))
+    excess = (float(found.fun) - allowed) / max(allowed, ZERO_ENERGY * terms)
+    return QuasiNewtonSolution(a, b, int(found.nit), str(found.message), excess)
 
 
 def substituted_objective(problem: BlendProblem) -> tuple[ca.Function, np.ndarray]:

@@ -16,6 +16,8 @@ from solver.shape_search import Certificate, best_of_grid, least_point
 PROOF_TOLERANCE = 1e-10
 ZERO_ENERGY = 1e-12
 _CENTRES = 4
+# Beyond it the fourth powers of the box leave the range of floats.
+_MOST_ENERGY = 1e200
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,7 +49,13 @@ def shape_polynomial(problem: BlendProblem, centre: tuple[float, float]) -> Floa
     products = problem.form.products(points)
     powers = [side.order * is_free for side, is_free in zip((problem.a, problem.b), problem.free, strict=True)]
     function = getattr(shape_numpy, f"shape_polynomial_{powers[0]}{powers[1]}")
-    return np.asarray(function(*products[np.triu_indices(len(products))]))
+    table = np.asarray(function(*products[np.triu_indices(len(products))]))
+    if not (np.abs(table) <= _MOST_ENERGY).all():
+        raise ComputationError(
+            f"the energy reaches {np.abs(table).max():.0e} in coordinates of size 1, expected at most "
+            f"{_MOST_ENERGY:.0e}; knots or shape parameters are too far from the size of the gap"
+        )
+    return table
 
 
 def _monomial_points(problem: BlendProblem, centre: tuple[float, float]) -> FloatArray:
@@ -73,7 +81,7 @@ def solve_reduced(problem: BlendProblem) -> ReducedSolution:
     Raises
     ------
     ComputationError
-        The proof did not succeed.
+        The proof did not succeed, or the energy is out of the range of floats.
     """
     # Where a parameter is fixed, the centre carries its value; the polynomial does not depend on it.
     first, second = (0.0 if f else fixed for f, fixed in zip(problem.free, problem.start, strict=True))
@@ -97,7 +105,8 @@ def solve_reduced(problem: BlendProblem) -> ReducedSolution:
             return ReducedSolution(*found, certificate, gap)
         centre = found
     raise ComputationError(
-        f"the least energy is proved only to {gap:.1e} of itself, expected {PROOF_TOLERANCE:.0e}; try method casadi"
+        f"the least energy is proved only to {gap:.1e} of itself, expected {PROOF_TOLERANCE:.0e}; "
+        "try method casadi, or knots that are further apart"
     )
 
 

@@ -18,6 +18,7 @@ from solver.arrays import FloatArray
 from solver.errors import ControlPointError, EdgeError, FileError, InputError
 from solver.io.disk import write_text
 from solver.io.json_text import load_json, short, to_text
+from solver.operations import clamped_surface
 from solver.surfaces import BSplineCurve, BSplineSurface, SemiStructuredSurface, Surface
 
 FORMAT = "semispline/1"
@@ -29,6 +30,10 @@ _Count: TypeAlias = Annotated[int, Strict()]
 _Text: TypeAlias = Annotated[str, Strict()]
 _Shape: TypeAlias = _Number | _Text
 _Points: TypeAlias = list[list[_Number]]
+
+
+# Knots beyond it are for the surface to refuse.
+_HUGE = 1e300
 
 
 class _Record(BaseModel):
@@ -112,7 +117,7 @@ class StoredProblem:
 
 
 def read_json_surface(path: str | Path) -> Surface:
-    """Read a surface of either kind.
+    """Read a surface of either kind; unclamped and periodic knots are clamped exactly.
 
     Raises
     ------
@@ -234,9 +239,12 @@ def surface_from_record(record: Any, where: str = "surface") -> Surface:
                     f"{where}: control_points[{i}]: {len(row)} points, expected {wanted} as in row 0"
                 )
             _check_points(row, f"{where}: control_points[{i}]")
+        n_u, n_v = len(plain.control_points), len(plain.control_points[0]) if plain.control_points else 0
+        both = ((plain.knots_u, plain.degree_u, n_u), (plain.knots_v, plain.degree_v, n_v))
+        make = clamped_surface if any(_is_unclamped(*one) for one in both) else BSplineSurface
         return _made(
             where,
-            lambda: BSplineSurface(
+            lambda: make(
                 plain.degree_u,
                 plain.degree_v,
                 _list(plain.knots_u),
@@ -263,6 +271,16 @@ def surface_from_record(record: Any, where: str = "surface") -> Surface:
             semi.degree_u, _list(semi.knots_u), tuple(curve(i, c) for i, c in enumerate(semi.control_curves))
         ),
     )
+
+
+def _is_unclamped(knots: list[float], degree: int, n_control: int) -> bool:
+    """Tell whether knots describe a spline that has to be clamped; what describes none is for the surface to refuse."""
+    if not degree < n_control == len(knots) - degree - 1 or knots != sorted(knots):
+        return False
+    if not abs(knots[0]) + abs(knots[-1]) < _HUGE:
+        return False
+    ends = knots[: degree + 1], knots[-degree - 1 :]
+    return knots[degree] < knots[-degree - 1] and any(len(set(end)) > 1 for end in ends)
 
 
 def _content(record: Any, kinds: Sequence[str], where: str) -> dict[str, Any]:

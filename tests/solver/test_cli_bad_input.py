@@ -37,7 +37,7 @@ BAD_FILES = {
         record(knots_u=[0] * 4 + [0.5] * 4 + [1] * 4, control_points=NET + NET[:3]),
         ["knots_u[4]", "multiplicity 4", "at most 3"],
     ),
-    "knots not clamped": (record(knots_u=[0, 0, 0, 0.1, 0.5, 1, 1, 1, 1]), ["knots_u[0]"]),
+    "knots without a domain": (record(knots_u=[0, 0, 0, 1, 1, 1, 1, 2, 3]), ["domain", "empty"]),
     "too few knots": (record(knots_u=CUBIC[1:]), ["knots_u", "8 knots", "expected 9"]),
     "too few points": (record(control_points=NET[:4]), ["knots_u", "9 knots", "expected 8"]),
     "ragged rows": (record(control_points=[*NET[:4], NET[4][:1]]), ["control_points[4]", "1 points", "expected 2"]),

@@ -54,7 +54,7 @@ def test_scale_changes_the_blend(pair):
     ("options", "message"),
     [
         (("--alpha", "wild"), "alpha: found 'wild'"),
-        (("--box", "2", "1"), "box: found (2.0, 1.0)"),
+        (("--box", "2", "1"), "box: found (2, 1), expected 1e-20"),
         (("--v-scale", "metric"), "v_scale: found 'metric'"),
         (("--method", "magic"), "method: found 'magic'"),
     ],

@@ -324,6 +324,9 @@ def test_bfgs_is_reported_and_never_better(seed):
     low, *_, high = sorted([1 / 8, rough.alpha2 / sizes[0], rough.beta2 / sizes[1], 8])
     around = blend(a, b, box=(0.9 * low, 1.1 * high))
     assert around.energy <= rough.energy * (1 + 1e-10)
+    # What the search itself left: a little more than its alpha and beta allow, never less.
+    assert -1e-10 <= rough.search_excess < 1e-3
+    assert around.search_excess is None
 
 
 def test_bfgs_outside_of_the_box_says_so():
