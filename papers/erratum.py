@@ -188,10 +188,10 @@ def _conditional_lines(claim: Claim, decision: Decision) -> Iterable[str]:
 
 def _ambiguous_lines(claim: Claim, decision: Decision) -> Iterable[str]:
     for reading in decision.readings:
-        extra = f", leaves {_code(reading.residual)}" if reading.residual not in (None, 0) else ""
         verdict = f"holds if {reading.condition}" if reading.verdict is Verdict.HOLDS_IF else str(reading.verdict)
-        at = f", such as for {reading.false_case}" if reading.false_case else ""
-        yield f"Read as {reading.label}: **{verdict}**{extra}{at} ({kind_text(reading)}, {checked_text(reading)})."
+        extra = f"; leaves {_code(reading.residual)}" if reading.residual not in (None, 0) else ""
+        wrong = f" false: {reading.false_case}{extra}" if reading.false_case else ""
+        yield f"Read as {reading.label}: **{verdict}**.{wrong} ({kind_text(reading)}, {checked_text(reading)})"
     if decision.counterexample:
         yield f"Smallest counterexample: {decision.counterexample}."
     if claim.correction:

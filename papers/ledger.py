@@ -303,19 +303,6 @@ class Paper:
         raise LedgerError(f"claim: found {identifier!r}, expected one of {', '.join(c.id for c in self.claims)}")
 
 
-def given(formula: Formula | None) -> Formula:
-    """Return the formula that a check needs.
-
-    Raises
-    ------
-    ValueError
-        There is none.
-    """
-    if formula is None:
-        raise ValueError("formula: found None, expected a relation")
-    return formula
-
-
 def decided_cases(check: Check, formula: Formula | None) -> Iterator[Case]:
     """Yield the cases of a check, and refuse an answer that contradicts itself.
 

@@ -14,10 +14,10 @@ from typing import Any
 import sympy as sp
 
 from derivations.bezier import blossom, division_curve, division_lemmas, expanded_rows, generic_patch, row_degrees
-from papers.ledger import Case, Check, Formula, Strength, given
+from papers.ledger import Case, Check, Formula, Strength
 from papers.lin2014 import printed as pr
 from papers.lin2014.abstract import SAME, WITHIN, coefficient
-from papers.lin2014.exact import Meaning, UndefinedError, bernstein, difference_case, indexed
+from papers.lin2014.exact import Meaning, UndefinedError, bernstein, difference_case, given, indexed
 
 # Degrees m, n of the patch and k of the Bezier function; the paper's own example is bicubic.
 DEGREES = ((1, 1, 1), (2, 2, 1), (1, 3, 2), (3, 3, 1), (2, 1, 3), (3, 3, 2))

@@ -12,6 +12,7 @@ from papers.lin2014 import printed as pr
 from papers.lin2014 import related_checks as related
 from papers.lin2014.claims_3_conditions import TRUE_3_1
 from papers.lin2014.contact_checks import row_check
+from papers.lin2014.normal_checks import along_normal
 from papers.lin2014.property_checks import proved
 from papers.lin2014.records import ambiguous, holds, holds_if, not_checkable, part
 from papers.lin2014.spline_checks import count_check, knot_count_instances
@@ -35,8 +36,9 @@ CLAIMS: tuple[Claim, ...] = (
     ambiguous("sec-0.reaches", "Abstract and section 6", "The continuity between bases and blend reaches G2 and C2.",
               Reading((part(row_check("start", 2), TRUE_3_1),),
                       label="what the representation can do, with the right conditions"),
-              Reading((part(row_check("start", 2), pr.COND_3_1),),
-                      label="what the conditions as printed do")),
+              Reading((part(row_check("start", 2, "normal"), along_normal(pr.COND_3_1, "start")),),
+                      label="G2 by the conditions as printed, for all knots of the bases"),
+              remark="At R; at S as well, and by the printed conditions C2 neither: see cond-3.2, sec-3.parametric-c2."),
     not_checkable("sec-0.validated", "Abstract", "The examples validate that the method is effective and efficient.",
                   "no measure of either is named, and the control points of the examples are not printed; what rivals "
                   "do on bases of our own is in the study's findings"),

@@ -7,13 +7,14 @@ from typing import Any
 
 from sympy import Eq, Ge, Sum, Symbol
 
-from papers.ledger import Case, Check, Claim, Correction, Counterexample, Formula, Part, Reading, Strength, given
+from papers.ledger import Case, Check, Claim, Correction, Counterexample, Formula, Part, Reading, Strength
 from papers.lin2014 import bezier_checks as bezier
 from papers.lin2014 import printed as pr
 from papers.lin2014 import printed_figures as figures
 from papers.lin2014 import trimming_checks as trimming
 from papers.lin2014.bezier_checks import check
 from papers.lin2014.consequences_2 import missing_first_row, top_last_row
+from papers.lin2014.exact import given
 from papers.lin2014.property_checks import proved
 from papers.lin2014.records import ambiguous, fails, holds, not_checkable, part
 

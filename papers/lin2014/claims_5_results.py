@@ -149,7 +149,8 @@ CLAIMS: tuple[Claim, ...] = (
                        "X_t at the contacts by the product rule, every n and mu", proof=True), formula)
             for end, formula in enumerate(hartmann.DIRECTION)),
           remark="X_t is that of the piece: a piece that runs into its base takes the blend with it."),
-    fails("fig-7.inference", "Fig. 7", "It runs back because it lies in the convex hull of the two bases.",
+    fails("fig-7.inference", "Fig. 7",
+          "Hartmann's blend runs back over its bases because it lies in their convex hull.",
           part(question(hartmann.inference_cases, "blends of coplanar strips inside their hull, X_t at the contact")),
           correction=Correction("It runs back because its pieces lie inside the bases: X_t is that of the piece.",
                                 tuple(Part(Check(hartmann.direction_cases(end), Strength.SYMBOLIC_ORDER,

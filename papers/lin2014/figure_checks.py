@@ -12,11 +12,11 @@ from typing import Any
 
 import sympy as sp
 
-from papers.ledger import Case, Consequence, Counterexample, Formula, given
+from papers.ledger import Case, Consequence, Counterexample, Formula
 from papers.lin2014 import printed as pr
 from papers.lin2014 import printed_figures as printed
 from papers.lin2014.blending_checks import WITH_MIDDLE_CURVE, inner_knots, merged
-from papers.lin2014.exact import clamped
+from papers.lin2014.exact import clamped, given
 from papers.lin2014.property_checks import contained
 
 CUBIC = 4

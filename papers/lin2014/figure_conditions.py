@@ -21,10 +21,10 @@ from typing import Any, Literal
 import sympy as sp
 
 from derivations.splines import end_derivatives, span_symbols
-from papers.ledger import Case, Check, Counterexample, Formula, Strength, given
+from papers.ledger import Case, Check, Counterexample, Formula, Strength
 from papers.lin2014 import printed as pr
 from papers.lin2014.contact_checks import CUBIC, Side, difference_form, t_ks1, u_before, u_last, w_kr1
-from papers.lin2014.exact import Meaning, UndefinedError, interpret
+from papers.lin2014.exact import Meaning, UndefinedError, given, interpret
 from papers.mutation import mutants
 from papers.search import smallest_assignment
 

@@ -13,7 +13,8 @@ import numpy as np
 import sympy as sp
 
 from papers.baselines.hartmann import weight as float_weight
-from papers.ledger import Case, Consequence, Counterexample, Formula, given
+from papers.ledger import Case, Consequence, Counterexample, Formula
+from papers.lin2014.exact import given
 
 _T = sp.Symbol("t", nonnegative=True)
 _N = sp.Symbol("n", integer=True, positive=True)

@@ -8,9 +8,10 @@ from typing import Any
 import sympy as sp
 
 from derivations.splines import end_derivatives, span_symbols
-from papers.ledger import Case, Formula, given
+from papers.ledger import Case, Formula
 from papers.lin2014 import printed as pr
 from papers.lin2014.blending_checks import PRINTED_PAIRS, printed_pair
+from papers.lin2014.exact import given
 from papers.lin2014.property_checks import contained, union
 
 # A ball of radius r on a base of curvature c across the contact, and the jump of the curvature there.

@@ -24,8 +24,9 @@ from derivations.trimming import (
     inside_square,
     trimmed_rows,
 )
-from papers.ledger import Case, Formula, given
+from papers.ledger import Case, Formula
 from papers.lin2014 import printed_figures as printed
+from papers.lin2014.exact import given
 
 
 def _interval(name: str) -> tuple[Any, Any]:
