@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 from solver.continuity import Contact
 from solver.creases import Crease
+from solver.proof import Certificate
 from solver.regularity import Regularity
-from solver.shape_search import Certificate
 from solver.sides import Continuity
 from solver.surfaces import SemiStructuredSurface
 

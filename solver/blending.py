@@ -21,8 +21,8 @@ from solver.errors import ContactError, FoldError, OptionError
 from solver.gram import thin_plate_energy
 from solver.limits import required_limits
 from solver.problem import BlendProblem, ProblemOptions, VScale, make_problem
+from solver.proof import Certificate
 from solver.regularity import Regularity, measure_regularity
-from solver.shape_search import Certificate
 from solver.sides import Continuity, Side, make_side, matched_sides
 from solver.surfaces import BSplineCurve, SemiStructuredSurface
 

@@ -14,8 +14,7 @@ from math import comb
 from typing import TypeAlias
 
 from solver.errors import ComputationError
-from solver.shape_search import Certificate, Leaf
-from solver.squares import Gram
+from solver.proof import Certificate, Gram, Leaf
 
 _Table: TypeAlias = list[list[Fraction]]
 
@@ -37,7 +36,7 @@ def check_certificate(certificate: Certificate) -> None:
     """
     try:
         _check(certificate)
-    except (ArithmeticError, IndexError, TypeError, ValueError) as error:
+    except (ArithmeticError, AttributeError, IndexError, TypeError, ValueError) as error:
         raise CertificateError(f"certificate: malformed ({error})") from None
 
 

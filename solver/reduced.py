@@ -10,7 +10,8 @@ from solver.arrays import FloatArray
 from solver.errors import ComputationError
 from solver.generated import shape_numpy
 from solver.problem import BlendProblem
-from solver.shape_search import Certificate, best_of_grid, least_point
+from solver.proof import Certificate
+from solver.shape_search import best_of_grid, least_point
 
 # The proven bound lies within this fraction of the energy; an energy below 1e-12 of its terms counts as zero.
 PROOF_TOLERANCE = 1e-10

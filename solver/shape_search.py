@@ -8,19 +8,17 @@ a curve of equal minima neither ever happens: there, sums of squares prove the b
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cache, lru_cache, partial
 from math import comb
-from typing import Any, TypeAlias
+from typing import Any
 
 import numpy as np
 from flint import fmpq, fmpq_mat, fmpz_mat
 
 from solver.arrays import FloatArray
 from solver.errors import ComputationError
-from solver.squares import Gram, NoSquares, gram_matrices
-
-Box: TypeAlias = tuple[tuple[float, float], tuple[float, float]]
+from solver.proof import Box, Certificate, Leaf
+from solver.squares import NoSquares, gram_matrices
 
 # Boxes after which sums of squares are tried, and the proof is given up; most problems need less than a hundred boxes,
 # and a sum of squares takes the time of thousands of them.
@@ -29,54 +27,6 @@ _MOST_SQUARES = 20
 # Each point found is lower than the one before.
 _MOST_POINTS = 100
 _NEWTON_STEPS = 60
-
-
-@dataclass(frozen=True)
-class Leaf:
-    """A part of the box on which the bound is proved.
-
-    Attributes
-    ----------
-    x, y : (int, int)
-        Part i of 2^s equal parts, as (i, s), in each direction.
-    tangent_at : (float, float) or None
-        Where convex: the point of the tangent plane that proves the bound, in [0, 1] x [0, 1] over the part.
-    squares : (Q0, Q1, Q2) or None
-        Definite matrices of sums of squares that prove it, over [-1, 1] x [-1, 1] for the part; see `solver.squares`.
-        Where neither is given, the Bernstein coefficients prove the bound.
-    """
-
-    x: tuple[int, int]
-    y: tuple[int, int]
-    tangent_at: tuple[float, float] | None = None
-    squares: tuple[Gram, Gram, Gram] | None = None
-
-
-@dataclass(frozen=True, eq=False)
-class Certificate:
-    """A proof that a point is a global minimum over a box, up to a tolerance; `check_certificate` verifies it.
-
-    Attributes
-    ----------
-    coefficients : ndarray, shape (n + 1, n' + 1)
-        [i, j] multiplies x^i y^j; floats taken as exact.
-    box : ((float, float), (float, float))
-    point : (float, float)
-        Where the polynomial is claimed to be least.
-    tolerance : float
-        How far the value there may be above the bound.
-    bound : float
-        What the polynomial nowhere falls below.
-    leaves : tuple of Leaf
-        They tile the box.
-    """
-
-    coefficients: FloatArray
-    box: Box
-    point: tuple[float, float]
-    tolerance: float
-    bound: float
-    leaves: tuple[Leaf, ...]
 
 
 def least_point(coefficients: FloatArray, box: Box, tolerance: float) -> Certificate:

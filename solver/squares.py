@@ -18,8 +18,9 @@ from typing import TypeAlias
 
 from flint import arb, arb_mat, ctx, fmpq, fmpq_mat
 
+from solver.proof import Gram
+
 Exponents: TypeAlias = tuple[int, int]
-Gram: TypeAlias = tuple[tuple[Fraction, ...], ...]
 
 _MONOMIALS: tuple[Exponents, ...] = ((0, 0), (1, 0), (0, 1), (2, 0), (1, 1), (0, 2))
 _DEGREE = 4
