@@ -211,6 +211,13 @@ def test_sums_of_squares_of_another_polynomial_are_refused(table, leaf):
     refused(claim(table, leaf, tolerance=1.0), "are not the polynomial")
 
 
+def test_squares_that_prove_another_bound_are_refused():
+    # x^2 + 1 is a sum of squares; that it stays above 1 is another claim, though true.
+    raised = claim(polynomial(x0y0=1, x2y0=1), squares({(0, 0): 1, (1, 1): 1}), bound=1.0)
+    refused(raised, "are not the polynomial")
+    check_certificate(replace(raised, bound=0.0, tolerance=1.0))
+
+
 def test_matrices_of_another_size_are_refused():
     leaf = squares({(1, 1): 1, (2, 2): 1})
     q0, q1, q2 = leaf.squares
