@@ -15,7 +15,7 @@ from papers.lin2014 import objective_checks as objective
 from papers.lin2014 import printed as pr
 from papers.lin2014.claims_3_conditions import TRUE_2_2, TRUE_3_1, TRUE_3_2
 from papers.lin2014.consequences_3 import single_integrals, third_term, vector_lengths, zero_system
-from papers.lin2014.contact_checks import BASE_ROWS, ROWS, knots_as_spans
+from papers.lin2014.contact_checks import BASE_ROWS, ROWS, Side, knots_as_spans
 from papers.lin2014.exact import Meaning, difference_case, given, indexed
 from papers.lin2014.property_checks import proved
 from papers.lin2014.records import fails, holds, holds_if, not_checkable, part
@@ -97,10 +97,11 @@ def _initial_cases(formula: Formula | None) -> Iterator[Case]:
     """
     shape = given(formula).relation.rhs
     h, H = span_symbols(2), span_symbols(2, "H")
-    for side, conditions in (
-        ("start", (pr.COND_1_1, pr.COND_2_1, TRUE_3_1)),
-        ("end", (pr.COND_1_2, TRUE_2_2, TRUE_3_2)),
-    ):
+    sides: dict[Side, tuple[Formula, ...]] = {
+        "start": (pr.COND_1_1, pr.COND_2_1, TRUE_3_1),
+        "end": (pr.COND_1_2, TRUE_2_2, TRUE_3_2),
+    }
+    for side, conditions in sides.items():
         base = sp.Matrix(BASE_ROWS[side])
         backwards = sp.diag(1, -1, 1) * end_derivatives(2, (pr.k_r if side == "start" else pr.k_s) - 1, H)
         rows = end_derivatives(2, pr.k - 1, h).lower_triangular_solve(backwards * base)

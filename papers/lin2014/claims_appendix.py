@@ -96,7 +96,7 @@ CLAIMS = (
         "The blend leaves the base smoothly with P_u = +alpha^2 R_w at u = 0, w = w_s.",
         Verdict.FAILS,
         (Reading((Part(special_check(1), pr.EQ_17),)),),
-        Correction("The blend leaves R backwards, as (2.1) has it: p_1 = -alpha^2.", (Part(special_check(1), TRUE_17),)),
+        Correction("The blend leaves R backwards, as (2.1) does: p_1 = -alpha^2.", (Part(special_check(1), TRUE_17),)),
         partial(special_counterexample, 1, pr.EQ_17),
         partial(
             measured_rows,
@@ -104,9 +104,10 @@ CLAIMS = (
             {1: ROW_1_BY_17},
             "The made pair with row 1 by (17) and the first derivatives of the appendix",
         ),
-        remark="The paper contradicts itself: (2.1), said to follow from (17), has the opposite sign, which is the right "
-        "one. R lies on w >= w_s and P on u >= 0: with the sign of (17) the blend runs back over the base, a fold with "
-        "one tangent plane, so that (15) holds and smoothness does not. Open CASCADE compares tangent planes and curvatures with normals "
+        remark="The paper contradicts itself: (2.1), said to follow from (17), has the opposite sign, the right one. "
+        "R lies on w >= w_s and P on u >= 0: with the sign of (17) the blend runs back over the base, a fold with "
+        "one tangent plane, so that (15) holds and smoothness does not. Open CASCADE compares tangent planes and "
+        "curvatures with normals "
         "up to sign: it does not see a fold, so that its verdict stands beside a normal that turns by 180 degrees.",
     ),
     Claim(

@@ -1,6 +1,7 @@
 """The evidence behind the verdicts, judged by something else: exact splines at the counterexamples, measured blends."""
 
 import ast
+import re
 from fractions import Fraction
 from pathlib import Path
 
@@ -16,6 +17,7 @@ from papers.lin2014.consequences_3 import COMMON_TERMS, with_normal_equation
 from papers.lin2014.contact_checks import row_check, row_counterexample, t_ks1, u_before, u_last, w_kr1
 from papers.lin2014.exact import Meaning, UndefinedError, clamped, de_boor, interpret
 from papers.lin2014.figure_conditions import at_figure, row_2_check, straight_counterexample
+from papers.lin2014.normal_checks import EXCESS_3_1, EXCESS_3_1_SQUARES, excess_check, normal_counterexample
 from papers.lin2014.related_checks import quartic_cases
 from papers.loading import load_paper
 from papers.search import smallest_assignment
@@ -34,8 +36,8 @@ def test_printed_formulas_run_in_the_papers_folder_only():
         assert not [name for name in names if any(part.startswith("printed") for part in name.split("."))], path
 
 
-def second_derivative(order, knots, points):
-    """Second derivative at the start, by differences of exact values on the first span: no formula of ours."""
+def derivative(order, knots, points, d):
+    """Derivative at the start, by differences of exact values on the first span: no formula of ours."""
     first = next(t for t in knots if t > knots[0]) - knots[0]
     count = max(order, 3)
     x = [Fraction(knots[0]) + first * Fraction(i, 2 * count) for i in range(count)]
@@ -44,7 +46,11 @@ def second_derivative(order, knots, points):
     polynomial = sp.interpolate(
         list(zip(map(sp.Rational, map(str, x)), map(sp.Rational, map(str, values)), strict=True)), t
     )
-    return sp.diff(polynomial, t, 2).subs(t, sp.Rational(str(knots[0])))
+    return sp.diff(polynomial, t, d).subs(t, sp.Rational(str(knots[0])))
+
+
+def second_derivative(order, knots, points):
+    return derivative(order, knots, points, 2)
 
 
 ROW_2 = [("printed", pr.COND_3_1), ("corrected", TRUE_3_1)]
@@ -72,13 +78,102 @@ def test_row_2_at_numbers_judged_by_exact_splines(k, k_r):
     assert found["printed"] != wanted
 
 
-def test_counterexamples_are_the_smallest_and_reproduce():
-    found = row_counterexample("start", 2, pr.COND_3_1)
-    values = dict(found.values)
-    assert (values["k"], values["k_r"]) == ("3", "2")
-    # P_1 = -1/6; the printed row is 2 P_1 - P_0, the true one P_1 + (u_2/u_1)(P_1 - P_0).
-    assert (found.printed, found.true) == ("-1/3", "-5/12")
+def vector_derivative(order, knots, rows, d):
+    """Derivative of a profile at its start, with as many rows at the origin as the knots ask for."""
+    count = len(knots) - order
+    padded = [*rows, *[(0, 0, 0)] * (count - len(rows))][:count]
+    return sp.Matrix([derivative(order, knots, [Fraction(row[c]) for row in padded], d) for c in range(3)])
+
+
+def normal_excess(orders, h, H, shape, base, row_2):
+    """(P_uu - alpha^4 R_ww) . N for N = R_w x R_v, R_v = (0, 1, 0); rows counted from the contact."""
+    k, k_b = orders
+    W, U = clamped(k_b, *H[:-1], end=H[-1]), clamped(k, *h)
+    first, second = (vector_derivative(k_b, W, base, d) for d in (1, 2))
+    normal = first.cross(sp.Matrix([0, 1, 0]))
+    assert any(normal)
+    step = shape**2 * h[0] * (k_b - 1) / (H[0] * (k - 1))
+    row_1 = tuple(Fraction(x) + step * (Fraction(x) - Fraction(y)) for x, y in zip(*base[:2], strict=True))
+    blend = [base[0], row_1, row_2]
+    # The first order is right: it is the second one that is judged.
+    slope = vector_derivative(k, U, blend, 1)
+    assert slope == -(sp.Rational(str(shape)) ** 2) * first
+    return (vector_derivative(k, U, blend, 2) - sp.Rational(str(shape)) ** 4 * second).dot(normal)
+
+
+@pytest.mark.parametrize(
+    ("side", "formulas"),
+    [("start", (pr.COND_3_1, pr.COND_3_1_SQUARES)), ("end", (pr.COND_3_2, pr.COND_3_2_SQUARES))],
+)
+def test_the_counterexample_to_row_2_is_no_g2_contact(side, formulas):
+    found = normal_counterexample(side, formulas)
+    values = list(dict(found.values).values())
+    assert values == ["3", "3", "1/3", "1/2", "1", "1", "1", "(0, 0, 0)", "(1, 0, 0)", "(0, 0, 1)", "(0, 1, 0)"]
+    base = [(0, 0, 0), (1, 0, 0), (0, 0, 1)]
+    h, H, one = (Fraction(1, 3), Fraction(1, 2)), (Fraction(1),), Fraction(1)
+    for reading in found.printed.split(" or "):
+        row = tuple(map(Fraction, re.findall(r"-?\d+(?:/\d+)?", reading.split("= ")[1])))
+        assert normal_excess((3, 3), h, H, one, base, row) != 0
+    # The third coordinate is 1/6, whatever the others are.
+    assert found.true.startswith("third coordinate 1/6,")
+    assert normal_excess((3, 3), h, H, one, base, (7, 0, Fraction(1, 6))) == 0
+    # In the paper's own orders and knots.
+    assert "k = 4" in found.own
+    own = (Fraction(1, 3), Fraction(2, 3))
+    for wrong in (Fraction(1, 3), Fraction(1, 9)):
+        assert f", 0, {wrong})" in found.own
+        assert normal_excess((4, 4), own, H, one, base, (0, 0, wrong)) != 0
+    assert "third coordinate 2/9" in found.own
+    assert normal_excess((4, 4), own, H, one, base, (0, 0, Fraction(2, 9))) == 0
+
+
+def test_no_smaller_orders_are_a_counterexample_to_g2():
+    """Where R has order 2 the row differs from alpha^4 R_ww within the tangent plane alone, which G2 leaves free."""
+    for formula in (pr.COND_3_1, pr.COND_3_1_SQUARES):
+        cases = {case.label: case for case in row_check("start", 2, "normal").cases(formula)}
+        assert {label for label, case in cases.items() if case.true} == {f"orders {k}, 2" for k in range(3, 9)}
+    # Not smaller, though false in all coordinates.
+    assert dict(row_counterexample("start", 2, pr.COND_3_1).values)["k_r"] == "2"
     assert row_counterexample("start", 1, pr.COND_2_1) is None
+
+
+@pytest.mark.parametrize(
+    ("formula", "H", "g2"),
+    [
+        # As printed exactly where the second distances agree, H_2 = u_2.
+        (pr.COND_3_1, (Fraction(1, 4), Fraction(2, 3)), True),
+        (pr.COND_3_1, (Fraction(1, 3), Fraction(5, 6)), False),
+        (pr.COND_3_1, (Fraction(1, 2), Fraction(1)), False),
+        # With squares exactly where the ratios agree: here, with uniform u_i, where both spans have one length.
+        (pr.COND_3_1_SQUARES, (Fraction(1, 2), Fraction(1)), True),
+        (pr.COND_3_1_SQUARES, (Fraction(1, 4), Fraction(2, 3)), False),
+        (pr.COND_3_1_SQUARES, (Fraction(1),), False),
+    ],
+)
+def test_when_a_reading_of_row_2_gives_g2(formula, H, g2):
+    h, shape = (Fraction(1, 3), Fraction(2, 3)), Fraction(3, 2)
+    base = [(2, 0, 1), (3, 0, 4), (5, 0, -2)]
+    numbers = {pr.k: 4, pr.k_r: 4, pr.alpha: shape, pr.u_1: h[0], pr.w_kr: H[0], pr.w_s: Fraction(0)}
+    row = []
+    for c in range(3):
+        at = numbers | {s: Fraction(point[c]) for s, point in zip((pr.R_0, pr.R_1, pr.R_2), base, strict=True)}
+        at[pr.P_0] = at[pr.R_0]
+        at[pr.P_1] = interpret(pr.COND_2_1.relation.rhs, Meaning(at))
+        row.append(interpret(formula.relation.rhs, Meaning(at)))
+    excess = normal_excess((4, 4), h, H, shape, base, tuple(row))
+    assert (excess == 0) == g2
+
+
+def test_what_a_reading_misses_is_zero_exactly_there():
+    """The excess formulas of the records, against the normal part of an exact blend."""
+    for formula, excess in ((pr.COND_3_1, EXCESS_3_1), (pr.COND_3_1_SQUARES, EXCESS_3_1_SQUARES)):
+        (case,) = excess_check("start", formula).cases(excess)
+        assert case.true
+        numerator = sp.numer(sp.together(excess.relation.rhs))
+        (zero,) = sp.solve(numerator.subs(pr.w_s, 0), w_kr1)
+        assert sp.simplify(zero - (pr.u_2 if formula is pr.COND_3_1 else pr.u_2 / pr.u_1 * pr.w_kr)) == 0
+        other = EXCESS_3_1_SQUARES if excess is EXCESS_3_1 else EXCESS_3_1
+        assert not any(case.true for case in excess_check("start", formula).cases(other))
 
 
 def test_search_goes_by_height():

@@ -1,290 +1,252 @@
-"""Checks without a formula: each sees its object changed, so that none of them is a constant truth."""
+"""Checks that have no formula to perturb: each turns when the object that it is about is perturbed."""
 
 from fractions import Fraction
 
 import pytest
 import sympy as sp
 
-from papers.ledger import Strength, Verdict
 from papers.lin2014 import (
-    bezier_checks,
-    claims_1_introduction,
-    claims_2_bezier,
-    claims_5_results,
-    figure_checks,
-    hartmann_checks,
-    picture_checks,
-    related_checks,
+    blending_checks,
+    claims_2_definition,
+    claims_3_blending,
+    claims_3_conditions,
+    claims_4_implementation,
+    claims_appendix,
+    contact_checks,
+    energy_checks,
+    geometry_checks,
+    normal_checks,
+    objective_checks,
+    property_checks,
+    quality_checks,
+    spline_checks,
 )
 from papers.lin2014 import printed as pr
-from papers.lin2014.property_checks import question
-from papers.mutation import mutants
+from papers.lin2014.exact import spline_basis
 from papers.verification import decide
 
-CLAIMS = {
-    claim.id: claim for module in (claims_1_introduction, claims_2_bezier, claims_5_results) for claim in module.CLAIMS
+RECORDS = (claims_2_definition, claims_3_blending, claims_3_conditions, claims_4_implementation, claims_appendix)
+MODULES = (
+    *(blending_checks, contact_checks, energy_checks, geometry_checks, normal_checks),
+    *(objective_checks, property_checks, quality_checks, spline_checks),
+)
+CLAIMS = {claim.id: claim for module in RECORDS for claim in module.CLAIMS}
+
+
+def questions(claim):
+    """Return the parts without a formula, of readings and correction."""
+    return [part for part in claim.parts + claim.correction_parts if part.formula is None]
+
+
+def doubled_basis(knots):
+    """Return twice the basis."""
+    right = spline_basis(knots)
+    return lambda *arguments: 2 * right(*arguments)
+
+
+def basis_without_slope(knots):
+    """Return the functions themselves for their derivatives."""
+    right = spline_basis(knots)
+    return lambda i, order, x, name, derivative=0: right(i, order, x, name)
+
+
+def bent(order, knots, points, x):
+    """Evaluate nothing that is linear in the points."""
+    return points[0] * points[0] * x + points[-1]
+
+
+def saddle():
+    return sp.Symbol("P_uu") ** 2 - sp.Symbol("P_vv") ** 2
+
+
+def first_of(order, *vectors):
+    return vectors[0]
+
+
+SADDLE = (objective_checks, "thin_plate_density", saddle)
+# Least at a = gap - 3/2, so that plates that are close do not join.
+PLATES = (
+    energy_checks,
+    "end_energy",
+    lambda k, m, data: (data[1] - data[3] + Fraction(3, 2)) ** 2 + (data[4] - 1) ** 2,
+)
+BENT = (property_checks, "de_boor", bent)
+# Record, which of its questions -> what is replaced where, by what.
+PERTURBED = {
+    ("def-1", 0): [(property_checks, "spline_basis", doubled_basis)],
+    ("sec-2.different-vectors", 0): [(property_checks, "weights", lambda *_: [Fraction(2)])],
+    ("sec-1.generalisation", 0): [BENT],
+    ("sec-2.evaluation-classical", 0): [BENT],
+    ("sec-2.convex-hull", 0): [
+        (property_checks, "spline_basis", doubled_basis),
+        (property_checks, "partition_residuals", lambda *_: [sp.Poly(1, sp.Symbol("x"))]),
+        (property_checks, "least_bernstein_coefficient", lambda *_: -1),
+    ],
+    ("sec-2.affine-invariance", 0): [(spline_checks, "de_boor", bent)],
+    ("sec-2.localness", 0): [
+        (property_checks, "supports", lambda degree, knots: [tuple(range(degree, 9))] * (len(knots) - degree - 1)),
+        (property_checks, "_lower_function", lambda j, order, span: sp.Symbol(f"N_{j}")),
+        (property_checks, "weights", lambda sample, u, v: [Fraction(1)] * sum(sample.sizes)),
+    ],
+    ("sec-2.continuity-control", 0): [(property_checks, "contact_orders", lambda *_: [7])],
+    ("sec-2.continuity-control", 1): [(property_checks, "_jump", lambda vector: sp.Integer(0))],
+    ("sec-2.transformation", 0): [(property_checks, "union", first_of)],
+    ("sec-2.derivatives-classical", 0): [(property_checks, "spline_basis", basis_without_slope)],
+    ("sec-2.derivatives-hard", 0): [(property_checks, "contained", lambda *_: True)],
+    ("sec-2.derivatives-hard", 1): [(property_checks, "union", first_of)],
+    ("sec-3.contact-knots", 0): [
+        (blending_checks, "de_boor", bent),
+        (blending_checks, "end_derivatives", lambda *_: sp.ones(3)),
+    ],
+    ("sec-3.not-classical", 0): [(blending_checks, "contained", lambda *_: True)],
+    ("sec-3.thin-plate", 0): [(objective_checks, "thin_plate_density", lambda: sp.Integer(0))],
+    ("eq-11", 0): [(energy_checks, "gram_matrix", lambda derivative, one, other: sp.eye(one.size))],
+    ("eq-12", 0): [SADDLE],
+    ("eq-12", 1): [PLATES],
+    ("sec-3.three-curves", 0): [(blending_checks, "contact_rows", lambda *_: sp.eye(3))],
+    ("sec-1.fairness", 0): [(blending_checks, "PRINTED_PAIRS", {"one": ("fig-5.first", "fig-5.first")})],
+    ("sec-1.fairness", 1): [(energy_checks, "middle_knot_energies", lambda: (sp.Integer(1), sp.Integer(2)))],
+    ("sec-1.fairness", 2): [(blending_checks, "union", first_of)],
+    ("sec-3.averaging", 0): [
+        (blending_checks, "merged", lambda name: (Fraction(3, 4), Fraction(1, 2), Fraction(1, 4)))
+    ],
+    ("sec-3.sides", 0): [(pr, "COND_2_1", pr.COND_2_2)],
+    ("sec-3.sufficient-g1", 0): [
+        (geometry_checks, "tangent_coordinates", lambda vector: (1, 1)),
+        (geometry_checks, "_regular", lambda patch: True),
+    ],
+    ("sec-3.sufficient-g2", 1): [
+        (geometry_checks, "tangent_coordinates", lambda vector: (1, 1)),
+        (geometry_checks, "_slope_and_mixed", lambda: (sp.zeros(3, 1), sp.zeros(3, 1))),
+        (geometry_checks, "special_conditions", lambda order: (0, *[sp.Symbol("R_w")] * order)),
+    ],
+    ("sec-4.no-middle-curve", 0): [
+        (blending_checks, "contact_matrix", lambda *_: sp.ones(6)),
+        (blending_checks, "set_rows", lambda order: (1, pr.m - 1)),
+    ],
+    ("sec-4.normal-equation", 0): [SADDLE],
+    ("sec-4.c1-similarly", 0): [SADDLE],
+    ("eq-14", 0): [(energy_checks, "printed_system", lambda: (sp.eye(5), sp.eye(5)))],
+    ("eq-14", 1): [
+        (energy_checks, "_integral", lambda *_: sp.Integer(1)),
+        (objective_checks, "end_derivatives", lambda *_: sp.ones(3)),
+    ],
+    ("sec-4.unconstrained", 0): [PLATES],
 }
-
-MU_NU = dict(zip(sp.symbols("mu nu", positive=True), (1, 2), strict=True))
-
-
-def truths(cases):
-    return [case.true for case in cases]
+# Its object is the list of parts of its own record.
+BY_HAND = {("sec-3.sufficient-g2", 0)}
 
 
-def hartmann_of_order(n, t, rest):
-    """A weight whose contact is one order lower."""
-    return hartmann_checks.hartmann_weight(n - 1, t, rest)
+def clear_caches():
+    for module in MODULES:
+        for value in vars(module).values():
+            if hasattr(value, "cache_clear"):
+                value.cache_clear()
 
 
-def exchanged(n, t, rest):
-    return 1 - hartmann_checks.hartmann_weight(n, t, rest)
+@pytest.fixture
+def fresh_caches():
+    """Leave nothing behind that was computed from a perturbed object."""
+    clear_caches()
+    yield
+    clear_caches()
 
 
-def straight(_n, _t, rest):
-    return rest
+def truths(part):
+    return [case.true for case in part.check.cases(None)]
 
 
-def overshooting(n, t, rest):
-    """1 and 0 at the ends, more than 1 between them."""
-    return rest ** (n + 1) * (1 + 9 * t)
-
-
-def rooted(_n, t, rest):
-    return sp.sqrt(rest) / (sp.sqrt(rest) + sp.sqrt(t))
-
-
-def test_hartmann_as_it_is():
-    assert all(truths(hartmann_checks.hull_cases()))
-    assert all(truths(hartmann_checks.hartmann_contact_cases()))
-    for end, formula in enumerate(hartmann_checks.DIRECTION):
-        assert truths(hartmann_checks.direction_cases(end)(formula)) == [True]
-    assert truths(hartmann_checks.hartmann_rational_cases()) == [False]
-    assert truths(hartmann_checks.inference_cases()) == [True, False]
-
-
-@pytest.mark.parametrize("weight", [exchanged, overshooting])
-def test_a_weight_that_leaves_the_hull_is_seen(weight):
-    assert not all(truths(hartmann_checks.hull_cases(weight)))
-
-
-@pytest.mark.parametrize("weight", [hartmann_of_order, exchanged, straight, rooted])
-def test_a_weight_without_contact_of_order_n_is_seen(weight):
-    assert not all(truths(hartmann_checks.hartmann_contact_cases(weight)))
-
-
-@pytest.mark.parametrize("weight", [exchanged, straight, rooted])
-@pytest.mark.parametrize("end", [0, 1])
-def test_a_weight_that_turns_the_blend_is_seen(weight, end):
-    assert not all(truths(hartmann_checks.direction_cases(end, weight)(hartmann_checks.DIRECTION[end])))
-
-
-def test_the_direction_is_that_of_its_own_piece():
-    first, second = hartmann_checks.DIRECTION
-    assert truths(hartmann_checks.direction_cases(0)(second)) == [False]
-    assert truths(hartmann_checks.direction_cases(1)(first)) == [False]
-
-
-def test_a_weight_with_roots_has_no_rational_form():
-    assert truths(hartmann_checks.hartmann_rational_cases(rooted)) == [True]
-
-
-def test_hartmann_at_numbers():
-    """n = 1 and 2, mu = 1/3, pieces t^2 + 1 and sin t: derivatives of the blend itself at both ends."""
-    t = sp.Symbol("t")
-    for n in (1, 2):
-        f = hartmann_checks.hartmann_weight(n, t, 1 - t).subs(MU_NU)
-        blend = f * (t**2 + 1) + (1 - f) * sp.sin(t)
-        for end, piece in ((0, t**2 + 1), (1, sp.sin(t))):
-            difference = [sp.simplify((blend - piece).diff(t, d).subs(t, end)) for d in range(1, n + 2)]
-            assert difference[:-1] == [0] * n
-            assert difference[-1] != 0
-
-
-def test_the_hull_does_not_make_a_blend_run_back():
-    found = hartmann_checks.inference_counterexample()
-    assert "continue the bases" in dict(found.values)["blend"]
-    measured = hartmann_checks.inference_consequence().measured
-    assert measured["largest distance from the hull"] == 0
-    assert measured["first step into the gap, pieces inside the bases"] < 0
-    assert measured["first step into the gap, pieces that continue the bases"] > 0
-    # Without contact of order 1 pieces inside the bases need not turn the blend.
-    assert truths(hartmann_checks.inference_cases(straight)) == [False, False]
-
-
-def test_mean_curvature_must_see_the_normal_part():
-    E, F, G, L, M, N = sp.symbols("E F G L M N", real=True)
-    assert all(truths(picture_checks.mean_curvature_cases()))
-    for wrong in ((E * N - 2 * F * M) / (2 * (E * G - F**2)), (E * N + F * L) / (2 * (E * G - F**2)), L**2):
-        assert not all(truths(picture_checks.mean_curvature_cases(lambda wrong=wrong: wrong)))
-
-
-def test_mean_curvature_of_graphs_is_that_of_the_coefficients():
-    """Two formulas for H, at a paraboloid."""
-    x, y = sp.symbols("x y", real=True)
-    z = 2 * x**2 - 3 * x * y + y**2 + x
-    surface = sp.Matrix([x, y, z])
-    a, b = surface.diff(x), surface.diff(y)
-    normal = picture_checks.unit_normal(z.diff(x), z.diff(y))
-    assert sp.simplify(normal.dot(a)) == sp.simplify(normal.dot(b)) == 0
-    E, F, G = a.dot(a), a.dot(b), b.dot(b)
-    L, M, N = (surface.diff(*pair).dot(normal) for pair in ((x, x), (x, y), (y, y)))
-    mean = (E * N - 2 * F * M + G * L) / (2 * (E * G - F**2))
-    p, q = z.diff(x), z.diff(y)
-    graph = ((1 + q**2) * 4 + 2 * p * q * 3 + (1 + p**2) * 2) / (2 * sp.sqrt(1 + p**2 + q**2) ** 3)
-    assert sp.simplify((mean - graph).subs({x: Fraction(1, 3), y: 2})) == 0
-
-
-def test_stripes_of_a_wrong_normal_are_seen():
-    """A normal that does not turn with the surface, and one that is blind to the slope across."""
-    assert all(truths(picture_checks.stripe_cases()))
-    for wrong in (lambda p, q: sp.Matrix([0, 0, 1]), lambda p, q: sp.Matrix([0, -q, 1])):
-        assert not all(truths(picture_checks.stripe_cases(wrong)))
-        assert not any(truths(picture_checks.revealed_cases(wrong)))
-    assert truths(picture_checks.revealed_cases()) == [True, True, False, False]
-
-
-def test_what_no_picture_shows():
-    assert truths(picture_checks.invisible_cases()) == [False, False]
-    assert truths(picture_checks.bending_cases(saddle=False)()) == [True]
-    assert truths(picture_checks.bending_cases(saddle=True)()) == [False]
-
-
-def test_a_cubic_needs_its_two_inner_knots():
-    assert all(truths(related_checks.cubic_cases()))
-    assert not all(truths(related_checks.cubic_cases(inner=1)))
-    assert not all(truths(related_checks.cubic_cases(degree=1, inner=4)))
-
-
-def test_the_quartic_has_to_be_that_one():
-    moved = ((0, 0), (sp.Rational(1, 2), 0), (sp.Rational(5, 3), sp.Rational(1, 2)), (2, sp.Rational(1, 2)), (2, 1))
-    assert truths(related_checks.quartic_cases()) == [False]
-    assert truths(related_checks.quartic_cases(moved)) == [True]
-
-
-def test_another_jump_of_the_ball_is_seen():
-    assert truths(related_checks.g2_cases()) == [True, False]
-    for jump in (1 / related_checks.BALL_RADIUS + related_checks.BASE_CURVATURE, 1 / related_checks.BALL_RADIUS):
-        assert truths(related_checks.g2_cases(jump)) != [True, False]
-
-
-def test_a_blend_whose_rows_are_not_determined_has_no_form(monkeypatch):
-    assert not any(truths(related_checks.bezier_conversion_cases()))
-    monkeypatch.setattr(related_checks, "contained", lambda *_: False)
-    assert all(truths(related_checks.bezier_conversion_cases()))
-
-
-def test_an_exponential_is_no_sine(monkeypatch):
-    """Were the second derivative of t^j not j (j - 1) t^(j-2), nothing would follow."""
-    assert all(truths(related_checks.c_curve_cases()))
-    assert all(truths(related_checks.sine_base_cases()))
-    monkeypatch.setattr(related_checks.sp, "diff", lambda e, *_: e)
-    assert not all(truths(related_checks.c_curve_cases()))
-
-
-def test_knots_in_common_add_nothing():
-    assert all(truths(figure_checks.added_cases()))
-    assert not all(truths(figure_checks.added_cases(lambda a, b: 2 * sp.Min(a, b) - a - b)))
-    assert not all(truths(figure_checks.added_cases(lambda a, b: a + b)))
-
-
-def test_equal_vectors_have_nothing_superfluous(monkeypatch):
-    assert all(truths(figure_checks.superfluous_cases()))
-    monkeypatch.setattr(figure_checks, "inner_knots", lambda key: [])
-    assert not any(truths(figure_checks.superfluous_cases()))
-
-
-def test_equal_counts_are_seen(monkeypatch):
-    assert all(truths(claims_1_introduction._different_counts()))
-    monkeypatch.setattr(pr, "FIGURE_1_COUNTS", (5,) * 7)
-    monkeypatch.setattr(pr, "KNOTS", dict.fromkeys(pr.KNOTS, (0, 1)))
-    assert not any(truths(claims_1_introduction._different_counts()))
-
-
-def test_a_hyperbola_has_polynomial_pieces_and_another_row_is_no_line():
-    assert not any(truths(figure_checks.circle_cases()))
-    assert any(truths(figure_checks.circle_cases(lambda x, y: x**2 - y**2)))
-    assert truths(figure_checks.extrusion_cases()) == [True]
-    assert truths(figure_checks.extrusion_cases([0, 0, 1, 1])) == [False]
-    assert all(truths(figure_checks.cone_patch_cases()))
-    for wrong in (
-        lambda w, v: (w * (1 - v), 2 * w * v, w * (1 + v**2)),
-        lambda w, v: (w * (1 - v**4), 2 * w * v**2, w * (1 + v**4)),
-        lambda w, v: (w, 0 * v, w),
-    ):
-        assert not all(truths(figure_checks.cone_patch_cases(wrong)))
-
-
-def test_polynomials_that_are_not_bernsteins_are_seen():
-    right = bezier_checks.polynomial
-    assert all(truths(bezier_checks.triangle_cases()))
-    for wrong in (
-        lambda i, n, x, rest: x**i * rest ** (n - i),
-        lambda i, n, x, rest: right(i, n, rest, x),
-        lambda i, n, x, rest: 2 * right(i, n, x, rest),
-    ):
-        assert not all(truths(bezier_checks.triangle_cases(wrong)))
-
-
-def test_a_wrong_weight_or_share_is_seen():
-    assert truths(bezier_checks.row_step_cases()) == [True]
-    wrong = lambda low, at, k, b: sp.binomial(low, at) / sp.binomial(low + k, at + b)
-    assert truths(bezier_checks.row_step_cases(wrong)) == [False]
-    assert truths(bezier_checks.elevation_cases()) == [True]
-    assert truths(bezier_checks.elevation_cases(lambda r, d: (r + 1) / (d + 2))) == [False]
-
-
-def test_orders_that_agree_are_seen(monkeypatch):
-    assert not any(truths(bezier_checks.same_order_cases(None)))
-    monkeypatch.setattr(pr, "COUNT_BOTTOM", pr.Formula(sp.Eq(pr.F(0, pr.s), pr.m + 1), (pr.s, pr.m)))
-    monkeypatch.setattr(bezier_checks, "row_degrees", lambda m, n, k, part: (m,) * (n + 1))
-    assert all(truths(bezier_checks.same_order_cases(None)))
-
-
-def test_a_lemma_that_does_not_hold_is_seen(monkeypatch):
-    assert all(truths(bezier_checks.lemma_cases(None)))
-    monkeypatch.setattr(bezier_checks, "division_lemmas", lambda: {"product": sp.Symbol("x")})
-    assert truths(bezier_checks.lemma_cases(None)) == [False]
+def test_every_question_of_these_records_is_perturbed():
+    asked = {(name, n) for name, claim in CLAIMS.items() for n, _ in enumerate(questions(claim))}
+    assert asked == set(PERTURBED) | BY_HAND
 
 
 @pytest.mark.parametrize(
-    "name", ["eq-4", "eq-5", "eq-6", "sec-2.q-formula", "sec-2.blossom-1", "sec-2.blossom-2", "sec-2.top-counts"]
+    ("place", "module", "name", "wrong"),
+    [(place, *change) for place, changes in PERTURBED.items() for change in changes],
+    ids=lambda value: value if isinstance(value, str) else None,
 )
-def test_the_first_case_is_for_every_degree_and_tells_each_mutant(name):
-    """Instances aside: what multiplies one control point decides alone."""
-    for part in CLAIMS[name].parts:
-        if part.formula is None:
-            continue
-        assert part.check.strength is Strength.SYMBOLIC_ORDER
-        first = next(iter(part.check.cases(part.formula)))
-        assert "every" in first.label
-        assert first.true
-        for mutant in mutants(part.formula):
-            changed = pr.Formula(mutant.relation, part.formula.variables)
-            if mutant.text not in part.formula.equivalent:
-                assert not next(iter(part.check.cases(changed))).true, mutant.text
+def test_a_question_turns_when_its_object_is_perturbed(place, module, name, wrong, monkeypatch, fresh_caches):
+    identifier, n = place
+    part = questions(CLAIMS[identifier])[n]
+    right = truths(part)
+    clear_caches()
+    monkeypatch.setattr(module, name, wrong)
+    assert truths(part) != right
 
 
-def test_each_figure_is_decided_with_both_kinds_of_conditions():
-    for name in ("fig-5.c2", "fig-6.g2", "fig-8.c2", "fig-9.c2", "fig-11.g2"):
-        decision = decide(CLAIMS[name])
-        assert decision.verdict is Verdict.AMBIGUOUS
-        assert [(r.label.split(" ")[-1], r.verdict) for r in decision.readings] == [
-            ("printed", Verdict.FAILS),
-            ("ones", Verdict.HOLDS),
-        ]
-        assert decision.counterexample
-        assert decision.consequence.measured
-        letter = "S_0" if name in ("fig-6.g2", "fig-11.g2") else "R_0"
-        assert letter in decision.counterexample
-    assert decide(CLAIMS["fig-10.g2"]).verdict is Verdict.HOLDS
+def test_a_missing_part_of_the_corrected_g2_conditions_is_noticed():
+    parts = CLAIMS["sec-3.sufficient-g2"].correction_parts
+    formulas = tuple(part.formula for part in parts if part.formula is not None)
+    assert all(case.true for case in claims_3_conditions.set_rows_cases(formulas))
+    for missing in formulas:
+        left = tuple(formula for formula in formulas if formula is not missing)
+        assert [case.true for case in claims_3_conditions.set_rows_cases(left)].count(False) == 1
+    # The check of the record sees just the formulas that stand beside it.
+    assert len(formulas) == 6
+    (question, _) = questions(CLAIMS["sec-3.sufficient-g2"])
+    assert question.check.cases.__closure__[0].cell_contents.args[0] == formulas
 
 
-def test_nothing_without_a_proof_is_called_one():
-    """Instances count as proof where they are all there is: printed data, or one that disproves."""
-    sampled = question(lambda: iter(()), "x")
-    assert not sampled.proof
-    for claim in CLAIMS.values():
-        for part in claim.parts:
-            if part.check.proof and part.check.strength is Strength.RATIONAL:
-                assert claim.id.startswith(("fig-", "table-", "sec-5.", "sec-1.", "sec-2.q-range")), claim.id
+@pytest.mark.parametrize(("order", "formula"), [(1, pr.EQ_15), (2, pr.EQ_16)])
+def test_necessity_is_proved_for_any_surfaces(order, formula, monkeypatch):
+    """Without the part on necessity, or with wrong coordinates in the tangent plane, this is red."""
+    check = geometry_checks.general_check(order)
+    name = f"necessity, any R and P: some p_{order}, q_{order}"
+
+    def found():
+        return next(case.true for case in check.cases(formula) if case.label.startswith(name))
+
+    assert found()
+    right = geometry_checks.tangent_coordinates
+    monkeypatch.setattr(geometry_checks, "tangent_coordinates", lambda vector: right(vector)[::-1])
+    assert not found()
+
+
+@pytest.mark.parametrize(("order", "formula", "name"), [(1, pr.EQ_15, "P_u x P_v"), (2, pr.EQ_16, "the forms agree")])
+def test_sufficiency_is_proved_for_any_surfaces(order, formula, name):
+    """A condition that asks for something else does not suffice."""
+    check = geometry_checks.general_check(order)
+
+    def found(given):
+        return next(c.true for c in check.cases(given) if c.label.startswith("sufficiency") and name in c.label)
+
+    wrong = pr.Formula(formula.relation.xreplace({pr.R_ww: pr.R_wv, pr.R_w: 2 * pr.R_w}), formula.variables)
+    assert (found(formula), found(wrong)) == (True, False)
+
+
+def test_tangent_coordinates_at_numbers():
+    """By hand: 3 R_w - 2 R_v + 5 N for R_w = (1, 2, 0), R_v = (0, 1, 1)."""
+    r_w, r_v = sp.Matrix([1, 2, 0]), sp.Matrix([0, 1, 1])
+    vector = 3 * r_w - 2 * r_v + 5 * r_w.cross(r_v)
+    at = {}
+    for letter, value in ((pr.R_w, r_w), (pr.R_v, r_v)):
+        at |= dict(zip(sp.symbols(f"{letter}_x:z"), value, strict=True))
+    assert [x.subs(at) for x in geometry_checks.tangent_coordinates(vector)] == [3, -2]
+
+
+@pytest.mark.parametrize("name", ["eq-12", "sec-4.unconstrained", "sec-1.fairness"])
+def test_what_is_only_checked_is_not_called_proved(name):
+    decision = decide(CLAIMS[name])
+    assert decision.ok
+    assert not decision.proved
+
+
+def test_a_layout_with_other_rows_would_be_counted():
+    """Rows that enter the contact are counted, not set: for first-order contact they are 0, 1 and m - 1, m."""
+    assert {(m, ends) for _, m, ends, _ in blending_checks.counted_rows(1)} >= {(5, (1, 4)), (6, (1, 5))}
+    assert blending_checks.set_rows(1) == (1, pr.m - 1)
+    assert blending_checks.set_rows(3) == (3, pr.m - 3)
+
+
+def test_the_end_of_the_domain_follows_from_the_number_of_functions(monkeypatch, fresh_caches):
+    """Where each step of the recurrence lost two functions the domain would end elsewhere."""
+
+    def first_case():
+        counting = spline_checks.domain_instances(pr.m_r, pr.k_r)
+        return next(iter(spline_checks.count_check(counting, "-").cases(pr.RUN_STARTS[0])))
+
+    assert first_case().true
+    clear_caches()
+    monkeypatch.setattr(spline_checks, "functions_of_order", lambda last, order: last - 2 * order)
+    assert not first_case().true
