@@ -209,10 +209,10 @@ def _printed_rows(order: int) -> tuple[list[Any], dict[Any, Any]]:
 def objective_degree(rows: list[Any], geometric: bool) -> int:
     """Return the degree of (11) in free control points, alpha and beta, for every order, knots and count.
 
-    (11) is quadratic in second derivatives, which are linear in control points, as (1) is. Let alpha^d be the highest power in the rows next to u = 0, as a factor of a
-    sum of N_0 .. N_2 times curves. The coefficient of alpha^(2d) is the energy of that sum. It is not zero: a sum of
-    zero energy is linear in u on each v-line, and at u = 1 it vanishes with its slope, so that it is zero itself. With
-    beta it is the same.
+    (11) is quadratic in second derivatives, which are linear in control points, as (1) is. Let alpha^d be the highest
+    power in the rows next to u = 0, as a factor of a sum of N_0 .. N_2 times curves. The coefficient of alpha^(2d) is
+    the energy of that sum. It is not zero: a sum of zero energy is linear in u on each v-line, and at u = 1 it vanishes
+    with its slope, so that it is zero itself. With beta it is the same.
     """
     in_points = int(thin_plate_density().as_poly(*SECOND_DERIVATIVES).total_degree())
     point = pr.P[sp.symbols("a b", integer=True)]
