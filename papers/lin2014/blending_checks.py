@@ -191,7 +191,8 @@ def set_rows(order: int) -> tuple[Any, Any]:
     more = order + 2
     matrix = end_derivatives(more, pr.k - 1, span_symbols(more))[: order + 1, :]
     touched = [i for i in range(matrix.cols) if any(matrix[:, i])]
-    if not end_derivative_step(more).is_zero_matrix or sp.factor(matrix[:, touched].det()) == 0:
+    square = len(touched) == order + 1
+    if not end_derivative_step(more).is_zero_matrix or not square or sp.factor(matrix[:, touched].det()) == 0:
         raise ValueError(f"end derivatives: found a singular matrix of rows {touched}, expected a regular one")
     return sp.Integer(touched[-1]), pr.m - touched[-1]
 

@@ -203,7 +203,8 @@ CLAIMS = (
         "one length. Either reading is right, too, where R_ww has no part along the normal, as for k_r = 2 or a "
         "base that is straight across. Why both fail: W is given, and neither equation is asked of it; a base "
         "over [0, 1] without inner knots across, which (7) admits and Table 1 has (4 x 10 for Fig. 11, cubic), "
-        "meets neither, since u_2 = 2 u_1 < 1. "
+        "meets neither, since u_2 = 2 u_1 < 1: for m = 5 the blend has 3/2, with squares 1/2, of what the base has "
+        "along the normal. "
         + _MINUS,
     ),
     Claim(

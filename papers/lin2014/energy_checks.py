@@ -129,7 +129,10 @@ def printed_system(third_term: str = "printed") -> tuple[sp.Matrix, sp.Matrix]:
         values = _entry_values(*one, *other, sp.Integer(0))
         return formula.relation.rhs.subs({s: sp.Rational(x.numerator, x.denominator) for s, x in values.items()})
 
-    return (sp.Matrix([[entry(x, y) for y in places] for x in free]) for places in (free, known))  # type: ignore[return-value]
+    def block(places: list[tuple[int, int]]) -> sp.Matrix:
+        return sp.Matrix([[entry(x, y) for y in places] for x in free])
+
+    return block(free), block(known)
 
 
 def integrals_vanish_cases() -> Iterator[Case]:
