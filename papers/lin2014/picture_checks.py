@@ -59,13 +59,14 @@ def stripe_cases(normal: Callable[[Any, Any], Any] = unit_normal) -> Iterator[Ca
     yield Case("a kink for some light where it does not", bool(length.is_positive))
 
 
-def graph_mean_cases() -> Iterator[Case]:
+def graph_mean(second: Any) -> Any:
+    """Return H of a graph with z_xx = `second`."""
+    top = (1 + _Q**2) * second - 2 * _P * _Q * _SHEAR + (1 + _P**2) * _ALONG
+    return top / (2 * sp.sqrt(1 + _P**2 + _Q**2) ** 3)
+
+
+def graph_mean_cases(mean: Callable[[Any], Any] = graph_mean) -> Iterator[Case]:
     """Yield that H of a graph jumps wherever z_xx does, the rest being the same."""
-
-    def mean(second: Any) -> Any:
-        top = (1 + _Q**2) * second - 2 * _P * _Q * _SHEAR + (1 + _P**2) * _ALONG
-        return top / (2 * sp.sqrt(1 + _P**2 + _Q**2) ** 3)
-
     jump = sp.cancel((mean(_OTHER) - mean(_ONE)) / (_OTHER - _ONE))
     yield Case("the jump of H over that of z_xx", bool(sp.simplify(jump).is_positive))
 

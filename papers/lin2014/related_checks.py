@@ -28,11 +28,11 @@ SECTION_SQUARED = Formula(
 )
 
 
-def sine_base_cases() -> Iterator[Case]:
+def sine_base_cases(blend: Any = lambda f, one, other: f * one + (1 - f) * other) -> Iterator[Case]:
     """Yield that a blend X = f sin t + (1 - f) b, b polynomial, is not rational: else sin t would be a quotient."""
     X, b, f, wave = sp.symbols("X b f S", positive=True)
-    (solved,) = sp.solve(f * wave + (1 - f) * b - X, wave)
-    yield Case("sin t is a quotient of polynomials if X is", solved.is_rational_function(X, b, f))
+    (solved,) = sp.solve(blend(f, wave, b) - X, wave)
+    yield Case("sin t is a quotient of polynomials if X is", bool(solved.is_rational_function(X, b, f)))
     yield from c_curve_cases()
 
 
