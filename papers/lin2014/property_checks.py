@@ -243,7 +243,8 @@ def same_knots_cases() -> Iterator[Case]:
     a, b = sp.symbols("a b", integer=True, nonnegative=True)
     along, across = pr.B(pr.j, pr.ell, pr.v, pr.V_r), pr.B(pr.i, pr.k, pr.u, pr.U)
     last_v, last_u = (pr.j, 0, pr.n), (pr.i, 0, pr.m)
-    by_rows = sp.Sum(sp.Sum(pr.P[pr.i, pr.j] * along, last_v) * across, last_u)
+    # (1) as printed, with one knot vector for all curves.
+    by_rows = pr.EQ_1.relation.rhs.replace(pr.V, lambda _: pr.V_r).replace(pr.N, lambda _: pr.n)
     by_columns = sp.Sum(sp.Sum(pr.P[pr.i, pr.j] * across, last_u) * along, last_v)
     factors = [coefficient(total, pr.P[a, b]) for total in (by_rows, by_columns)]
     residual = sp.factor_terms(factors[0] - factors[1])
@@ -374,9 +375,9 @@ def continuity_control_cases() -> Iterator[Case]:
 def independent_control_cases() -> Iterator[Case]:
     """Yield surfaces: the jump of a v-derivative across a knot of curve i is N_i(u) times that of the curve."""
     a = sp.Symbol("a", integer=True, nonnegative=True)
-    jumps, across = sp.IndexedBase("J"), pr.B(pr.i, pr.k, pr.u, pr.U)
-    factor = coefficient(sp.Sum(jumps[pr.i] * across, (pr.i, 0, pr.m)), jumps[a])
-    # Any other curve: its jump enters with a function of its own, and is zero.
+    # By (3) as printed. What curve a is multiplied by does not depend on v, so that it multiplies derivatives by v and
+    # their jumps too; any other curve enters with a function of its own.
+    factor = coefficient(pr.EQ_3.relation.rhs, pr.C(a, pr.v))
     residual = sp.expand(factor - WITHIN(0, a, pr.m) * pr.B(a, pr.k, pr.u, pr.U))
     yield Case("every order, knots and count: factor of the jump of curve a", bool(residual == 0), residual=residual)
     for position in (0, 3, 6):
