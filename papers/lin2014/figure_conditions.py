@@ -124,8 +124,8 @@ def _letters(side: Side, kind: Kind, parametric: bool) -> tuple[dict[Any, Any], 
 
 _TANGENT = "differs from the formula within the tangent plane alone, where (16) leaves P_uu free"
 _UNSEEN = (
-    "with R_2 in the tangent plane too, as on a base that is straight across, every such row is in it: this record does "
-    "not see the formula; fig-6.g2, with a curved base, and cond-3.1 do"
+    "with R_2 in the tangent plane too, as on a base that is straight across, every such row is in it: this record "
+    "does not see the formula; fig-6.g2, with a curved base, and cond-3.1 do"
 )
 
 
