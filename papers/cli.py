@@ -112,10 +112,10 @@ def generate_command(
 
 def decided(name: str) -> Ledger:
     """Decide a paper, with a progress bar where standard error is a terminal."""
-    from papers.loading import load_paper
+    from papers.loading import collected
     from papers.verification import verify
 
-    total = len(load_paper(name).claims)
+    total = len(collected(name).claims)
     with _progress("deciding", total) as advance:
         return verify(name, workers=min(os.cpu_count() or 1, 8), progress=lambda decision: advance(decision.id))
 

@@ -29,6 +29,20 @@ def load_paper(name: str) -> Paper:
     LedgerError
         There is no such paper, a module has no CLAIMS, an id occurs twice, or a record is not well formed.
     """
+    paper = collected(name)
+    for claim in paper.claims:
+        check_record(claim)
+    return paper
+
+
+def collected(name: str) -> Paper:
+    """Return a paper whose records are not checked: a worker decides what the process that started it has checked.
+
+    Raises
+    ------
+    LedgerError
+        There is no such paper, a module has no CLAIMS, or an id occurs twice.
+    """
     package = _package(name)
     folder = Path(str(package.__file__)).parent
     claims: list[Claim] = []
@@ -43,7 +57,6 @@ def load_paper(name: str) -> Paper:
     for i, claim in enumerate(claims):
         if claim.id in {c.id for c in claims[:i]}:
             raise LedgerError(f"claim {claim.id}: the id occurs twice, expected once")
-        check_record(claim)
     title, _, legend = inspect.cleandoc(package.__doc__ or folder.name).partition("\n\n")
     return Paper(name, title.rstrip("."), legend, tuple(claims))
 

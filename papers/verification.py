@@ -25,7 +25,7 @@ from papers.ledger import (
     Verdict,
     decided_cases,
 )
-from papers.loading import load_paper
+from papers.loading import collected, load_paper
 from papers.mutation import MutationResult, try_mutants
 
 
@@ -350,11 +350,9 @@ def _decisions(paper: Paper, workers: int) -> Iterator[Decision]:
 
 
 _GROUP = 6
-_LOADED: dict[str, Paper] = {}
 
 
 def _decide_by_id(name: str, identifiers: list[str]) -> list[Decision]:
-    """Decide some records in a worker, which loads the paper once: checks are functions and do not travel."""
-    if name not in _LOADED:
-        _LOADED[name] = load_paper(name)
-    return [decide(_LOADED[name].claim(identifier)) for identifier in identifiers]
+    """Decide some records in a worker, which imports the paper once: checks are functions and do not travel."""
+    paper = collected(name)
+    return [decide(paper.claim(identifier)) for identifier in identifiers]
