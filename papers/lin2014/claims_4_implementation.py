@@ -183,8 +183,9 @@ CLAIMS: tuple[Claim, ...] = (
              "that base has order 3 or more across the contact",
              part(objective.degree_check(2, True), pr.DEGREE_G2),
              remark="Of degree four in alpha^2 and beta^2, and quadratic in the free control points: once these are "
-             "eliminated, a polynomial in two numbers is left. Between bases whose rows run evenly across both "
-             "contacts, such as planes drawn with even nets, the degree is four."),
+             "eliminated, a polynomial in two numbers is left. With the printed conditions the degree is four "
+             "between bases whose rows run evenly across both contacts; with the corrected ones between bases "
+             "without second derivative there, such as planes of constant speed."),
     holds_if("sec-4.unconstrained", _WHERE, "With the G1 or G2 conditions put in, the problem has no constraint left.",
              "the energy over alpha^2, beta^2 is not least at zero",
              part(objective.SHAPE_CHECK),

@@ -107,8 +107,10 @@ CLAIMS = (
         remark="The paper contradicts itself: (2.1), said to follow from (17), has the opposite sign, the right one. "
         "R lies on w >= w_s and P on u >= 0: with the sign of (17) the blend runs back over the base, a fold with "
         "one tangent plane, so that (15) holds and smoothness does not. Open CASCADE compares tangent planes and "
-        "curvatures with normals "
-        "up to sign: it does not see a fold, so that its verdict stands beside a normal that turns by 180 degrees.",
+        "curvatures with normals up to sign: it does not see a fold, so that its verdict stands beside a normal that "
+        "turns by 180 degrees. The scan loses minus signs elsewhere, in (2.1) to (3.2). Here it would have to lose "
+        "one in (17) and another in p_1 = alpha^2, which agree as they stand; with both, the formula is the corrected "
+        "one.",
     ),
     Claim(
         "eq-18",
@@ -157,13 +159,14 @@ CLAIMS = (
             {2: pr.COND_3_1},
             "The made pair with row 2 by (3.1), which is (18) with these derivatives",
         ),
-        remark="Right for order 2, where both sides vanish, and where the first two spans have length 1. With "
-        "squares it holds where u_1 = u_2, such as without inner knots.",
+        remark="Right for order 2, where both sides vanish, and where u_1 = u_2 = 1, as without inner knots over "
+        "[0, 1]. With squares it holds where u_1 = u_2, that is where the first inner knot is double or there is none.",
     ),
     holds("sec-A.substitution", _WHERE, "p_1 = alpha^2, q_1 = p_2 = q_2 = 0 turn (15), (16) into (17), (18).",
           part(Check(partial(substitution_cases, 1), Strength.SYMBOLIC_ORDER, "substitution", proof=True), pr.EQ_17),
           part(Check(partial(substitution_cases, 2), Strength.SYMBOLIC_ORDER, "substitution", proof=True), pr.EQ_18),
-          remark="The algebra is right, the choice of p_1 is not: see eq-17."),
+          remark="The algebra is right; the choice of p_1, unless a minus is lost in it and in (17), is not: see "
+          "eq-17."),
     fails("sec-A.17-gives-2.1", _WHERE, "(17) and the first end derivatives give (2.1).",
           part(_derived(1), pr.COND_2_1),
           correction=Correction("They give (2.1) with the opposite sign of alpha^2; p_1 = -alpha^2 gives (2.1).",
@@ -171,8 +174,9 @@ CLAIMS = (
           counterexample=partial(row_counterexample, "start", 1, ROW_1_BY_17),
           consequence=partial(measured_rows, "start", {1: ROW_1_BY_17},
                               "The made pair with the row that (17) gives"),
-          remark="A fold, as for eq-17: Open CASCADE compares normals up to sign and does not see it; the normal, "
-          "followed across the contact, turns by 180 degrees."),
+          remark="With a minus in (17), which the scan may have lost there and in p_1 = alpha^2, they do: that is the "
+          "correction. As printed a fold, as for eq-17: Open CASCADE compares normals up to sign and does not see it; "
+          "the normal, followed across the contact, turns by 180 degrees."),
     holds("sec-A.18-gives-3.1", _WHERE, "(18) and the second end derivatives, as printed, give (3.1).",
           part(_derived(2), pr.COND_3_1),
           remark="The step is right; its premise app-d2 is not, and so (3.1) is wrong."),

@@ -159,14 +159,14 @@ def degree_check(order: int, geometric: bool) -> Check:
     """
 
     def cases(formula: Formula | None) -> Iterator[Case]:
-        rows = {"derived rows": _derived_rows(order)}
+        rows = {("derived rows", "R_ww = S_tt = 0"): _derived_rows(order)}
         if geometric:
-            rows["printed rows"] = _printed_rows(order)
+            rows["printed rows", "second differences zero at both contacts"] = _printed_rows(order)
         bases = (False, True) if geometric and order == 2 else (False,)
-        for name, (column, flat_base) in rows.items():
+        for (name, flatness), (column, flat_base) in rows.items():
             for flat in bases:
                 value = objective_degree([x.subs(flat_base) for x in column] if flat else column, geometric)
-                label = f"every order, knots and count, {name}" + (", second difference zero at both contacts" * flat)
+                label = f"every order, knots and count, {name}" + f", {flatness}" * flat
                 meaning = Meaning({pr.degree: value})
                 yield difference_case(given(formula), label, meaning, own=not flat, meets=not flat)
         for flat in bases:
