@@ -24,6 +24,7 @@ from papers.lin2014 import property_checks as properties
 from papers.lin2014.consequences_2 import one_function_for_all
 from papers.lin2014.exact import clamped, given
 from papers.lin2014.figure_checks import CONTACTS
+from papers.lin2014.printed_figures import MIDDLE_CURVES
 from papers.lin2014.property_checks import identity_cases, premises, proof_check, proved
 from papers.lin2014.spline_checks import (
     CUBIC,
@@ -77,12 +78,13 @@ COUNT_OF_VECTORS = Formula(sp.Eq(pr.last, pr.m + 1), (pr.last, pr.m), (pr.m >= 5
 def _different_vector_cases(formula: Formula | None) -> Iterator[Case]:
     """Decide the number of different knot vectors against the blends of (13): three are V^r, three V^s."""
     printed = given(formula).relation.rhs
+    counts = dict(zip(pr.SIZES, MIDDLE_CURVES.relation.rhs, strict=True))
     for figure, (first, second) in CONTACTS.items():
-        for middle in (0, 1):
-            m = 5 + middle
-            vectors = [pr.KNOTS[first]] * 3 + ["middle"] * middle + [pr.KNOTS[second]] * 3
-            residual = printed.subs(pr.m, m) - len(set(vectors))
-            yield Case(f"{figure}, m = {m}", bool(residual == 0), residual=residual)
+        middle = int(counts[figure])
+        m = 5 + middle
+        vectors = [pr.KNOTS[first]] * 3 + ["middle"] * middle + [pr.KNOTS[second]] * 3
+        residual = printed.subs(pr.m, m) - len(set(vectors))
+        yield Case(f"{figure}, m = {m}", bool(residual == 0), residual=residual)
 
 
 def _vectors_may_differ_cases() -> Iterator[Case]:

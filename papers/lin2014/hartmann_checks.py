@@ -9,11 +9,9 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from typing import Any
 
-import numpy as np
 import sympy as sp
 
-from papers.baselines.hartmann import weight as float_weight
-from papers.ledger import Case, Consequence, Counterexample, Formula
+from papers.ledger import Case, Counterexample, Formula
 from papers.lin2014.exact import given
 
 _T = sp.Symbol("t", nonnegative=True)
@@ -97,19 +95,37 @@ def direction_cases(end: int, weight: Weight = hartmann_weight) -> Callable[[For
     return cases
 
 
-def inference_cases(weight: Weight = hartmann_weight) -> Iterator[Case]:
-    """Yield blends inside the hull of both bases: true where one runs back over its base, as it is said to follow.
+# Two bases by the corners of their hull in the plane z = 0; the contact is (0, 0), where the first one goes on along x.
+FACING = ((-1, 0), (0, 0), (1, 0), (2, 0))
+ROUNDING = ((-1, 0), (0, 0), (1, 1), (1, 2))
 
-    In the plane z = 0, bases x <= 0 and x >= 1. All of 0 <= x <= 1 lies in their hull.
+
+def turning_cases(facing: Any = FACING, rounding: Any = ROUNDING) -> Iterator[Case]:
+    """Yield whether surfaces in the hull of both bases, whatever their kind, must not go on beyond the contact.
+
+    Where a plane through the contact has both bases on one side and the continued tangent d on the other one, a convex
+    combination of points of the bases lies on their side. So (X(t) - X(0)) . N <= 0 for t > 0, hence X_t . N <= 0;
+    with X_t = c d and d . N > 0 that is c <= 0. Derivatives along the contact are in the plane and change nothing.
     """
-    for label, one, other, own in (
-        ("pieces inside the bases, S1 = -t, S2 = 2 - t", -_T, 2 - _T, True),
-        ("pieces that continue the bases, S1 = S2 = t", _T, _T, True),
-    ):
-        f = weight(1, _T, 1 - _T).subs({_MU: sp.Rational(1, 2), _NU: sp.Rational(1, 2)})
-        blend = sp.simplify(f * one + (1 - f) * other)
-        backwards = sp.diff(blend, _T).subs(_T, 0) < 0
-        yield Case(label, bool(backwards), own=own)
+    weights, depths = sp.symbols("a_1:4", nonnegative=True), sp.symbols("g_1:4", nonnegative=True)
+    rise = sp.Symbol("d . N", positive=True)
+    height = sum(-a * g for a, g in zip(weights, depths, strict=True))
+    yield Case("any bases on one side of a plane, the tangent on the other", bool((height / rise).is_nonpositive))
+    yield Case("bases around an edge, x <= y", _plane_parts(rounding, (1, -1), (1, 0)))
+    # X = t from (0, 0) to (1, 0), G1 with both bases.
+    places = [sp.Integer(x) for x, _ in facing]
+    inside = not any(y for _, y in facing) and min(places) <= 0 and max(places) >= 1
+    forward = sp.diff(_T, _T) > 0
+    yield Case("coplanar strips -1 <= x <= 0 and 1 <= x <= 2, X = t", not (inside and forward), own=False, meets=False)
+
+
+def _plane_parts(corners: Any, normal: tuple[int, int], tangent: tuple[int, int]) -> bool:
+    """Return whether corners lie on one side of a plane through the contact, and a tangent leads to the other."""
+
+    def height(point: tuple[int, int]) -> int:
+        return sum(x * n for x, n in zip(point, normal, strict=True))
+
+    return all(height(point) <= 0 for point in corners) and height(tangent) > 0
 
 
 def hartmann_rational_cases(weight: Weight = hartmann_weight) -> Iterator[Case]:
@@ -130,24 +146,11 @@ def hartmann_rational_cases(weight: Weight = hartmann_weight) -> Iterator[Case]:
 
 
 def inference_counterexample() -> Counterexample | None:
-    """Return the first blend inside the hull that does not run back."""
-    case = next((case for case in inference_cases() if not case.true), None)
+    """Return the surface inside the hull that does not run back."""
+    case = next((case for case in turning_cases() if not case.true), None)
     if case is None:
         return None
-    values = (("bases", "x <= 0 and x >= 1 in a plane"), ("blend", f"of {case.label}"), ("n", "1"), ("mu", "1/2"))
-    return Counterexample(values, "X = t runs against x", "X_t = 1, out of the first base and into the second")
-
-
-def inference_consequence() -> Consequence:
-    """Measure both blends of two coplanar strips, with the weight in floating point."""
-    t = np.linspace(0.0, 1.0, 201)
-    f = float_weight(t, 2, 0.5)
-    places = {
-        "pieces inside the bases": f * -t + (1 - f) * (2 - t),
-        "pieces that continue the bases": f * t + (1 - f) * t,
-    }
-    outside = max(float(np.max([-1 - x, x - 2])) for x in places.values())
-    measured = {"largest distance from the hull": max(0.0, outside)}
-    for name, x in places.items():
-        measured[f"first step into the gap, {name}"] = float(x[1] - x[0])
-    return Consequence("Coplanar strips over -1 <= x <= 0 and 1 <= x <= 2, n = 2, mu = 1/2, 201 points", measured)
+    values = (("bases and surface", case.label),)
+    return Counterexample(
+        values, "X_t runs back, from the hull alone", "X_t = 1, out of the first base into the second"
+    )

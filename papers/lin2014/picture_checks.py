@@ -71,16 +71,69 @@ def graph_mean_cases(mean: Callable[[Any], Any] = graph_mean) -> Iterator[Case]:
     yield Case("the jump of H over that of z_xx", bool(sp.simplify(jump).is_positive))
 
 
+def reflection_cases(normal: Callable[[Any, Any], Any] = unit_normal) -> Iterator[Case]:
+    """Yield what reflected stripes show to a distant eye e: they are a function of the ray R = 2 (N . e) N - e.
+
+    R depends on the normal alone. Its derivative across jumps by R' = 2 (N' . e) N + 2 (N . e) N', N' being the jump of
+    that of the normal, at right angles to N: |R'|^2 = 4 (N' . e)^2 + 4 (N . e)^2 |N'|^2 is zero only where N' is, if
+    N . e is not zero, that is if the eye sees the contact from above or below.
+    """
+    unit = normal(_P, _Q)
+    jump = (unit.diff(_P) * (_OTHER - _ONE)).applyfunc(sp.simplify)
+    yield Case("N' is at right angles to N", bool(sp.simplify(jump.dot(unit)) == 0))
+    yield Case("N' is zero where z_xx agrees", jump.subs(_OTHER, _ONE).is_zero_matrix is True)
+    gap = sp.Symbol("b - a", real=True, nonzero=True)
+    size = sp.factor(sp.simplify(jump.dot(jump) / (_OTHER - _ONE) ** 2)) * gap**2
+    yield Case("and only there", bool(size.is_positive))
+    seen, aside = sp.Symbol("N . e", real=True, nonzero=True), sp.Symbol("N' . e", real=True)
+    # |N|^2 = 1 and N . N' = 0.
+    square = sp.expand((2 * aside) ** 2 + (2 * seen) ** 2 * size)
+    yield Case("R has a kink wherever N has one", bool(square.is_positive))
+
+
 def revealed_cases(normal: Callable[[Any, Any], Any] = unit_normal) -> Iterator[Case]:
-    """Yield lights on a contact with p = q = 0 whose curvature jumps: true where the stripes have a kink."""
+    """Yield directions d at a contact with p = q = 0 whose curvature jumps: true where the stripes have a kink.
+
+    The contact runs along y, its normal along z. Isophotes are a function of N . d, reflections to the eye e of R . d.
+    """
     for label, light, meets in (
-        ("light across the contact", (1, 0, 0), True),
-        ("light oblique to it", (1, 2, 3), True),
-        ("light along the contact", (0, 1, 0), False),
-        ("light along the normal", (0, 0, 1), False),
+        ("isophotes, d across the contact", (1, 0, 0), True),
+        ("isophotes, d oblique to it", (1, 2, 3), True),
+        ("isophotes, d along the contact", (0, 1, 0), False),
+        ("isophotes, d along the normal", (0, 0, 1), False),
     ):
         seen = _kink(light, normal).subs({_P: 0, _Q: 0}) != 0
         yield Case(label, bool(seen), own=meets, meets=meets)
+    slanted, above = (sp.Rational(3, 5), 0, sp.Rational(4, 5)), (0, 0, 1)
+    for label, light, eye, meets in (
+        ("reflections, e = (3/5, 0, 4/5), d along the normal", (0, 0, 1), slanted, True),
+        ("reflections, e along the normal, d across", (1, 0, 0), above, True),
+        ("reflections, e along the normal, d along the contact", (0, 1, 0), above, False),
+        (
+            "reflections, e = (3/5, 0, 4/5), d = (-3/5, 0, 4/5)",
+            (-sp.Rational(3, 5), 0, sp.Rational(4, 5)),
+            slanted,
+            False,
+        ),
+    ):
+        seen = _mirrored_kink(light, eye, normal) != 0
+        yield Case(label, bool(seen), own=meets, meets=meets)
+
+
+def _mirrored_kink(light: Light, eye: Light, normal: Callable[[Any, Any], Any]) -> Any:
+    """Return the jump of the derivative of R . light across a contact with p = q = 0."""
+    unit = normal(_P, _Q)
+    shade = (2 * unit.dot(sp.Matrix(eye)) * unit - sp.Matrix(eye)).dot(sp.Matrix(light))
+    slope = shade.diff(_P) * (_OTHER - _ONE)
+    return sp.simplify(slope.subs({_P: 0, _Q: 0}))
+
+
+def unsigned_cases(mean: Callable[[Any], Any] = graph_mean) -> Iterator[Case]:
+    """Yield joins with p = q = 0, straight along the contact, whose z_xx jumps: true where |H| jumps as well."""
+    for one, other in ((0, 1), (-1, 1)):
+        flat = dict.fromkeys((_P, _Q, _SHEAR, _ALONG), 0)
+        sides = [sp.Abs(sp.sympify(mean(sp.Integer(second))).subs(flat)) for second in (one, other)]
+        yield Case(f"z_xx from {one} to {other}", bool(sides[0] != sides[1]))
 
 
 def invisible_cases() -> Iterator[Case]:

@@ -60,7 +60,7 @@ def test_hartmann_as_it_is():
     for end, formula in enumerate(hartmann_checks.DIRECTION):
         assert truths(hartmann_checks.direction_cases(end)(formula)) == [True]
     assert truths(hartmann_checks.hartmann_rational_cases()) == [False]
-    assert truths(hartmann_checks.inference_cases()) == [True, False]
+    assert truths(hartmann_checks.turning_cases()) == [True, True, False]
 
 
 @pytest.mark.parametrize("weight", [exchanged, overshooting])
@@ -101,15 +101,27 @@ def test_hartmann_at_numbers():
             assert difference[-1] != 0
 
 
-def test_the_hull_does_not_make_a_blend_run_back():
-    found = hartmann_checks.inference_counterexample()
-    assert "continue the bases" in dict(found.values)["blend"]
-    measured = hartmann_checks.inference_consequence().measured
-    assert measured["largest distance from the hull"] == 0
-    assert measured["first step into the gap, pieces inside the bases"] < 0
-    assert measured["first step into the gap, pieces that continue the bases"] > 0
-    # Without contact of order 1 pieces inside the bases need not turn the blend.
-    assert truths(hartmann_checks.inference_cases(straight)) == [False, False]
+def test_the_hull_turns_a_blend_around_an_edge_only():
+    (where,) = dict(hartmann_checks.inference_counterexample().values).values()
+    assert "coplanar strips" in where
+    # A base on the other side of the plane, a strip that ends before X does, one that is not coplanar.
+    assert truths(hartmann_checks.turning_cases(rounding=((-1, 0), (0, 0), (2, 1)))) == [True, False, False]
+    assert truths(hartmann_checks.turning_cases(facing=((-1, 0), (sp.Rational(1, 2), 0)))) == [True, True, True]
+    assert truths(hartmann_checks.turning_cases(facing=hartmann_checks.ROUNDING)) == [True, True, True]
+
+
+def test_pieces_around_an_edge_run_back_and_a_forward_start_leaves_the_hull():
+    """At numbers: X of pieces of both bases; and (s, 0) against the hull's edge x = y, by solving for its weights."""
+    t = sp.Symbol("t")
+    f = hartmann_checks.hartmann_weight(1, t, 1 - t).subs(MU_NU)
+    x = f * -t + (1 - f)
+    assert sp.simplify(sp.diff(x, t).subs(t, 0)) == -1
+    corners = sp.Matrix([*hartmann_checks.ROUNDING]).T.col_join(sp.ones(1, 4))
+    a, b, c, d = sp.symbols("a b c d")
+    (weights,) = sp.linsolve((corners, sp.Matrix([sp.Rational(1, 10), 0, 1])), (a, b, c, d))
+    # y = c + 2 d = 0 asks for c = d = 0, and then x = -a is not positive.
+    assert sp.expand(weights[2] + 2 * weights[3]) == 0
+    assert weights[0].subs({c: 0, d: 0}) < 0
 
 
 def test_mean_curvature_must_see_the_normal_part():
@@ -140,8 +152,28 @@ def test_stripes_of_a_wrong_normal_are_seen():
     assert all(truths(picture_checks.stripe_cases()))
     for wrong in (lambda p, q: sp.Matrix([0, 0, 1]), lambda p, q: sp.Matrix([0, -q, 1])):
         assert not all(truths(picture_checks.stripe_cases(wrong)))
+        assert not all(truths(picture_checks.reflection_cases(wrong)))
         assert not any(truths(picture_checks.revealed_cases(wrong)))
-    assert truths(picture_checks.revealed_cases()) == [True, True, False, False]
+    assert truths(picture_checks.revealed_cases()) == [True, True, False, False] * 2
+    assert truths(picture_checks.reflection_cases()) == [True] * 4
+    # Too long a normal has a derivative along itself.
+    long = lambda p, q: sp.Matrix([-p, -q, 1])
+    assert not all(truths(picture_checks.reflection_cases(long)))
+
+
+def test_a_reflection_at_numbers():
+    """On z = k x^2 / 2, eye (3/5, 0, 4/5): by hand (R . d)_x is -2 k (e_1 d_3 + e_3 d_1)."""
+    x, k = sp.symbols("x k", real=True)
+    normal = sp.Matrix([-k * x, 0, 1]) / sp.sqrt(1 + k**2 * x**2)
+    eye = sp.Matrix([sp.Rational(3, 5), 0, sp.Rational(4, 5)])
+    slope = (2 * normal.dot(eye) * normal - eye).diff(x).subs(x, 0)
+    assert slope == sp.Matrix([-sp.Rational(8, 5) * k, 0, -sp.Rational(6, 5) * k])
+
+
+def test_mean_curvature_without_its_sign_misses_a_jump():
+    assert truths(picture_checks.unsigned_cases()) == [True, False]
+    assert truths(picture_checks.unsigned_cases(lambda second: second + 3)) == [True, True]
+    assert truths(picture_checks.unsigned_cases(lambda second: 1)) == [False, False]
 
 
 def test_a_mean_curvature_that_does_not_see_the_jump_is_seen():
@@ -284,7 +316,16 @@ def test_each_figure_is_decided_with_both_kinds_of_conditions():
         assert decision.consequence.measured
         letter = "S_0" if name in ("fig-6.g2", "fig-11.g2") else "R_0"
         assert letter in decision.counterexample
-    assert decide(CLAIMS["fig-10.g2"]).verdict is Verdict.HOLDS
+    straight = decide(CLAIMS["fig-10.g2"])
+    assert straight.verdict is Verdict.AMBIGUOUS
+    assert [r.verdict for r in straight.readings] == [Verdict.HOLDS_IF, Verdict.HOLDS]
+    assert straight.readings[0].false_case.endswith("base curved across")
+
+
+def test_the_readings_of_section_5_by_hand():
+    validation, inference = (decide(CLAIMS[name]).readings for name in ("sec-5.validation", "fig-7.inference"))
+    assert [r.verdict for r in validation] == [Verdict.HOLDS, Verdict.HOLDS_IF, Verdict.FAILS, Verdict.FAILS]
+    assert [r.verdict for r in inference] == [Verdict.HOLDS, Verdict.HOLDS_IF]
 
 
 def test_nothing_without_a_proof_is_called_one():

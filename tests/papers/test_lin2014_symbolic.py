@@ -81,6 +81,7 @@ def test_no_claim_of_sections_2_to_4_rests_on_instances_without_a_reason():
     [
         ("sec-2.derivatives-hard", [True, False]),
         ("sec-3.thin-plate", [True, False]),
+        ("sec-3.strain-energy", [False, True]),
         ("eq-12", [True, True]),
         ("sec-3.u-numbering", [True, False]),
         ("sec-1.fairness", [True, False]),
