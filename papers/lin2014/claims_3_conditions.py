@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from functools import partial
 
 from sympy import Eq
 
-from papers.ledger import Case, Claim, Correction, Formula, Part, Reading, Verdict
+from papers.ledger import Case, Claim, Correction, Counterexample, Formula, Part, Reading, Verdict
 from papers.lin2014 import printed as pr
 from papers.lin2014.consequences import measured_rows
 from papers.lin2014.contact_checks import (
@@ -33,7 +34,7 @@ from papers.lin2014.normal_checks import (
 )
 from papers.lin2014.objective_checks import direction_check
 from papers.lin2014.property_checks import proved
-from papers.lin2014.records import ambiguous, fails, holds_if, part
+from papers.lin2014.records import ambiguous, holds_if, part
 
 _START_CHAINS = (*pr.COND_3_1.neighbours, (pr.w_kr, w_kr1))
 _END_CHAINS = (*pr.COND_3_2.neighbours, (pr.t_ks, t_ks1), (u_last, u_before))
@@ -92,6 +93,7 @@ PARAMETRIC_3_1 = Formula(
     pr.COND_3_1.assumptions,
     pr.COND_3_1.neighbours,
 )
+PARAMETRIC_3_1_SQUARES = replace(PARAMETRIC_3_1, relation=pr.COND_3_1_SQUARES.relation.subs(pr.alpha, 1))
 TRUE_PARAMETRIC_3_1 = Formula(
     TRUE_3_1.relation.subs(pr.alpha, 1),
     tuple(x for x in TRUE_3_1.variables if x != pr.alpha),
@@ -124,6 +126,14 @@ _FIRST_TWO_ROWS = (
     Part(row_check("end", 0), pr.COND_1_2),
     Part(row_check("start", 1), pr.COND_2_1),
 )
+_PRINTED_FIRST_ROWS = (*_FIRST_TWO_ROWS, part(row_check("end", 1), pr.COND_2_2))
+
+
+def _no_g2() -> Counterexample | None:
+    """Return a base that (3.1) does not join with G2, in either reading, and beside it one for (2.2) and k = 5."""
+    found = normal_counterexample("start", (pr.COND_3_1, pr.COND_3_1_SQUARES))
+    tangent = row_counterexample("end", 1, pr.COND_2_2, least_order=5)
+    return found and replace(found, also=f"by (2.2), row m-1 at {tangent}")
 
 
 def all_rows(*parts: Part) -> tuple[Part, ...]:
@@ -201,10 +211,9 @@ CLAIMS = (
         "where w_{k_r+1} - w_s = u_2. With squares it is right exactly where (w_{k_r} - w_s) / (w_{k_r+1} - w_s) "
         "= u_1 / u_2: with the paper's uniform u_i, where the first two spans of the base across the contact have "
         "one length. Either reading is right, too, where R_ww has no part along the normal, as for k_r = 2 or a "
-        "base that is straight across. Why both fail: W is given, and neither equation is asked of it; a base "
-        "over [0, 1] without inner knots across, which (7) admits and Table 1 has (4 x 10 for Fig. 11, cubic), "
-        "meets neither, since u_2 = 2 u_1 < 1: for m = 5 the blend has 3/2, with squares 1/2, of what the base has "
-        "along the normal. "
+        "base that is straight across. Why both fail: W is given, the paper asks neither equation of it, and in its "
+        "own setting a base with inner knots across may meet neither: with w_{k_r} - w_s = 1, w_{k_r+1} - w_s = 3 and "
+        "uniform u_i the blend has 3 / u_2 times, with squares 3/2 times, what the base has along the normal. "
         + _MINUS,
     ),
     Claim(
@@ -247,19 +256,24 @@ CLAIMS = (
              counterexample=partial(row_counterexample, "end", 1, pr.COND_2_2),
              remark="At alpha = 0 rows 0 and 1 of the blend coincide and it has no tangent plane at the contact; "
              "nothing in the method keeps the search away from there (see sec-4.unconstrained)."),
-    fails("sec-3.sufficient-g2", _WHERE, "(1.1) to (3.2) together suffice for G2.",
-          *_FIRST_TWO_ROWS, part(row_check("end", 1), pr.COND_2_2),
-          _normal_part("start", pr.COND_3_1), _normal_part("end", pr.COND_3_2),
+    Claim("sec-3.sufficient-g2", _WHERE, "(1.1) to (3.2) together suffice for G2.", Verdict.FAILS,
+          (Reading((*_PRINTED_FIRST_ROWS, _normal_part("start", pr.COND_3_1), _normal_part("end", pr.COND_3_2)),
+                   label="as printed"),
+           Reading((*_PRINTED_FIRST_ROWS, _normal_part("start", pr.COND_3_1_SQUARES),
+                    _normal_part("end", pr.COND_3_2_SQUARES)),
+                   label="(3.1) and (3.2) with both distances squared, if the scan lost that")),
           correction=Correction(
               "For regular bases, alpha and beta not zero: (1.1), (1.2), (2.1), with (2.2), (3.1) and (3.2) corrected.",
               (*all_rows(*_FIRST_TWO_ROWS, Part(row_check("end", 1), TRUE_2_2),
                          Part(row_check("start", 2), TRUE_3_1), Part(row_check("end", 2), TRUE_3_2)),
                part(proved(partial(special_contact_cases, 2),
                            "second fundamental forms for any regular base, alpha not zero")))),
-          counterexample=partial(normal_counterexample, "start", (pr.COND_3_1, pr.COND_3_1_SQUARES)),
+          counterexample=_no_g2,
           consequence=partial(measured_rows, "start", {1: pr.COND_2_1, 2: pr.COND_3_1},
                               "The made pair with rows 1 and 2 as printed, the rest as in the checked G2 blend"),
-          remark="When they do: k = 4 for (2.2), and what cond-3.1 and cond-3.2 say for (3.1) and (3.2)."),
+          remark="Three of the six fail, each alone: (3.1), and (3.2) likewise, as printed and with squares, and "
+          "(2.2) for k other than 4; for k > 4 it puts row m-1 on row m, so that there is no tangent plane. When they "
+          "suffice: k = 4 for (2.2), and what cond-3.1 and cond-3.2 say for (3.1) and (3.2)."),
     ambiguous("sec-3.parametric-c1", "Section 3, parametric continuity",
               "With alpha = beta = 1 the G1 conditions become C1 conditions.",
               Reading((part(direction_check(1), PARAMETRIC_2_1),),
@@ -267,12 +281,17 @@ CLAIMS = (
               Reading((part(direction_check(-1), PARAMETRIC_2_1),),
                       label="with R run backwards, P_u = -R_w"),
               remark="At S the parameters run the same way and P_u = S_t."),
-    fails("sec-3.parametric-c2", "Section 3, parametric continuity",
-          "With alpha = beta = 1 the G2 conditions become C2 conditions.",
-          part(row_check("start", 2, "parametric"), PARAMETRIC_3_1),
+    Claim("sec-3.parametric-c2", "Section 3, parametric continuity",
+          "With alpha = beta = 1 the G2 conditions become C2 conditions.", Verdict.FAILS,
+          (Reading((part(row_check("start", 2, "parametric"), PARAMETRIC_3_1),), label="(3.1) as printed"),
+           Reading((part(row_check("start", 2, "parametric"), PARAMETRIC_3_1_SQUARES),),
+                   label="(3.1) with both distances squared, if the scan lost that")),
           correction=Correction("With (3.1) corrected they do.",
                                 (Part(row_check("start", 2, "parametric"), TRUE_PARAMETRIC_3_1),)),
-          counterexample=partial(row_counterexample, "start", 2, PARAMETRIC_3_1, parametric=True),
+          counterexample=partial(row_counterexample, "start", 2, PARAMETRIC_3_1, PARAMETRIC_3_1_SQUARES,
+                                 parametric=True),
           consequence=partial(measured_rows, "start", {2: pr.COND_3_1}, "The made pair's C2 blend, row 2 as printed",
-                              "C2")),
+                              "C2"),
+          remark="With squares it fails too where they give G2, on a base whose first two spans across have one "
+          "length: in the direction of R_w."),
 )  # fmt: skip

@@ -7,7 +7,7 @@ contact at u = 0, h_r = u_r, and for one at u = 1, h_r = 1 - u_(m-k+2-r).
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import cache, partial
 from itertools import pairwise
@@ -243,19 +243,23 @@ def difference_form(expression: Any, rows: tuple[Any, ...], *, flat: bool = Fals
     )
 
 
-def row_counterexample(side: Side, row: int, formula: Formula, *, parametric: bool = False) -> Counterexample | None:
-    """Search for the smallest instance at which a printed row is not the true one: orders first, then heights.
+def row_counterexample(
+    side: Side, row: int, *formulas: Formula, parametric: bool = False, least_order: int = 0
+) -> Counterexample | None:
+    """Search for the smallest instance at which no reading of a row is the true one: orders first, then heights.
 
-    The one in the paper's own orders and knots (k = 4, no middle curve, so that u is 1/3, 2/3) is found beside it.
+    The base is regular: its first two rows differ. The blend has `least_order` or more, and not less than the row
+    needs. The one in the paper's own orders and knots (k = 4, no middle curve, so that u is 1/3, 2/3) is found
+    beside it.
     """
-    lowest = row + 1
+    lowest = max(row + 1, least_order)
     for total in range(lowest + 2, 2 * ORDERS[-1] + 1):
         for k in range(lowest, total - 1):
             k_b = total - k
             fixed = _ONES if parametric else {}
-            found = _counterexample_at(side, row, formula, (k, k_b), fixed)
+            found = _counterexample_at(side, row, formulas, (k, k_b), fixed)
             if found is not None:
-                own = _counterexample_at(side, row, formula, (CUBIC, CUBIC), _OWN_KNOTS | fixed)
+                own = _counterexample_at(side, row, formulas, (CUBIC, CUBIC), _OWN_KNOTS | fixed)
                 return found if own is None else replace(found, own=str(own))
     return None
 
@@ -265,35 +269,39 @@ _OWN_KNOTS = {BLEND_H[0]: sp.Rational(1, 3), BLEND_H[1]: sp.Rational(2, 3), BLEN
 
 
 def _counterexample_at(
-    side: Side, row: int, formula: Formula, orders: tuple[int, int], fixed: dict[Any, Any]
+    side: Side, row: int, formulas: Sequence[Formula], orders: tuple[int, int], fixed: dict[Any, Any]
 ) -> Counterexample | None:
     degree = orders[0] - 1
     values = letter_values(side, *orders, rows_from_pieces(min(2, degree), degree, orders[1] - 1, side))
-    wrong = given(formula).relation.rhs.subs(values, simultaneous=True).subs(fixed)
+    readings = [given(formula).relation.rhs.subs(values, simultaneous=True).subs(fixed) for formula in formulas]
     true = values[ROWS[side][row]].subs(fixed)
-    found = _smallest_difference(wrong, true)
+    found = _smallest_difference(readings, true, BASE_ROWS[side][:2])
     if found is None:
         return None
     names = zip(("k", str(base_order(side))), map(str, orders), strict=True)
+    wrong = " or ".join(dict.fromkeys(str(reading.subs(found)) for reading in readings))
     at = named(side, {h: x for h, x in fixed.items() if h != BLEND_H[2] and h not in _ONES} | found)
-    return Counterexample((*names, *at), str(wrong.subs(found)), str(true.subs(found)))
+    return Counterexample((*names, *at), wrong, str(true.subs(found)))
 
 
-def _smallest_difference(wrong: Any, true: Any) -> dict[Any, Any] | None:
-    residual = sp.numer(sp.together(wrong - true))
-    if sp.expand(residual) == 0:
+def _smallest_difference(readings: Sequence[Any], true: Any, apart: tuple[Any, ...] = ()) -> dict[Any, Any] | None:
+    """Return the smallest instance at which all readings miss, with the two letters `apart` different."""
+    differences = [reading - true for reading in readings]
+    residuals = [sp.numer(sp.together(difference)) for difference in differences]
+    if any(sp.expand(residual) == 0 for residual in residuals):
         return None
-    h = [x for x in BLEND_H if wrong.has(x) or true.has(x)]
-    b = [x for x in BASE_H if wrong.has(x) or true.has(x)]
-    others = sorted((wrong - true).free_symbols - set(h) - set(b), key=str)
-    symbols = [*h, *b, *others]
-    evaluate = sp.lambdify(symbols, residual, "math")
+    h = [x for x in BLEND_H if any(expression.has(x) for expression in (*readings, true))]
+    b = [x for x in BASE_H if any(expression.has(x) for expression in (*readings, true))]
+    letters = set().union(*(difference.free_symbols for difference in differences))
+    symbols = [*h, *b, *sorted(letters - set(h) - set(b), key=str)]
+    evaluate = [sp.lambdify(symbols, residual, "math") for residual in residuals]
 
     def counts(at: dict[Any, Any]) -> bool:
         # Inner knots of U lie strictly inside [0, 1] and increase; so do those of the base.
         inside = all(at[x] < 1 for x in h)
         increase = all(at[x] < at[y] for chain in (h, b) for x, y in pairwise(chain))
-        return inside and increase and evaluate(*(at[s] for s in symbols)) != 0
+        regular = not apart or at.get(apart[0], 0) != at.get(apart[1], 0)
+        return inside and increase and regular and all(f(*(at[s] for s in symbols)) != 0 for f in evaluate)
 
     return smallest_assignment(symbols, counts)
 
@@ -317,7 +325,7 @@ def derivative_counterexample(surface: Literal["P", "R"], order: int, formula: F
         h1, h2, _ = BLEND_H
         knots = {pr.u_1: h1, pr.u_2: h2, pr.w_kr: pr.w_s + h1, w_kr1: pr.w_s + h2, pr.k: k, pr.k_r: k}
         wrong = formula.relation.rhs.subs(knots, simultaneous=True)
-        found = _smallest_difference(wrong, true)
+        found = _smallest_difference([wrong], true)
         if found is not None:
             values = (("k" if is_blend else "k_r", str(k)), *named("start", found))
             return Counterexample(values, str(wrong.subs(found)), str(true.subs(found)))

@@ -60,18 +60,7 @@ def row_2_check(side: Side, m: int, kind: Kind, *, parametric: bool) -> Check:
     """Return the check of a condition for row 2 of a figure: P_uu against alpha^4 R_ww, for all rows of a kind."""
 
     def cases(formula: Formula | None) -> Iterator[Case]:
-        label = f"any rows, {m + 1} curves"
-        try:
-            residual = _residual(given(formula).relation.rhs, side, m, kind, parametric)
-        except UndefinedError as error:
-            yield Case(label, False, residual=sp.Symbol(f"undefined: {error}"))
-            return
-        if residual == 0:
-            yield Case(label, True, residual=sp.Integer(0))
-        else:
-            expression = residual.as_expr()
-            shown = difference_form(expression, _BASE[side]) if kind == "any" else sp.factor(expression)
-            yield Case(label, False, residual=shown)
+        yield _row_2_case(f"any rows, {m + 1} curves", formula, side, m, kind, parametric)
 
     def probe(formula: Formula) -> Any:
         try:
@@ -90,8 +79,53 @@ def row_2_check(side: Side, m: int, kind: Kind, *, parametric: bool) -> Check:
     )
 
 
-def _residual(row: Any, side: Side, m: int, kind: Kind, parametric: bool) -> Any:
-    values, base = _letters(side, kind, parametric)
+EQUAL_SPANS = "the first two spans of the base across the contact have one length"
+
+
+def equal_spans_check(side: Side, m: int) -> Check:
+    """Return the check of a condition for row 2 of a figure along the normal, on bases with equal and other spans.
+
+    A base as in the figures, with one inner knot across, has two equal spans where this knot is in the middle.
+    """
+
+    def cases(formula: Formula | None) -> Iterator[Case]:
+        rows = f"any rows, {m + 1} curves"
+        yield _row_2_case(f"{rows}, two spans of one length", formula, side, m, "curved", False, equal=True)
+        other = _row_2_case(f"{rows}, spans of other lengths", formula, side, m, "curved", False)
+        yield replace(other, own=False, meets=False)
+
+    def probe(formula: Formula) -> Any:
+        try:
+            return [_residual(formula.relation.rhs, side, m, "curved", False, equal) for equal in (True, False)]
+        except UndefinedError as error:
+            return str(error)
+
+    return Check(
+        cases,
+        Strength.SYMBOLIC_ORDER,
+        "P_uu by row 2 against the base's second derivative along the normal, with two equal spans of the base and "
+        "with any; k = k_s = 4, uniform u_i as in the figure, any control points",
+        proof=True,
+        probe=probe,
+    )
+
+
+def _row_2_case(
+    label: str, formula: Formula | None, side: Side, m: int, kind: Kind, parametric: bool, equal: bool = False
+) -> Case:
+    try:
+        residual = _residual(given(formula).relation.rhs, side, m, kind, parametric, equal)
+    except UndefinedError as error:
+        return Case(label, False, residual=sp.Symbol(f"undefined: {error}"))
+    if residual == 0:
+        return Case(label, True, residual=sp.Integer(0))
+    expression = residual.as_expr()
+    shown = difference_form(expression, _BASE[side]) if kind == "any" else sp.factor(expression)
+    return Case(label, False, residual=shown)
+
+
+def _residual(row: Any, side: Side, m: int, kind: Kind, parametric: bool, equal: bool = False) -> Any:
+    values, base = _letters(side, kind, parametric, equal)
     values = dict(values)
     values[_BLEND[side][0]] = values[_BASE[side][0]]
     first = at_figure(_FIRST_ROW[side], m, parametric=parametric).relation.rhs
@@ -103,8 +137,12 @@ def _residual(row: Any, side: Side, m: int, kind: Kind, parametric: bool) -> Any
 
 
 @cache
-def _letters(side: Side, kind: Kind, parametric: bool) -> tuple[dict[Any, Any], Any]:
-    """Return what each letter stands for, in a field of rational functions, and alpha^4 R_ww."""
+def _letters(side: Side, kind: Kind, parametric: bool, equal: bool) -> tuple[dict[Any, Any], Any]:
+    """Return what each letter stands for, in a field of rational functions, and alpha^4 R_ww.
+
+    With `equal` the first two spans of the base have one length.
+    """
+    spans = (_BASE_H[0], 2 * _BASE_H[0]) if equal else _BASE_H
     start = pr.w_s if side == "start" else pr.t_s
     knots = (pr.w_kr, w_kr1) if side == "start" else (pr.t_ks, t_ks1)
     shape, base, last = _SHAPE[side], _BASE[side], _BLEND[side][2]
@@ -116,8 +154,8 @@ def _letters(side: Side, kind: Kind, parametric: bool) -> tuple[dict[Any, Any], 
         of[base[2]] = of[base[0]]
     if parametric:
         of[shape] = field.one
-    of |= {knot: field.from_sympy(start + h) for knot, h in zip(knots, _BASE_H, strict=True)}
-    ends = end_derivatives(2, CUBIC - 1, _BASE_H)
+    of |= {knot: field.from_sympy(start + h) for knot, h in zip(knots, spans, strict=True)}
+    ends = end_derivatives(2, CUBIC - 1, spans)
     second = sum((field.from_sympy(ends[2, i]) * of[base[i]] for i in range(3)), field.zero)
     return of, of[shape] ** 4 * second
 
@@ -144,22 +182,30 @@ def along_normal(formula: Formula, side: Side, kind: Kind) -> Formula:
     return replace(formula, equivalent={mutant.text: reason for mutant in same})
 
 
-_SECOND_ROW = {"start": pr.COND_3_1, "end": pr.COND_3_2}
+# As printed, and with the squares that the scan may have lost.
+_SECOND_ROWS = {"start": (pr.COND_3_1, pr.COND_3_1_SQUARES), "end": (pr.COND_3_2, pr.COND_3_2_SQUARES)}
 
 
 def _printed_derivatives(
-    rows: tuple[sp.Matrix, ...], m: int, spans: tuple[Any, Any], alpha: Any = 1, side: Side = "start"
+    rows: tuple[sp.Matrix, ...],
+    m: int,
+    spans: tuple[Any, Any],
+    alpha: Any = 1,
+    side: Side = "start",
+    squares: bool = False,
 ) -> Any:
     """Return P_u and P_uu at the contact when rows 1 and 2 are set as printed, k = k_r = 4, uniform u_i.
 
-    `rows` are R_0, R_1, R_2 (or S_0, S_1, S_2) as vectors, `spans` the first two spans of the base across.
+    `rows` are R_0, R_1, R_2 (or S_0, S_1, S_2) as vectors, `spans` the distances of the first two inner knots of the
+    base from the contact; with `squares` both distances of row 2 are squared.
     """
     h = _uniform(m)
     knots = (pr.w_s, pr.w_kr) if side == "start" else (pr.t_s, pr.t_ks)
     values = {knots[0]: 0, knots[1]: spans[0], _SHAPE[side]: alpha}
     own, next_row, _ = _BLEND[side]
     first_row, second_row = (
-        at_figure(formula[side], m, parametric=False).relation.rhs for formula in (_FIRST_ROW, _SECOND_ROW)
+        at_figure(formula, m, parametric=False).relation.rhs
+        for formula in (_FIRST_ROW[side], _SECOND_ROWS[side][squares])
     )
     coordinates = []
     for c in range(3):
@@ -188,29 +234,35 @@ def _base_derivatives(rows: tuple[sp.Matrix, ...], spans: Any) -> tuple[sp.Matri
 
 
 def row_counterexample(side: Side, kind: str, m: int) -> Any:
-    """Return a search for the smallest rows at which P_uu by the printed conditions misses along the normal."""
+    """Return a search for the smallest rows at which P_uu misses along the normal, as printed and with squares.
+
+    The first two spans of the base are 1 and 2: with squares, equal ones give the right value.
+    """
 
     def search() -> Counterexample | None:
         rows, along = _rows_across(kind)
-        spans = (sp.Integer(1), sp.Integer(2))
-        _, second = _printed_derivatives(rows, m, spans, side=side)
+        spans = (sp.Integer(1), sp.Integer(3))
+        seconds = [_printed_derivatives(rows, m, spans, side=side, squares=squares)[1] for squares in (False, True)]
         r_first, r_second = _base_derivatives(rows, spans)
+        misses_by = [second - r_second for second in seconds]
         symbols = sorted(set().union(*(row.free_symbols for row in rows)), key=str)
 
         def misses(at: dict[Any, Any]) -> bool:
             normal = r_first.subs(at).cross(along)
-            return bool(not normal.is_zero_matrix and (second - r_second).subs(at).dot(normal) != 0)
+            return not normal.is_zero_matrix and all(miss.subs(at).dot(normal) != 0 for miss in misses_by)
 
         found = smallest_assignment(symbols, misses)
         if found is None:
             return None
         base, parameter, start, shape = ("R", "w", "w_s", "alpha") if side == "start" else ("S", "t", "t_s", "beta")
         spell = ", ".join(f"{base}_{i} = {tuple(row.subs(found))}" for i, row in enumerate(rows))
-        wrong, true = (tuple(x.subs(found)) for x in (second, r_second))
+        wrong, squared, true = (tuple(x.subs(found)) for x in (*seconds, r_second))
         values = (("rows", spell), ("contact curve along", str(tuple(along))),
-                  (f"knots of {base} after {start}", f"{start} + 1, {start} + 2"), (shape, "1"),
+                  (f"knots of {base} after {start}", f"{start} + 1, {start} + 3"), (shape, "1"),
                   ("m", str(m)))  # fmt: skip
-        return Counterexample(values, f"P_uu = {wrong}", f"{base}_{parameter}{parameter} = {true}")
+        return Counterexample(
+            values, f"P_uu = {wrong}, with squares {squared}", f"{base}_{parameter}{parameter} = {true}"
+        )
 
     return search
 
@@ -218,7 +270,8 @@ def row_counterexample(side: Side, kind: str, m: int) -> Any:
 def straight_counterexample(m: int) -> Any:
     """Return the search for rows on a straight line at which the printed C2 conditions miss, natural ones first.
 
-    Rows at the Greville abscissae run along the line at constant speed; evenly spaced rows are what a user draws.
+    Rows at the Greville abscissae run along the line at constant speed; evenly spaced rows are what a user draws. The
+    first two spans have one length, where squares would give G2: C2 they do not give.
     """
 
     def search() -> Counterexample | None:
@@ -227,9 +280,11 @@ def straight_counterexample(m: int) -> Any:
                              ("evenly spaced", (0, 1, 2))):  # fmt: skip
             rows = tuple(sp.Matrix([place, 0, 0]) for place in places)
             spans = (sp.Integer(1), sp.Integer(2))
-            printed, true = _printed_derivatives(rows, m, spans)[1][0], _base_derivatives(rows, spans)[1][0]
-            if printed != true:
-                missed.append((f"R_0, R_1, R_2 = {', '.join(map(str, places))} ({name})", printed, true))
+            printed, squared = (_printed_derivatives(rows, m, spans, squares=s)[1][0] for s in (False, True))
+            true = _base_derivatives(rows, spans)[1][0]
+            if true not in (printed, squared):
+                wrong = f"{printed}, with squares {squared}"
+                missed.append((f"R_0, R_1, R_2 = {', '.join(map(str, places))} ({name})", wrong, true))
         if not missed:
             return None
         (label, printed, true), *others = missed

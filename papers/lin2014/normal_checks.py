@@ -132,7 +132,7 @@ def normal_counterexample(side: Side, formulas: Sequence[Formula]) -> Counterexa
 
     Orders first, then heights. R_v is the second unit vector along the contact and in all three rows, R_0 the origin,
     R_1 on the first axis and not the origin: so R_w x R_v points along the third axis. The smallest one in the paper's
-    own orders and knots (no middle curve, so that u is 1/3, 2/3) is found beside it.
+    own orders and knots (no middle curve, so that u is 1/3, 2/3) is found beside it, on a base with inner knots across.
     """
     for total in range(6, 2 * ORDERS[-1] + 1):
         for k in range(3, total - 2):
@@ -168,8 +168,11 @@ def _counterexample_at(
 
     def counts(at: dict[Any, Any]) -> bool:
         h = [(fixed | at)[x] for x in symbols if x in BLEND_H]
-        # Inner knots of U differ and lie inside [0, 1]; a base without inner knots has one length for both.
-        knots = all(a < b for a, b in zip(h, (*h[1:], 1), strict=True)) and at[BASE_H[0]] <= at[BASE_H[1]]
+        # Inner knots of U differ and lie inside [0, 1]; a base without inner knots, which the paper's own setting
+        # is not left to, has one length for both.
+        first, second = (at[x] for x in BASE_H)
+        inner = first < second if fixed else first <= second
+        knots = all(a < b for a, b in zip(h, (*h[1:], 1), strict=True)) and inner
         return knots and at[_X1] != 0 and all(f(*(at[s] for s in searched)) != 0 for f in evaluate)
 
     found = smallest_assignment(searched, counts)

@@ -16,7 +16,8 @@ from papers.lin2014.consequences import made_blend, made_pair, measured_rows, wi
 from papers.lin2014.consequences_3 import COMMON_TERMS, with_normal_equation
 from papers.lin2014.contact_checks import row_check, row_counterexample, t_ks1, u_before, u_last, w_kr1
 from papers.lin2014.exact import Meaning, UndefinedError, clamped, de_boor, interpret
-from papers.lin2014.figure_conditions import at_figure, row_2_check, straight_counterexample
+from papers.lin2014.figure_conditions import at_figure, equal_spans_check, row_2_check, straight_counterexample
+from papers.lin2014.figure_conditions import row_counterexample as figure_counterexample
 from papers.lin2014.normal_checks import EXCESS_3_1, EXCESS_3_1_SQUARES, excess_check, normal_counterexample
 from papers.lin2014.related_checks import quartic_cases
 from papers.loading import load_paper
@@ -117,14 +118,74 @@ def test_the_counterexample_to_row_2_is_no_g2_contact(side, formulas):
     # The third coordinate is 1/6, whatever the others are.
     assert found.true.startswith("third coordinate 1/6,")
     assert normal_excess((3, 3), h, H, one, base, (7, 0, Fraction(1, 6))) == 0
-    # In the paper's own orders and knots.
+    # In the paper's own orders and knots, on a base with inner knots across.
     assert "k = 4" in found.own
-    own = (Fraction(1, 3), Fraction(2, 3))
+    assert "+1} - t_s = 3" in found.own or "+1} - w_s = 3" in found.own
+    own, H = (Fraction(1, 3), Fraction(2, 3)), (Fraction(1), Fraction(3), Fraction(4))
     for wrong in (Fraction(1, 3), Fraction(1, 9)):
         assert f", 0, {wrong})" in found.own
         assert normal_excess((4, 4), own, H, one, base, (0, 0, wrong)) != 0
-    assert "third coordinate 2/9" in found.own
-    assert normal_excess((4, 4), own, H, one, base, (0, 0, Fraction(2, 9))) == 0
+    assert "third coordinate 2/27" in found.own
+    assert normal_excess((4, 4), own, H, one, base, (0, 0, Fraction(2, 27))) == 0
+
+
+def test_the_counterexample_to_c2_is_a_regular_base_on_which_both_readings_miss():
+    found = load_paper("lin2014").claim("sec-3.parametric-c2").counterexample()
+    assert found.own.endswith("R_{0j} = 1, R_{1j} = 0, R_{2j} = 0: printed 2 or 16/9, true 20/9")
+    W, U = clamped(4, Fraction(1), Fraction(2), end=3), clamped(4, Fraction(1, 3), Fraction(2, 3))
+    R = [Fraction(1)] + [Fraction(0)] * 5
+    assert derivative(4, W, R, 1) != 0
+    for row_2, c2 in ((2, False), (Fraction(16, 9), False), (Fraction(20, 9), True)):
+        P = [Fraction(1), Fraction(4, 3), Fraction(row_2), *[Fraction(0)] * 3]
+        # With alpha = 1 the blend leaves the base backwards.
+        assert derivative(4, U, P, 1) == -derivative(4, W, R, 1)
+        assert (derivative(4, U, P, 2) == derivative(4, W, R, 2)) == c2
+
+
+def test_g2_is_reached_by_the_right_conditions_and_by_neither_reading_of_the_printed_ones():
+    parts = [part for reading in load_paper("lin2014").claim("sec-0.reaches").readings for part in reading.parts]
+    assert [all(case.true for case in part.check.cases(part.formula)) for part in parts] == [True, False, False]
+
+
+def test_the_tangent_condition_at_s_fails_beside_those_of_second_order():
+    """For k = 5 the printed row m-1 is row m."""
+    found = load_paper("lin2014").claim("sec-3.sufficient-g2").counterexample()
+    assert "k = 5" in found.also
+    assert "S_{0j} = 0" in found.also
+    assert "printed 0, true -" in found.also
+
+
+@pytest.mark.parametrize("m", [5, 6])
+def test_the_squared_condition_of_a_figure_needs_equal_spans(m):
+    """P_mm along the normal at numbers, by exact splines; S mirrored, so that its contact is at the start."""
+    at = at_figure(pr.COND_3_2_SQUARES, m, parametric=False)
+    same, other = equal_spans_check("end", m).cases(at)
+    assert (same.true, same.meets, other.true, other.meets) == (True, True, False, False)
+    # As printed not even there, and the corrected one everywhere.
+    assert not any(case.true for case in equal_spans_check("end", m).cases(at_figure(pr.COND_3_2, m, parametric=False)))
+    assert all(case.true for case in equal_spans_check("end", m).cases(at_figure(TRUE_3_2, m, parametric=False)))
+    U = clamped(4, *(Fraction(i, m - 2) for i in range(1, m - 2)))
+    S = [Fraction(0), Fraction(0), Fraction(1)]
+    for second, g2 in ((2, True), (3, False)):
+        T = clamped(4, Fraction(1), Fraction(second), end=second + 1)
+        numbers = {pr.t_s: Fraction(0), pr.t_ks: T[4], pr.beta: Fraction(1), pr.P_m: S[0], pr.P_m1: S[0]}
+        numbers |= dict(zip((pr.S_0, pr.S_1, pr.S_2), S, strict=True))
+        P = [S[0], S[0], interpret(at.relation.rhs, Meaning(numbers))] + [Fraction(0)] * (m - 2)
+        assert (second_derivative(4, U, P) == second_derivative(4, T, S + [Fraction(0)] * 3)) == g2
+
+
+@pytest.mark.parametrize("m", [5, 6])
+def test_the_counterexample_of_a_figure_refutes_both_readings_along_the_normal(m):
+    found = figure_counterexample("end", "curved", m)()
+    printed, squared, true = (
+        tuple(map(Fraction, re.findall(r"-?\d+(?:/\d+)?", text)))
+        for text in (*found.printed.split(", with squares "), found.true)
+    )
+    T = clamped(4, Fraction(1), Fraction(3), end=4)
+    base = [(0, 0, 0), (1, 0, 0), (0, 0, 1)]
+    assert tuple(vector_derivative(4, T, base, 2)) == true
+    # By hand: H_2 / h_2 and H_2 h_1 / (h_2 H_1) times the base's third coordinate.
+    assert (printed[2], squared[2]) == (true[2] * Fraction(3 * (m - 2), 2), true[2] * Fraction(3, 2))
 
 
 def test_no_smaller_orders_are_a_counterexample_to_g2():
@@ -287,11 +348,11 @@ def test_a_base_that_is_straight_across_hides_the_error_from_its_normal():
 
 
 def test_the_quartic_and_rows_on_a_line_at_numbers():
-    """Known answers, worked out by hand: the quartic meets G2 data; printed rows give 8 and 12 for 0 and -3."""
+    """Known answers, worked out by hand: the quartic meets G2 data; rows give 8 and 12, squared 5 and 12, for 0, -3."""
     assert [case.true for case in quartic_cases()] == [False]
     found = straight_counterexample(6)()
-    assert (found.printed, found.true) == ("P_uu = 8", "R_ww = 0")
-    assert found.also.endswith("printed 12, true -3")
+    assert (found.printed, found.true) == ("P_uu = 8, with squares 5", "R_ww = 0")
+    assert found.also.endswith("printed 12, with squares 12, true -3")
     # The base's second derivative once more, from values of exact splines.
     W = clamped(4, Fraction(1), Fraction(2), start=0, end=3)
     for rows, wanted in (((0, Fraction(1, 3), 1), 0), ((0, 1, 2), -3)):

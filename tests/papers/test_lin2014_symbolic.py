@@ -90,6 +90,8 @@ def test_no_claim_of_sections_2_to_4_rests_on_instances_without_a_reason():
         ("sec-2.different-vectors", [False, True]),
         ("cond-3.1", [False, False]),
         ("cond-3.2", [False, False]),
+        ("sec-3.sufficient-g2", [False, False]),
+        ("sec-3.parametric-c2", [False, False]),
     ],
 )
 def test_each_reading_of_a_claim(name, holds):
