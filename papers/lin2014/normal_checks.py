@@ -168,8 +168,8 @@ def _counterexample_at(
 
     def counts(at: dict[Any, Any]) -> bool:
         h = [(fixed | at)[x] for x in symbols if x in BLEND_H]
-        # Inner knots of U differ and lie inside [0, 1]; a base without inner knots, which the paper's own setting
-        # is not left to, has one length for both.
+        # Inner knots of U differ and lie inside [0, 1]; a base without inner knots has one length for both spans, and
+        # is not taken where the search is in the own setting of the paper.
         first, second = (at[x] for x in BASE_H)
         inner = first < second if fixed else first <= second
         knots = all(a < b for a, b in zip(h, (*h[1:], 1), strict=True)) and inner
