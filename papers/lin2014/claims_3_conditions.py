@@ -17,6 +17,7 @@ from papers.lin2014.contact_checks import (
     row_check,
     row_counterexample,
     t_ks1,
+    tangent_check,
     u_before,
     u_last,
     unconditional,
@@ -245,17 +246,18 @@ CLAIMS = (
         + _MINUS,
     ),
     holds_if("sec-3.sufficient-g1", _WHERE, "For all alpha, beta, (1.1), (1.2), (2.1), (2.2) suffice for G1.",
-             "k = 4 (as (2.2) needs), alpha and beta are not zero, and the bases are regular along their contacts",
+             "k is at most 4, alpha and beta are not zero, and the bases are regular along their contacts",
              part(unconditional(row_check("start", 0)), pr.COND_1_1),
              part(unconditional(row_check("end", 0)), pr.COND_1_2),
              part(unconditional(row_check("start", 1)), pr.COND_2_1),
-             part(row_check("end", 1), pr.COND_2_2),
+             part(tangent_check(), pr.COND_2_2),
              part(proved(partial(shape_parameter_cases, 1),
                          "tangent planes for any regular base and alpha; the implicit equation of a base; for "
                          "alpha = 0 and a singular base an example is enough")),
-             counterexample=partial(row_counterexample, "end", 1, pr.COND_2_2),
-             remark="At alpha = 0 rows 0 and 1 of the blend coincide and it has no tangent plane at the contact; "
-             "nothing in the method keeps the search away from there (see sec-4.unconstrained)."),
+             counterexample=partial(row_counterexample, "end", 1, pr.COND_2_2, least_order=5),
+             remark="For k > 4 (2.2) puts row m-1 on row m, so that P_u = 0 at S; for k < 4 P_u is a multiple of S_t, "
+             "by another factor than beta^2. At alpha = 0 rows 0 and 1 of the blend coincide and it has no tangent "
+             "plane at the contact; nothing in the method keeps the search away from there (see sec-4.unconstrained)."),
     Claim("sec-3.sufficient-g2", _WHERE, "(1.1) to (3.2) together suffice for G2.", Verdict.FAILS,
           (Reading((*_PRINTED_FIRST_ROWS, _normal_part("start", pr.COND_3_1), _normal_part("end", pr.COND_3_2)),
                    label="as printed"),

@@ -67,6 +67,30 @@ def unconditional(check: Check) -> Check:
     return replace(check, cases=cases)
 
 
+@cache
+def tangent_check() -> Check:
+    """Return the check that row m-1 joins S with G1: P_u a positive multiple of S_t, whichever; k at most 4."""
+    exact = row_check("end", 1)
+
+    def cases(formula: Formula | None) -> Iterator[Case]:
+        yield from (case for case in exact.cases(formula) if case.meets)
+        for k in ORDERS:
+            if k not in SAME_INDEX:
+                yield _tangent_case(given(formula).relation, k)
+
+    method = f"{exact.method}, k = 4; for other k the factor by which P_u is a multiple of S_t"
+    return replace(exact, cases=cases, method=method)
+
+
+def _tangent_case(relation: Any, k: int) -> Case:
+    positive, whole = sp.Symbol("b", positive=True), sp.Symbol("n", integer=True, nonnegative=True)
+    values = {pr.k: k, pr.k_s: whole + 2, pr.beta: positive, pr.t_ks: pr.t_s + BASE_H[0], pr.u_m3: _u_m3(k)}
+    step = sp.expand(relation.rhs.subs(values) - pr.P_m)
+    factor = step.coeff(pr.S_0)
+    along = sp.simplify(step - factor * (pr.S_0 - pr.S_1)) == 0
+    return Case(f"k = {k}", bool(along and sp.simplify(factor).is_positive), own=False, meets=k < CUBIC)
+
+
 def derivative_check(surface: Literal["P", "R"], order: int) -> Check:
     """Return the check of an end derivative of the blend or of the base."""
     return Check(
@@ -178,10 +202,14 @@ def letter_values(side: Side, k: Any, k_b: Any, matrix: sp.Matrix, mode: Mode = 
         values = {s: sp.expand(x.subs(flat)) for s, x in values.items()} | flat
     values |= knots_as_spans(side)
     if side == "end" and isinstance(k, int):
-        # u_(m-3) counted from the end of the inner knots u_1 .. u_(m-k+1); past them the vector goes on with ones.
-        from_end = 5 - k
-        values[pr.u_m3] = 1 - BLEND_H[from_end - 1] if from_end > 0 else sp.Integer(1)
+        values[pr.u_m3] = _u_m3(k)
     return values
+
+
+def _u_m3(k: int) -> Any:
+    """Return u_(m-3) from the end of the inner knots u_1 .. u_(m-k+1); past them the vector goes on with ones."""
+    from_end = 5 - k
+    return 1 - BLEND_H[from_end - 1] if from_end > 0 else sp.Integer(1)
 
 
 def knots_as_spans(side: Side) -> dict[Any, Any]:
