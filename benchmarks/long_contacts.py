@@ -15,9 +15,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from solver import Base, BSplineSurface, ComputationError, blend
-from solver.blending import state_problem
-from solver.knots import clamped, greville, uniform_knots
+from semispline import Base, BSplineSurface, ComputationError, blend
+from semispline.solver.blending.pipeline import state_problem
+from semispline.solver.splines.knots import clamped, greville, uniform_knots
 
 SIZES = (1_000, 3_162, 10_000, 31_623, 100_000)
 EXPONENT_LIMIT, SECONDS_LIMIT = 1.1, 3.0

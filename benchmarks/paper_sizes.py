@@ -12,8 +12,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from solver import Base, blend
-from solver.io.json_files import read_problem
+from semispline import Base, blend
+from semispline.solver.io.json_files import read_problem
 
 FIGURES = (5, 6, 8, 9, 10, 11)
 EXAMPLES = Path(__file__).parents[1] / "papers" / "lin2014" / "examples"

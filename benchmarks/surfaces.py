@@ -13,9 +13,9 @@ from time import perf_counter
 import numpy as np
 from scipy.interpolate import BSpline
 
-from solver import BSplineSurface, SemiStructuredSurface
-from solver.arrays import FloatArray
-from solver.knots import uniform_knots
+from semispline import BSplineSurface, SemiStructuredSurface
+from semispline.solver.arrays import FloatArray
+from semispline.solver.splines.knots import uniform_knots
 
 
 def best_of(work: Callable[[], object], repeats: int = 30) -> float:

@@ -76,7 +76,7 @@ def derive(
     Degree and base degree are those of the blend in u and of the base across the contact; for knot vectors, of the
     spline (3 where left out).
     """
-    from derivations.results import Request, show
+    from semispline.derivations.results import Request, show
 
     try:
         request = Request(
@@ -124,7 +124,7 @@ def generate(
     check: Annotated[bool, typer.Option("--check", help="Write nothing: show differences, exit 1 if any.")] = False,
 ) -> None:
     """Write solver/generated and the formulas of docs/theory.md from the derivations (in a checkout only)."""
-    from derivations.codegen.files import checkout_root, differences, expected_files, write_files
+    from semispline.derivations.codegen.files import checkout_root, differences, expected_files, write_files
 
     try:
         root = checkout_root(Path(__file__).parent)

@@ -17,7 +17,7 @@ from typing import Any
 
 from sympy import Expr, Matrix, Poly, Symbol, factor, fraction, sympify, together
 
-from derivations.splines import end_derivatives, end_derivatives_from_pieces, span_symbols
+from semispline.derivations.splines import end_derivatives, end_derivatives_from_pieces, span_symbols
 
 A = Symbol("a", positive=True)
 

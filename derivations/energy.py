@@ -26,7 +26,7 @@ from typing import Any
 from sympy import Expr, Function, IndexedBase, Matrix, Poly, Sum, Symbol, factor, sympify
 from sympy.polys.constructor import construct_domain
 
-from derivations.splines import Span, X, basis_pieces, exact_knots
+from semispline.derivations.splines import Span, X, basis_pieces, exact_knots
 
 # P_uu, P_uv, P_vv of one coordinate of the surface.
 SECOND_DERIVATIVES = (Symbol("P_uu"), Symbol("P_uv"), Symbol("P_vv"))

@@ -17,9 +17,9 @@ from sympy.polys.domains import QQ
 from sympy.polys.matrices import DomainMatrix
 from sympy.polys.rings import PolyElement, PolyRing
 
-from derivations.contact import A, contact_rows
-from derivations.energy import Basis, ExactSurface, energy_matrix, merged_breakpoints
-from derivations.splines import X
+from semispline.derivations.contact import A, contact_rows
+from semispline.derivations.energy import Basis, ExactSurface, energy_matrix, merged_breakpoints
+from semispline.derivations.splines import X
 
 # The terms of (11): factor, derivatives by u and v.
 _TERMS = ((1, 2, 0), (2, 1, 1), (1, 0, 2))

@@ -20,7 +20,7 @@ from typing import Any
 import sympy as sp
 from sympy.polys.constructor import construct_domain
 
-from derivations.splines import X, exact_knots
+from semispline.derivations.splines import X, exact_knots
 
 
 @dataclass(frozen=True)

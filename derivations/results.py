@@ -8,12 +8,12 @@ from typing import Any, Literal
 
 from sympy import Add, Eq, Expr, Mul, Poly, Symbol, factor, latex, sstr, sympify
 
-from derivations import contact, energy, shape, splines
-from derivations.codegen import catalogue
-from derivations.codegen.c_backend import c_function
-from derivations.codegen.expressions import expression_text
-from derivations.codegen.python_backends import CASADI, NUMPY, python_text
-from derivations.codegen.routines import Argument, Routine, plain_symbols
+from semispline.derivations import contact, energy, shape, splines
+from semispline.derivations.codegen import catalogue
+from semispline.derivations.codegen.c_backend import c_function
+from semispline.derivations.codegen.expressions import expression_text
+from semispline.derivations.codegen.python_backends import CASADI, NUMPY, python_text
+from semispline.derivations.codegen.routines import Argument, Routine, plain_symbols
 
 Form = Literal["text", "latex", "numpy", "casadi", "c"]
 FORMS: tuple[Form, ...] = ("text", "latex", "numpy", "casadi", "c")

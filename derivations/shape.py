@@ -16,7 +16,7 @@ from typing import Any
 
 from sympy import Expr, Matrix, Poly, Symbol, binomial, sympify
 
-from derivations.contact import A, contact_rows
+from semispline.derivations.contact import A, contact_rows
 
 # The powers that a shape parameter may have in the rows: 0 where it is fixed, 1 for G1, 2 for G2.
 MAX_POWER = 2

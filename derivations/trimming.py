@@ -24,7 +24,7 @@ from typing import Any
 
 import sympy as sp
 
-from derivations.bezier import blossom, division_rows
+from semispline.derivations.bezier import blossom, division_rows
 
 Point = tuple[Any, Any]
 Net = tuple[tuple[Any, ...], ...]

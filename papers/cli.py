@@ -13,12 +13,12 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-import derivations.cli
-import solver.cli
-from solver.exit_status import ANSWER_IS_NO, reports_errors
+from semispline.derivations import cli as derivations_cli
+from semispline.solver import cli as solver_cli
+from semispline.solver.exit_status import ANSWER_IS_NO, reports_errors
 
 if TYPE_CHECKING:
-    from papers.verification import Ledger
+    from semispline.papers.ledger import Ledger
 
 app = typer.Typer(
     no_args_is_help=True,
@@ -43,10 +43,8 @@ def verify_command(
     ] = None,
 ) -> None:
     """Decide every claim of a paper anew; exit status 1 if a verdict is not the recorded one."""
-    from papers.erratum import ledger_markdown, with_study_kept
-    from papers.report import ledger_record
-    from solver.io.disk import check_output, write_text
-    from solver.io.json_text import to_text
+    from semispline.papers.report import ledger_markdown, ledger_record, with_study_kept
+    from semispline.solver.io import check_output, to_text, write_text
 
     for path in (json_file, markdown):
         if path is not None and path != "-":
@@ -73,9 +71,8 @@ def reproduce_command(
     out: Annotated[str, typer.Option(metavar="DIR", help="Folder for index.html, pictures and numbers.")] = "report",
 ) -> None:
     """Verify the claims of a paper, run its examples, and write tables, pictures and an HTML report."""
-    from papers.ledger import LedgerError
-    from papers.loading import paper_names
-    from papers.reproduction import reproduce
+    from semispline.papers.ledger import LedgerError, paper_names
+    from semispline.papers.whole_study import reproduce
 
     if paper not in paper_names():
         raise LedgerError(f"paper: found {paper!r}, expected one of {', '.join(paper_names())}")
@@ -94,17 +91,17 @@ def generate_command(
     problem: Annotated[str | None, typer.Option(metavar="FILE", help="A stored blend problem, for --c.")] = None,
 ) -> None:
     """Write solver/generated from the derivations (in a checkout), or C for one blend problem (anywhere)."""
-    from solver.errors import OptionError
+    from semispline.solver.errors import OptionError
 
     if c is None and problem is None:
-        derivations.cli.generate(check)
+        derivations_cli.generate(check)
         return
     if c is None or problem is None:
         missing, given = ("--c DIR", "--problem") if c is None else ("--problem FILE", "--c")
         raise OptionError(f"generate: found {given} alone, expected {missing} with it")
     if check:
         raise OptionError("generate: found --check with --c, expected one of them")
-    from solver.c_code import write_c
+    from semispline.solver.c_export import write_c
 
     for path in write_c(c, problem):
         typer.echo(f"wrote {path}")
@@ -112,8 +109,7 @@ def generate_command(
 
 def decided(name: str) -> Ledger:
     """Decide a paper, with a progress bar where standard error is a terminal."""
-    from papers.loading import collected
-    from papers.verification import verify
+    from semispline.papers.ledger import collected, verify
 
     total = len(collected(name).claims)
     with _progress("deciding", total) as advance:
@@ -124,7 +120,7 @@ def print_ledger(ledger: Ledger) -> None:
     """Print the table, the counts, and what is not as recorded."""
     from rich.console import Console
 
-    from papers.report import counts_text, ledger_table
+    from semispline.papers.report import counts_text, ledger_table
 
     console = Console()
     if not console.is_terminal:
@@ -156,8 +152,8 @@ def _progress(doing: str, total: int) -> Iterator[Callable[[str], None]]:
 
 
 # `generate` above stands for the one of `derivations`, which may not know of `solver`.
-for _mounted in (solver.cli.app, derivations.cli.app):
-    app.registered_commands += [c for c in _mounted.registered_commands if c.callback is not derivations.cli.generate]
+for _mounted in (solver_cli.app, derivations_cli.app):
+    app.registered_commands += [c for c in _mounted.registered_commands if c.callback is not derivations_cli.generate]
 
 
 def main() -> None:

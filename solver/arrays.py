@@ -10,7 +10,7 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from solver.errors import InputError
+from semispline.solver.errors import InputError
 
 FloatArray: TypeAlias = NDArray[np.float64]
 # scipy ships no types; sparse matrices are CSR unless said otherwise.

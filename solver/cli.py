@@ -1,4 +1,4 @@
-"""The commands blend, check, list, show and convert; `papers.cli` mounts them beside its own.
+"""The commands blend, check, list, show and convert; `semispline.papers.cli` mounts them beside its own.
 
 Heavy imports wait inside the functions, so that `--help` answers fast.
 """
@@ -13,13 +13,13 @@ from typing import TYPE_CHECKING, Annotated, Any, cast, get_args
 
 import typer
 
-from solver.errors import EdgeError, OptionError
-from solver.exit_status import ANSWER_IS_NO, reports_errors
+from semispline.solver.errors import EdgeError, OptionError
+from semispline.solver.exit_status import ANSWER_IS_NO, reports_errors
 
 if TYPE_CHECKING:
-    from solver.blend_result import BlendResult
-    from solver.continuity import Contact
-    from solver.io.faces import SurfaceEntry
+    from semispline.solver.blending import BlendResult
+    from semispline.solver.io import SurfaceEntry
+    from semispline.solver.judge import Contact
 
 app = typer.Typer(no_args_is_help=True, add_completion=False, pretty_exceptions_enable=False)
 
@@ -74,9 +74,14 @@ def blend_command(
     report: Annotated[str | None, typer.Option(metavar="FILE", help="JSON with energy, alpha, beta, contact.")] = None,
 ) -> None:
     """Join an edge of A and an edge of B by a semi-structured surface of least energy."""
-    from solver.io.disk import atomic_path, check_output
-    from solver.io.json_text import to_text
-    from solver.io.surface_files import check_surface_output, read_surfaces, write_surface
+    from semispline.solver.io import (
+        atomic_path,
+        check_output,
+        check_surface_output,
+        read_surfaces,
+        to_text,
+        write_surface,
+    )
 
     _check_edges(edge_a, edge_b)
     check_surface_output(out)
@@ -85,7 +90,8 @@ def blend_command(
     with _progress("reading"):
         first, second = read_surfaces([a, b])
     with _progress("blending"):
-        from solver import Base, blend
+        from semispline.solver.blending import blend
+        from semispline.solver.judge import Base
 
         result = blend(
             Base(first.surface, cast(Any, edge_a)),
@@ -126,8 +132,8 @@ def check_command(
     ] = None,
 ) -> None:
     """Measure how an edge of A and an edge of B meet: gap, angle, curvature jump, and where they are worst."""
-    from solver import Base, measure_contact
-    from solver.io.surface_files import read_surfaces
+    from semispline.solver.io import read_surfaces
+    from semispline.solver.judge import Base, measure_contact
 
     _check_edges(edge_a, edge_b)
     _check_required(require)
@@ -159,7 +165,7 @@ def list_command(
     ] = None,
 ) -> None:
     """List the surfaces of a file: number, kind, degrees, control points, rational, trimmed, closed."""
-    from solver.io.surface_files import list_surfaces
+    from semispline.solver.io import list_surfaces
 
     _check_json_output(json_file)
     with _progress("reading"):
@@ -185,10 +191,9 @@ def show_command(
     ] = False,
 ) -> None:
     """Draw surfaces into a PNG file, whole, without the trimming of their faces; needs no display."""
-    from solver.io.disk import check_output
-    from solver.io.surface_files import in_one_unit, read_all
-    from solver.plotting import check_picture, render
-    from solver.surfaces import SemiStructuredSurface
+    from semispline.solver.io import check_output, in_one_unit, read_all
+    from semispline.solver.pictures import check_picture, render
+    from semispline.solver.splines import SemiStructuredSurface
 
     check_picture(out, color)
     check_output(out)
@@ -212,7 +217,7 @@ def convert_command(
     ],
 ) -> None:
     """Write a surface in another format: exactly, or as a mesh."""
-    from solver.io.surface_files import check_surface_output, read_surfaces, write_surface
+    from semispline.solver.io import check_surface_output, read_surfaces, write_surface
 
     check_surface_output(target)
     with _progress("converting"):
@@ -286,22 +291,21 @@ def _check_edges(edge_a: str, edge_b: str) -> None:
 
 
 def _check_required(require: str | None) -> None:
-    from solver.sides import Continuity
+    from semispline.solver.blending import Continuity
 
     if require is not None and require not in get_args(Continuity):
         raise OptionError(f"--require: found {require!r}, expected one of {', '.join(get_args(Continuity))}")
 
 
 def _check_json_output(path: str | None) -> None:
-    from solver.io.disk import check_output
+    from semispline.solver.io import check_output
 
     if path is not None and path != "-":
         check_output(path)
 
 
 def _write_json(path: str, record: dict[str, Any]) -> None:
-    from solver.io.disk import write_text
-    from solver.io.json_text import to_text
+    from semispline.solver.io import to_text, write_text
 
     if path == "-":
         typer.echo(to_text(record), nl=False)
@@ -313,7 +317,7 @@ def _misses(contact: Contact, require: str | None) -> list[str]:
     """Return, of each measure that falls short, its name, value and limit."""
     if require is None:
         return []
-    from solver.limits import required_limits
+    from semispline.solver.judge import required_limits
 
     return [
         f"{name.replace('_', ' ')} is {value:.3g}, at most {limit:.3g} allowed"

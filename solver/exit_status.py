@@ -8,7 +8,7 @@ from typing import ParamSpec, TypeVar
 
 import typer
 
-from solver.errors import InputError, SemisplineError
+from semispline.solver.errors import InputError, SemisplineError
 
 ANSWER_IS_NO, WRONG_INPUT, FAILED = 1, 2, 3
 

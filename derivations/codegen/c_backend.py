@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from sympy import Expr
 
-from derivations.codegen.expressions import expression_text
-from derivations.codegen.routines import Argument, Routine, routine_steps
+from semispline.derivations.codegen.expressions import expression_text
+from semispline.derivations.codegen.routines import Argument, Routine, routine_steps
 
 
 def c_function(routine: Routine) -> str:

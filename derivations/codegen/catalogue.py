@@ -6,12 +6,12 @@ from collections.abc import Sequence
 
 from sympy import Expr, Matrix, Symbol, diag
 
-from derivations.codegen.python_backends import CASADI, NUMPY, python_module
-from derivations.codegen.routines import Argument, Routine, plain_symbols
-from derivations.contact import contact_conditions, contact_jets, contact_rows
-from derivations.energy import SECOND_DERIVATIVES, gram_block, thin_plate_density
-from derivations.shape import MAX_POWER, contact_row_powers, energy_polynomial, product_symbol
-from derivations.splines import end_derivatives, span_symbols
+from semispline.derivations.codegen.python_backends import CASADI, NUMPY, python_module
+from semispline.derivations.codegen.routines import Argument, Routine, plain_symbols
+from semispline.derivations.contact import contact_conditions, contact_jets, contact_rows
+from semispline.derivations.energy import SECOND_DERIVATIVES, gram_block, thin_plate_density
+from semispline.derivations.shape import MAX_POWER, contact_row_powers, energy_polynomial, product_symbol
+from semispline.derivations.splines import end_derivatives, span_symbols
 
 MAX_ORDER = 3
 

@@ -41,7 +41,7 @@ def expected_files(root: Path, derive: Callable[[str], str]) -> dict[Path, str]:
     derive : callable
         Arguments of `semispline derive` to what it prints, for the formulas in docs/theory.md.
     """
-    from derivations.codegen.catalogue import generated_files
+    from semispline.derivations.codegen.catalogue import generated_files
 
     files = {GENERATED / name: text for name, text in generated_files().items()}
     if (root / THEORY).is_file():

@@ -10,8 +10,8 @@ from dataclasses import dataclass
 
 from sympy import Expr
 
-from derivations.codegen.expressions import expression_text, summands
-from derivations.codegen.routines import Argument, Routine, routine_steps
+from semispline.derivations.codegen.expressions import expression_text, summands
+from semispline.derivations.codegen.routines import Argument, Routine, routine_steps
 
 LINE_LENGTH = 120
 

@@ -18,10 +18,10 @@ from math import factorial, perm, pi
 
 import numpy as np
 
-from papers.baselines.contacts import ContactSide, contact_sides
-from papers.baselines.interface import BlendTask, FormulaSurface, Method, NotApplicableError, Outcome
-from solver.arrays import FloatArray
-from solver.knots import merge_breakpoints
+from semispline.papers.baselines.contacts import ContactSide, contact_sides
+from semispline.papers.baselines.interface import BlendTask, FormulaSurface, Method, NotApplicableError, Outcome
+from semispline.solver.arrays import FloatArray
+from semispline.solver.splines import merge_breakpoints
 
 MODES = 24
 _SAMPLES = 1024

@@ -6,15 +6,22 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from papers.baselines.interface import BlendTask, NotApplicableError
-from solver import BSplineCurve, BSplineSurface
-from solver.arrays import FloatArray
-from solver.compatible import compatible_curves
-from solver.gram import Basis
-from solver.knots import basis_matrix, derivative_points
-from solver.operations import map_domain, reverse_u, reverse_v, swap_directions
+from semispline.papers.baselines.interface import BlendTask, NotApplicableError
+from semispline.solver.arrays import FloatArray
+from semispline.solver.splines import (
+    Basis,
+    BSplineCurve,
+    BSplineSurface,
+    basis_matrix,
+    compatible_curves,
+    derivative_points,
+    map_domain,
+    reverse_u,
+    reverse_v,
+    swap_directions,
+)
 
-# Admissible alpha^2 and beta^2 in units of their natural sizes, as in `solver.blend`.
+# Admissible alpha^2 and beta^2 in units of their natural sizes, as in `semispline.solver.blend`.
 BOX = (1 / 8, 8.0)
 _SAMPLES = (np.arange(64) + 0.5) / 64
 

@@ -18,10 +18,10 @@ from math import comb, factorial
 import numpy as np
 from numpy.polynomial import Polynomial
 
-from papers.baselines.contacts import ContactSide, contact_sides
-from papers.baselines.interface import BlendTask, FormulaSurface, Method, Outcome
-from solver.arrays import FloatArray
-from solver.knots import merge_breakpoints
+from semispline.papers.baselines.contacts import ContactSide, contact_sides
+from semispline.papers.baselines.interface import BlendTask, FormulaSurface, Method, Outcome
+from semispline.solver.arrays import FloatArray
+from semispline.solver.splines import merge_breakpoints
 
 # (t, v, dt, dv) -> shape (K, 3)
 Piece = Callable[[FloatArray, FloatArray, int, int], FloatArray]

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Literal, Protocol
+from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from solver import Base
-from solver.arrays import FloatArray
-from solver.errors import SemisplineError
+from semispline.solver.arrays import FloatArray
+from semispline.solver.errors import SemisplineError
+from semispline.solver.judge import Base, ParametricSurface
 
 
 class NotApplicableError(SemisplineError):
@@ -45,24 +45,6 @@ class BlendTask:
         """Whether both contact curves are closed: their end points agree to the last bit."""
         ends = [base.derivative(np.array(base.range_along), 0, 0) for base in (self.a, self.b)]
         return all(np.array_equal(first, last) for first, last in ends)
-
-
-class ParametricSurface(Protocol):
-    """A surface over [0, 1] x the v-domain of a's edge: u = 0 on a, u = 1 on b. The spline classes are of this kind."""
-
-    @property
-    def domain(self) -> tuple[tuple[float, float], tuple[float, float]]:
-        """The ranges of u and v."""
-
-    @property
-    def breakpoints(self) -> tuple[FloatArray, FloatArray]:
-        """Between neighbouring ones the surface is smooth."""
-
-    def evaluate(self, u: ArrayLike, v: ArrayLike, du: int = 0, dv: int = 0) -> FloatArray:
-        """Return the point or a derivative up to second order at (u[k], v[k]), shape (K, 3)."""
-
-    def evaluate_grid(self, u: ArrayLike, v: ArrayLike, du: int = 0, dv: int = 0) -> FloatArray:
-        """Return the same on the grid u x v, shape (len(u), len(v), 3)."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,10 +6,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from solver import BSplineCurve, BSplineSurface, SemiStructuredSurface
-from solver.arrays import FloatArray
-from solver.gram import Basis
-from solver.knots import uniform_knots
+from semispline.solver.arrays import FloatArray
+from semispline.solver.splines import Basis, BSplineCurve, BSplineSurface, SemiStructuredSurface, uniform_knots
 
 
 def u_basis(rows: int, degree: int = 3) -> Basis:

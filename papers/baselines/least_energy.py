@@ -1,7 +1,7 @@
 """Rows of control points of least energy, where the rows at the contacts are polynomials in alpha^2 and beta^2.
 
 Shared by the methods that fix rows at both contacts and minimise a quadratic energy over the rest. It shares no code
-with `solver.reduced` and so checks it, too; but it proves nothing: the two shape parameters are searched from a grid.
+with `blending.reduced` and so checks it, too; but it proves nothing: the two shape parameters are searched from a grid.
 """
 
 from __future__ import annotations
@@ -16,11 +16,10 @@ from scipy.linalg import null_space
 from scipy.optimize import minimize
 from scipy.sparse.linalg import splu
 
-from papers.baselines.contacts import ContactSide
-from solver.arrays import FloatArray, SparseMatrix
-from solver.generated import contact_numpy
-from solver.gram import Basis
-from solver.knots import derivative_matrix
+from semispline.papers.baselines.contacts import ContactSide
+from semispline.solver.arrays import FloatArray, SparseMatrix
+from semispline.solver.generated import contact_numpy
+from semispline.solver.splines import Basis, derivative_matrix
 
 # alpha^2 -> the rows that contact prescribes, from the contact inwards, shape (rows, n, 3); of degree 2 in alpha^2.
 RowRule: TypeAlias = Callable[[float], FloatArray]
@@ -50,7 +49,7 @@ class Minimum:
 def contact_rule(side: ContactSide, order: int, u: Basis) -> RowRule:
     """Return the rule for contact of an order, by the rows that are derived, not printed.
 
-    Source: generated from `derivations.contact`; U is symmetric, so it serves both ends.
+    Source: generated from `semispline.derivations.contact`; U is symmetric, so it serves both ends.
     """
     p, q, net, across = u.degree, side.surface.degree_u, side.surface.control_points, side.surface.knots_u
     h = [float(u.knots[p + r] - u.knots[0]) for r in (1, 2)]

@@ -13,12 +13,11 @@ from typing import Any
 
 import numpy as np
 
-from papers.baselines.contacts import ContactSide, contact_sides
-from papers.baselines.interface import BlendTask, FormulaSurface, Method, NotApplicableError, Outcome
-from solver import BSplineSurface
-from solver.arrays import FloatArray
-from solver.construction import interpolate_grid
-from solver.errors import FileError
+from semispline.papers.baselines.contacts import ContactSide, contact_sides
+from semispline.papers.baselines.interface import BlendTask, FormulaSurface, Method, NotApplicableError, Outcome
+from semispline.solver.arrays import FloatArray
+from semispline.solver.errors import FileError
+from semispline.solver.splines import BSplineSurface, interpolate_grid
 
 _ALONG, _ACROSS = 97, 33
 _STEPS = 40
@@ -36,7 +35,7 @@ def blend_filling(task: BlendTask) -> Outcome:
         raise NotApplicableError("contact curves: closed, but a filling has one outer boundary")
     a, b = contact_sides(task)
     try:
-        from solver.io.occ_kernel import require_kernel
+        from semispline.solver.io import require_kernel
 
         require_kernel("MakeFilling")
     except FileError as error:
@@ -69,7 +68,7 @@ def _plate(a: ContactSide, b: ContactSide) -> tuple[BSplineSurface, float]:
     from OCP.TopExp import TopExp_Explorer
     from OCP.TopoDS import TopoDS
 
-    from solver.io.occ_writing import occ_surface
+    from semispline.solver.io import occ_surface
 
     started = time.perf_counter()
     filling = BRepOffsetAPI_MakeFilling()

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from papers.baselines.interface import BlendTask, Method, Outcome
-from papers.baselines.semistructured import outcome_of
-from solver import blend
+from semispline.papers.baselines.interface import BlendTask, Method, Outcome
+from semispline.papers.baselines.semistructured import outcome_of
+from semispline.solver.blending import blend
 
 
 def blend_corrected(task: BlendTask) -> Outcome:

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from papers.baselines.interface import BlendTask, Method, Outcome
-from papers.baselines.semistructured import outcome_of
-from solver import blend
+from semispline.papers.baselines.interface import BlendTask, Method, Outcome
+from semispline.papers.baselines.semistructured import outcome_of
+from semispline.solver.blending import blend
 
 
 def blend_parametric(task: BlendTask) -> Outcome:
@@ -12,4 +12,6 @@ def blend_parametric(task: BlendTask) -> Outcome:
     return outcome_of(blend(task.a, task.b, continuity="C2", middle_curves=task.middle_curves))
 
 
-METHODS = (Method("semistructured-c2", "C2, linear solve", "`solver.blend`, continuity C2", 9, blend_parametric),)
+METHODS = (
+    Method("semistructured-c2", "C2, linear solve", "`semispline.solver.blend`, continuity C2", 9, blend_parametric),
+)

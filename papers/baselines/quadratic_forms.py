@@ -1,7 +1,7 @@
 """Quadratic energies of surfaces made of rows, each row over its own knots: thin-plate and triharmonic.
 
 Both are sums of squares of sums of derivatives, integrated by a Gauss rule that is exact for such polynomials. They
-share no code with `solver.gram` and so check it, too.
+share no code with `semispline.solver.blending.gram` and so check it, too.
 """
 
 from __future__ import annotations
@@ -12,10 +12,16 @@ from typing import TypeAlias
 import numpy as np
 import scipy.sparse as sp
 
-from papers.baselines.interface import NotApplicableError
-from solver.arrays import FloatArray, SparseMatrix
-from solver.gram import Basis
-from solver.knots import basis_matrix, breakpoints, derivative_matrix, inner_knots, merge_breakpoints
+from semispline.papers.baselines.interface import NotApplicableError
+from semispline.solver.arrays import FloatArray, SparseMatrix
+from semispline.solver.splines import (
+    Basis,
+    basis_matrix,
+    breakpoints,
+    derivative_matrix,
+    inner_knots,
+    merge_breakpoints,
+)
 
 Squares: TypeAlias = Sequence[tuple[float, Sequence[tuple[int, int]]]]
 

@@ -6,12 +6,12 @@ import time
 
 import numpy as np
 
-from papers.baselines.contacts import contact_sides
-from papers.baselines.interface import BlendTask, Method, Outcome
-from papers.baselines.layout import semistructured, u_basis
-from papers.baselines.semistructured import outcome_of
-from solver import blend
-from solver.arrays import FloatArray
+from semispline.papers.baselines.contacts import contact_sides
+from semispline.papers.baselines.interface import BlendTask, Method, Outcome
+from semispline.papers.baselines.layout import semistructured, u_basis
+from semispline.papers.baselines.semistructured import outcome_of
+from semispline.solver.arrays import FloatArray
+from semispline.solver.blending import blend
 
 
 def hermite_rows(outwards: FloatArray, a: float) -> FloatArray:

@@ -1,18 +1,18 @@
-"""All methods: whatever the modules of this folder list in a tuple METHODS."""
+"""All rival methods: whatever the modules of this folder list in a tuple METHODS."""
 
 from __future__ import annotations
 
 import importlib
 import pkgutil
+from collections.abc import Sequence
 from functools import cache
 from pathlib import Path
 
-from papers.baselines.interface import Method
+from semispline.papers.baselines.interface import Method
 
 
-@cache
-def methods() -> tuple[Method, ...]:
-    """Return every method, in the order of tables.
+def methods(own: Sequence[Method] = ()) -> tuple[Method, ...]:
+    """Return every rival method, and a paper's own ones with them, in the order of tables.
 
     Raises
     ------
@@ -22,11 +22,9 @@ def methods() -> tuple[Method, ...]:
     Examples
     --------
     >>> [m.name for m in methods()][:2]
-    ['paper-as-printed', 'paper-corrected']
+    ['paper-corrected', 'semistructured-c2']
     """
-    found: list[Method] = []
-    for module in pkgutil.iter_modules([str(Path(__file__).parent)]):
-        found += getattr(importlib.import_module(f"papers.baselines.{module.name}"), "METHODS", ())
+    found = (*own, *_rivals())
     names = [method.name for method in found]
     for name in names:
         if names.count(name) > 1:
@@ -34,8 +32,16 @@ def methods() -> tuple[Method, ...]:
     return tuple(sorted(found, key=lambda method: (method.place, method.name)))
 
 
+@cache
+def _rivals() -> tuple[Method, ...]:
+    found: list[Method] = []
+    for module in pkgutil.iter_modules([str(Path(__file__).parent)]):
+        found += getattr(importlib.import_module(f"semispline.papers.baselines.{module.name}"), "METHODS", ())
+    return tuple(found)
+
+
 def method(name: str) -> Method:
-    """Return the method of a name.
+    """Return the rival method of a name.
 
     Raises
     ------

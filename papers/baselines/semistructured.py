@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from functools import partial
 
-from papers.baselines.interface import BlendTask, Method, Outcome
-from solver import BlendResult, blend
-from solver.blending import Method as Search
+from semispline.papers.baselines.interface import BlendTask, Method, Outcome
+from semispline.solver.blending import BlendResult, blend
+from semispline.solver.blending import Method as Search
 
 
 def blend_semistructured(search: Search, task: BlendTask) -> Outcome:
@@ -32,21 +32,21 @@ METHODS = (
     Method(
         "semistructured-reduced",
         "G2, least energy proved",
-        "`solver.blend`, method reduced",
+        "`semispline.solver.blend`, method reduced",
         10,
         partial(blend_semistructured, "reduced"),
     ),
     Method(
         "semistructured-casadi",
         "G2, CasADi and IPOPT",
-        "`solver.blend`, method casadi",
+        "`semispline.solver.blend`, method casadi",
         11,
         partial(blend_semistructured, "casadi"),
     ),
     Method(
         "semistructured-bfgs",
         "G2, the paper's search",
-        "`solver.blend`, method bfgs",
+        "`semispline.solver.blend`, method bfgs",
         12,
         partial(blend_semistructured, "bfgs"),
     ),

@@ -7,10 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from papers.baselines.contacts import oriented_bases
-from papers.baselines.interface import BlendTask, Method, NotApplicableError, Outcome
-from solver import BSplineSurface
-from solver.operations import map_domain, reverse_u, reverse_v, swap_directions
+from semispline.papers.baselines.contacts import oriented_bases
+from semispline.papers.baselines.interface import BlendTask, Method, NotApplicableError, Outcome
+from semispline.solver.splines import BSplineSurface, map_domain, reverse_u, reverse_v, swap_directions
 
 
 def blend_smlibpy(task: BlendTask) -> Outcome:

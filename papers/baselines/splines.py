@@ -4,11 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from papers.baselines.interface import ParametricSurface
-from solver import BSplineSurface, SemiStructuredSurface
-from solver.arrays import FloatArray
-from solver.construction import interpolate_grid
-from solver.surfaces import Surface
+from semispline.solver.arrays import FloatArray
+from semispline.solver.judge import ParametricSurface
+from semispline.solver.splines import BSplineSurface, SemiStructuredSurface, Surface, interpolate_grid
 
 _SAMPLES = 96
 

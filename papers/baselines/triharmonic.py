@@ -11,11 +11,11 @@ from __future__ import annotations
 import time
 from functools import partial
 
-from papers.baselines.contacts import contact_sides, on_common_knots
-from papers.baselines.interface import BlendTask, Method, Outcome
-from papers.baselines.layout import tensor_product, u_basis
-from papers.baselines.least_energy import contact_rule, least_energy
-from papers.baselines.quadratic_forms import THIN_PLATE, TRIHARMONIC, energy_matrix
+from semispline.papers.baselines.contacts import contact_sides, on_common_knots
+from semispline.papers.baselines.interface import BlendTask, Method, Outcome
+from semispline.papers.baselines.layout import tensor_product, u_basis
+from semispline.papers.baselines.least_energy import contact_rule, least_energy
+from semispline.papers.baselines.quadratic_forms import THIN_PLATE, TRIHARMONIC, energy_matrix
 
 ROWS = 11
 

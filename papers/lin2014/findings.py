@@ -4,10 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 
-from papers.baselines.comparison import Comparison
-from papers.measures import Measures
-from papers.study import Comparisons, Finding
-from papers.tables import LIMIT, c2_residual, reached
+from semispline.papers.report import LIMIT, c2_residual, reached
+from semispline.papers.reproduction import Comparison, Comparisons, Finding, Measures
 
 AS_PRINTED, CORRECTED, LEAST = "paper-as-printed", "paper-corrected", "semistructured-reduced"
 # Second derivatives across a contact agree up to rounding: a fraction of the larger of both.

@@ -10,7 +10,7 @@ from typing import Any
 
 from sympy import Eq, Function, Ge, IndexedBase, Integral, Le, Rational, Sum, Symbol, binomial, symbols
 
-from papers.ledger import Formula
+from semispline.papers.ledger import Formula
 
 k = Symbol("k", integer=True, positive=True)
 k_r = Symbol("k_r", integer=True, positive=True)

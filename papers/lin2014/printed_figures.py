@@ -10,9 +10,8 @@ from typing import Any
 
 from sympy import Add, Eq, Integer, Mul, Pow, Rational, Symbol, symbols
 
-from papers.ledger import Formula
-from papers.lin2014.printed import KNOTS, SIZES, B, u, v
-from papers.vectors import Knots, Numbers, inner_moves, near, number_changes
+from semispline.papers.ledger import Formula, Knots, Numbers, inner_moves, near, number_changes
+from semispline.papers.lin2014.printed import KNOTS, SIZES, B, u, v
 
 # Fig. 11: control points of the contact curves on the cone and on the free-form surface, as the text has them.
 CONE_COUNTS = (10, 64)

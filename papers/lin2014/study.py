@@ -6,18 +6,18 @@ from functools import cache, partial
 from importlib.util import find_spec
 from pathlib import Path
 
-from papers.baselines.comparison import Comparison
-from papers.baselines.interface import BlendTask
-from papers.lin2014 import figures_blends
-from papers.lin2014.consequences import made_pair
-from papers.lin2014.figures import draw_figure_1, draw_figure_2, draw_trimmed_patch
-from papers.lin2014.findings import AS_PRINTED, CORRECTED, findings, meets_demand
-from papers.lin2014.section5 import DEPARTURES, FIGURES, PRINTED, example
-from papers.study import Comparisons, Drawing, Example, Study, Table
-from papers.tables import c2_residual, cell
-from solver import Base, blend
-from solver.plotting import BASE_COLOR, BLEND_COLOR, render
-from solver.sides import Continuity
+from semispline.papers.baselines import BlendTask
+from semispline.papers.lin2014.checks.consequences import made_pair
+from semispline.papers.lin2014.examples.section5 import DEPARTURES, FIGURES, PRINTED, example
+from semispline.papers.lin2014.figures import blends as figures_blends
+from semispline.papers.lin2014.figures.bezier import draw_figure_1, draw_figure_2, draw_trimmed_patch
+from semispline.papers.lin2014.findings import AS_PRINTED, CORRECTED, findings, meets_demand
+from semispline.papers.lin2014.paper_as_printed import METHODS as PRINTED_METHODS
+from semispline.papers.report import c2_residual, cell
+from semispline.papers.reproduction import Comparison, Comparisons, Drawing, Example, Study, Table
+from semispline.solver.blending import Continuity, blend
+from semispline.solver.judge import Base
+from semispline.solver.pictures import BASE_COLOR, BLEND_COLOR, render
 
 IMPELLER_FACES = (102, 131)
 PAIR_CONTINUITIES: tuple[Continuity, ...] = ("C2", "G2")
@@ -44,8 +44,9 @@ def study() -> Study:
         (*_section_2(), *figures_blends.drawings(), *(d for p in pairs for d in _pair_drawings(p.task))),
         tables,
         findings,
-        PREFACE,
-        PRIOR_ART,
+        methods=PRINTED_METHODS,
+        preface=PREFACE,
+        prior_art=PRIOR_ART,
     )
 
 
@@ -88,7 +89,7 @@ def impeller_path() -> Path | None:
 
 
 def _impeller() -> tuple[Base, Base]:
-    from solver.io.surface_files import read_surfaces
+    from semispline.solver.io import read_surfaces
 
     loaded = read_surfaces([f"{impeller_path()}#{face}" for face in IMPELLER_FACES])
     first, second = (Base(surface.surface, "u0") for surface in loaded)

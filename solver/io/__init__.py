@@ -1,1 +1,5 @@
-"""Files: JSON of our own, CAD formats, meshes. `surface_files` is the way in and out for all of them."""
+"""Files: JSON, STEP, IGES, BREP, 3dm, meshes; foreign readers in a process of their own."""
+
+import lazy_loader as _lazy
+
+__getattr__, __dir__, __all__ = _lazy.attach_stub(__name__, __file__)

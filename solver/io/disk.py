@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
-from solver.errors import FileError
+from semispline.solver.errors import FileError
 
 
 def check_output(path: str | Path) -> Path:

@@ -8,11 +8,9 @@ from typing import Protocol
 
 import numpy as np
 
-from solver.arrays import FloatArray
-from solver.errors import FileError, InputError
-from solver.knots import MERGE_TOLERANCE
-from solver.operations import clamped_surface
-from solver.surfaces import BSplineSurface, SemiStructuredSurface, Surface
+from semispline.solver.arrays import FloatArray
+from semispline.solver.errors import FileError, InputError
+from semispline.solver.splines import MERGE_TOLERANCE, BSplineSurface, SemiStructuredSurface, Surface, clamped_surface
 
 # Weights that agree to this relative tolerance (rounding of a product and a quotient) are one weight.
 _EQUAL_WEIGHTS = 8 * np.finfo(np.float64).eps

@@ -14,12 +14,11 @@ from typing import Annotated, Any, Literal, TypeAlias, TypeVar
 
 from pydantic import AllowInfNan, BaseModel, ConfigDict, Field, Strict, ValidationError
 
-from solver.arrays import FloatArray
-from solver.errors import ControlPointError, EdgeError, FileError, InputError
-from solver.io.disk import write_text
-from solver.io.json_text import load_json, short, to_text
-from solver.operations import clamped_surface
-from solver.surfaces import BSplineCurve, BSplineSurface, SemiStructuredSurface, Surface
+from semispline.solver.arrays import FloatArray
+from semispline.solver.errors import ControlPointError, EdgeError, FileError, InputError
+from semispline.solver.io.disk import write_text
+from semispline.solver.io.json_text import load_json, short, to_text
+from semispline.solver.splines import BSplineCurve, BSplineSurface, SemiStructuredSurface, Surface, clamped_surface
 
 FORMAT = "semispline/1"
 EDGES = ("u0", "u1", "v0", "v1")

@@ -10,8 +10,8 @@ from pathlib import Path
 from reprlib import Repr
 from typing import Any
 
-from solver.errors import FileError
-from solver.io.disk import read_bytes
+from semispline.solver.errors import FileError
+from semispline.solver.io.disk import read_bytes
 
 _PERHAPS_NOT_FINITE = re.compile(rb"NaN|Infinity|[eE]\+?[0-9]{3}")
 _REPR = Repr()

@@ -7,11 +7,11 @@ from typing import Any
 
 import numpy as np
 
-from solver.arrays import FloatArray
-from solver.curvature import LocalGeometry, local_geometry_grid
-from solver.errors import FileError
-from solver.io.silence import silenced
-from solver.surfaces import Surface
+from semispline.solver.arrays import FloatArray
+from semispline.solver.errors import FileError
+from semispline.solver.io.silence import silenced
+from semispline.solver.judge import LocalGeometry, local_geometry_grid
+from semispline.solver.splines import Surface
 
 # Samples along each parameter of an exported mesh: a quarter circle is met to 1e-5 of its radius.
 _SAMPLES = 160

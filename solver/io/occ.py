@@ -16,12 +16,13 @@ from typing import Any
 
 import numpy as np
 
-from solver.arrays import FloatArray
-from solver.errors import FileError, SemisplineError
-from solver.io.disk import require_file
-from solver.io.faces import MILLIMETRES, Model, surface_from_net, without_equal_weights
-from solver.io.occ_kernel import first_line, require_kernel, silenced, system_unit
-from solver.surfaces import BSplineSurface
+from semispline.solver.arrays import FloatArray
+from semispline.solver.errors import FileError, SemisplineError
+from semispline.solver.io.disk import require_file
+from semispline.solver.io.faces import MILLIMETRES, Model, surface_from_net, without_equal_weights
+from semispline.solver.io.occ_kernel import first_line, require_kernel, system_unit
+from semispline.solver.io.silence import silenced
+from semispline.solver.splines import BSplineSurface
 
 _STEP_UNITS = {
     "millimetre": "mm",

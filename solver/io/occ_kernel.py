@@ -7,8 +7,8 @@ from contextlib import contextmanager
 from importlib.util import find_spec
 from pathlib import Path
 
-from solver.errors import FileError
-from solver.io.silence import silenced
+from semispline.solver.errors import FileError
+from semispline.solver.io.silence import silenced
 
 __all__ = ["UNIT_NAMES", "first_line", "require_kernel", "silenced", "system_unit"]
 

@@ -15,11 +15,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from solver.errors import FileError, InputError
-from solver.io.disk import require_file
-from solver.io.faces import Model
-from solver.io.occ_kernel import require_kernel
-from solver.surfaces import BSplineSurface
+from semispline.solver.errors import FileError, InputError
+from semispline.solver.io.disk import require_file
+from semispline.solver.io.faces import Model
+from semispline.solver.io.occ_kernel import require_kernel
+from semispline.solver.splines import BSplineSurface
 
 # Open CASCADE reads some megabytes a minute at the slowest.
 _SECONDS, _BYTES_PER_SECOND = 120.0, 20_000
@@ -56,7 +56,7 @@ def open_occ(path: str | Path) -> Model:
         result = Path(folder) / "faces"
         # The other process finds its modules where this one does, and not in the folder that it is started in (-P).
         environment = os.environ | {"PYTHONPATH": os.pathsep.join(entry for entry in sys.path if entry)}
-        command = [sys.executable, "-P", "-m", "solver.io.occ_process", str(path), str(result)]
+        command = [sys.executable, "-P", "-m", "semispline.solver.io.occ_process", str(path), str(result)]
         seconds = _SECONDS + os.path.getsize(path) / _BYTES_PER_SECOND
         try:
             ended = subprocess.run(command, env=environment, capture_output=True, check=False, timeout=seconds)
@@ -77,7 +77,7 @@ def open_occ(path: str | Path) -> Model:
 
 def main(path: str, result: str) -> None:
     """Read the file at `path` and leave unit and faces, or the error, in the file `result`."""
-    from solver.io.occ import read_occ
+    from semispline.solver.io.occ import read_occ
 
     found: Any
     try:

@@ -12,10 +12,11 @@ from typing import Any
 
 import numpy as np
 
-from solver.errors import FileError, SemisplineError
-from solver.io.faces import MILLIMETRES
-from solver.io.occ_kernel import UNIT_NAMES, first_line, require_kernel, silenced, system_unit
-from solver.surfaces import BSplineSurface
+from semispline.solver.errors import FileError, SemisplineError
+from semispline.solver.io.faces import MILLIMETRES
+from semispline.solver.io.occ_kernel import UNIT_NAMES, first_line, require_kernel, system_unit
+from semispline.solver.io.silence import silenced
+from semispline.solver.splines import BSplineSurface
 
 # 17 significant digits; the point that both formats ask for comes with the exponent.
 _REAL = "%.16E"

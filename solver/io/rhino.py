@@ -14,11 +14,11 @@ from typing import Any
 
 import numpy as np
 
-from solver.arrays import FloatArray
-from solver.errors import FileError, SemisplineError
-from solver.io.disk import require_file
-from solver.io.faces import Model, surface_from_net, without_equal_weights
-from solver.surfaces import BSplineSurface
+from semispline.solver.arrays import FloatArray
+from semispline.solver.errors import FileError, SemisplineError
+from semispline.solver.io.disk import require_file
+from semispline.solver.io.faces import Model, surface_from_net, without_equal_weights
+from semispline.solver.splines import BSplineSurface
 
 _UNITS = {
     "Inches": "in",

@@ -9,11 +9,11 @@ from pathlib import Path
 
 import numpy as np
 
-from solver.arrays import FloatArray
-from solver.errors import FileError, InputError
-from solver.io.disk import atomic_path, check_output, require_file
-from solver.io.faces import MILLIMETRES, Model, SurfaceEntry, describe, picked, without_equal_weights
-from solver.surfaces import BSplineSurface, SemiStructuredSurface, Surface
+from semispline.solver.arrays import FloatArray
+from semispline.solver.errors import FileError, InputError
+from semispline.solver.io.disk import atomic_path, check_output, require_file
+from semispline.solver.io.faces import MILLIMETRES, Model, SurfaceEntry, describe, picked, without_equal_weights
+from semispline.solver.splines import BSplineSurface, SemiStructuredSurface, Surface
 
 _OCC = (".step", ".stp", ".iges", ".igs", ".brep", ".brp")
 _READABLE = (".json", *_OCC, ".3dm")
@@ -160,23 +160,23 @@ def write_surface(path: str | Path, surface: Surface, unit: str | None = None) -
     """
     suffix = check_surface_output(path)
     if suffix == ".json":
-        from solver.io.json_files import write_json_surface
+        from semispline.solver.io.json_files import write_json_surface
 
         write_json_surface(path, surface)
         return
     with atomic_path(path) as temporary:
         if suffix in _MESHES:
-            from solver.io.meshes import write_mesh
+            from semispline.solver.io.meshes import write_mesh
 
             write_mesh(temporary, surface)
             return
         spline = surface.to_bspline() if isinstance(surface, SemiStructuredSurface) else surface
         if suffix == ".3dm":
-            from solver.io.rhino import write_3dm
+            from semispline.solver.io.rhino import write_3dm
 
             write_3dm(temporary, spline, unit or _DEFAULT_UNIT)
         else:
-            from solver.io.occ_writing import occ_bytes
+            from semispline.solver.io.occ_writing import occ_bytes
 
             temporary.write_bytes(occ_bytes(spline, suffix, unit or _DEFAULT_UNIT))
         _check_written(temporary, spline, str(path))
@@ -253,7 +253,7 @@ class _JsonFace:
 
 
 def _open_json(path: str | Path) -> Model:
-    from solver.io.json_files import read_json_surface
+    from semispline.solver.io.json_files import read_json_surface
 
     return Model(str(path), None, [_JsonFace(read_json_surface(path))])
 
@@ -262,11 +262,11 @@ def _reader(suffix: str) -> Callable[[str | Path], Model] | None:
     if suffix == ".json":
         return _open_json
     if suffix == ".3dm":
-        from solver.io.rhino import open_3dm
+        from semispline.solver.io.rhino import open_3dm
 
         return open_3dm
     if suffix in _OCC:
-        from solver.io.occ_process import open_occ
+        from semispline.solver.io.occ_process import open_occ
 
         return open_occ
     return None
@@ -288,7 +288,7 @@ def _scaled(surface: Surface, factor: float) -> Surface:
 
 def _check_written(written: Path, surface: BSplineSurface, where: str) -> None:
     """Read a CAD file back: kernels drop or merge what is small against their tolerances, and do not say so."""
-    from solver.io.occ import read_occ
+    from semispline.solver.io.occ import read_occ
 
     try:
         # What this process wrote, it can read without a process of its own.

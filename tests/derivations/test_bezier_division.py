@@ -10,7 +10,7 @@ import sympy as sp
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from derivations.bezier import (
+from semispline.derivations.bezier import (
     PARTS,
     blossom,
     division_curve,

@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 import sympy as sp
 
-from derivations.bezier import generic_patch
-from derivations.trimming import (
+from semispline.derivations.bezier import generic_patch
+from semispline.derivations.trimming import (
     Hole,
     Side,
     areas,

@@ -15,8 +15,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from sympy import Function, Rational, Symbol, sqrt, symbols
 
-from derivations.codegen.c_backend import c_function
-from derivations.codegen.catalogue import (
+from semispline.derivations.codegen.c_backend import c_function
+from semispline.derivations.codegen.catalogue import (
     conditions_routine,
     contact_routine,
     density_routine,
@@ -24,10 +24,10 @@ from derivations.codegen.catalogue import (
     generated_files,
     gram_routine,
 )
-from derivations.codegen.expressions import expression_text, summands
-from derivations.codegen.python_backends import CASADI, NUMPY, python_text
-from derivations.codegen.routines import Argument, Routine, routine_steps
-from solver.generated import contact_numpy, energy_numpy
+from semispline.derivations.codegen.expressions import expression_text, summands
+from semispline.derivations.codegen.python_backends import CASADI, NUMPY, python_text
+from semispline.derivations.codegen.routines import Argument, Routine, routine_steps
+from semispline.solver.generated import contact_numpy, energy_numpy
 
 ROOT = Path(__file__).parents[2]
 LETTERS = symbols("a b h1 H1")
@@ -106,7 +106,7 @@ def test_committed_files_are_fresh():
 
 def test_text_is_the_same_for_every_hash_seed():
     script = (
-        "from hashlib import sha256; from derivations.codegen.catalogue import generated_files;"
+        "from hashlib import sha256; from semispline.derivations.codegen.catalogue import generated_files;"
         "print(sha256(repr(generated_files()).encode()).hexdigest())"
     )
     found = {

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from sympy import Matrix, Rational, Symbol, cancel, diag, diff, expand, symbols
 from sympy.polys.constructor import construct_domain
 
-from derivations.contact import (
+from semispline.derivations.contact import (
     A,
     base_derivative,
     contact_conditions,
@@ -20,7 +20,7 @@ from derivations.contact import (
     contact_rows_from_pieces,
     special_conditions,
 )
-from derivations.splines import end_derivatives, end_derivatives_from_pieces, evaluate_exact, span_symbols
+from semispline.derivations.splines import end_derivatives, end_derivatives_from_pieces, evaluate_exact, span_symbols
 
 P, Q = symbols("p q", positive=True)
 

@@ -13,11 +13,11 @@ import pytest
 from sympy import Matrix, Rational, diag
 from typer.testing import CliRunner
 
-from derivations.cli import NAMES, app, derived
-from derivations.codegen.files import THEORY, differences, expected_files, refreshed
-from derivations.contact import contact_jets, contact_rows
-from derivations.results import FORMS, RESULTS, Request, show
-from derivations.splines import end_derivatives
+from semispline.derivations.cli import NAMES, app, derived
+from semispline.derivations.codegen.files import THEORY, differences, expected_files, refreshed
+from semispline.derivations.contact import contact_jets, contact_rows
+from semispline.derivations.results import FORMS, RESULTS, Request, show
+from semispline.derivations.splines import end_derivatives
 
 ROOT = Path(__file__).parents[2]
 FORMULAS = ("energy", "special-conditions", "stationarity")
@@ -26,7 +26,7 @@ FORMULAS = ("energy", "special-conditions", "stationarity")
 def run(arguments, folder=ROOT):
     # PYTHONPATH puts the copy before the installed package.
     return subprocess.run(
-        [sys.executable, "-m", "derivations.cli", *arguments],
+        [sys.executable, "-m", "semispline.derivations.cli", *arguments],
         cwd=folder,
         env=os.environ | {"PYTHONPATH": str(folder), "COLUMNS": "200"},
         capture_output=True,
@@ -35,12 +35,18 @@ def run(arguments, folder=ROOT):
     )
 
 
+def link_package(folder):
+    """The public name over the copied folders, as in a checkout."""
+    shutil.copytree(ROOT / "semispline", folder / "semispline", symlinks=True)
+
+
 @pytest.fixture
 def checkout(tmp_path):
     """A copy of what `generate` reads and writes."""
     for name in ("derivations", "solver/generated"):
         shutil.copytree(ROOT / name, tmp_path / name, ignore=shutil.ignore_patterns("__pycache__"))
     (tmp_path / "solver" / "__init__.py").write_text("")
+    link_package(tmp_path)
     shutil.copy(ROOT / "pyproject.toml", tmp_path)
     (tmp_path / "docs").mkdir()
     shutil.copy(ROOT / THEORY, tmp_path / THEORY)
@@ -173,11 +179,12 @@ def test_check_sees_and_generate_repairs_whatever_differs(checkout):
 
 def test_generate_outside_a_checkout_says_so(tmp_path):
     shutil.copytree(ROOT / "derivations", tmp_path / "derivations", ignore=shutil.ignore_patterns("__pycache__"))
+    link_package(tmp_path)
     found = run(["generate"], tmp_path)
     assert found.returncode == 2
     assert "not a checkout of semispline" in found.stderr
     assert found.stderr.count("\n") == 1
-    assert [path.name for path in tmp_path.iterdir()] == ["derivations"]
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["derivations", "semispline"]
 
 
 def test_a_folder_that_cannot_be_written_is_one_line(checkout):

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from scipy.interpolate import BSpline
 from sympy import Indexed, Matrix, Rational, Symbol, cancel, integrate, symbols
 
-from derivations.energy import (
+from semispline.derivations.energy import (
     SECOND_DERIVATIVES,
     Basis,
     ExactSurface,
@@ -23,7 +23,7 @@ from derivations.energy import (
     stationarity_system,
     thin_plate_density,
 )
-from derivations.problem import ExactBase, blend_problem, derivatives_at, exact_minimum, lagrangian, value_at
+from semispline.derivations.problem import ExactBase, blend_problem, derivatives_at, exact_minimum, lagrangian, value_at
 
 CUBIC_U = Basis(3, (0, 0, 0, 0, "1/4", "1/2", "3/4", 1, 1, 1, 1))
 LEFT = Basis(2, (0, 0, 0, "1/3", 1, 1, 1))
@@ -124,7 +124,7 @@ def test_gram_block_is_the_double_integral_of_the_bilinear_density():
 
 def test_gram_block_refuses_a_density_that_does_not_separate(monkeypatch):
     uu, uv, vv = SECOND_DERIVATIVES
-    monkeypatch.setattr("derivations.energy.thin_plate_density", lambda: uu**2 + 2 * uv**2 + vv**2 + uu * vv)
+    monkeypatch.setattr("semispline.derivations.energy.thin_plate_density", lambda: uu**2 + 2 * uv**2 + vv**2 + uu * vv)
     with pytest.raises(ArithmeticError, match="does not separate"):
         gram_block()
 

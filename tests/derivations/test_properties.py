@@ -10,7 +10,7 @@ import sympy as sp
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from derivations.properties import (
+from semispline.derivations.properties import (
     Proof,
     basis_table,
     contact_orders,
@@ -19,7 +19,7 @@ from derivations.properties import (
     proofs,
     supports,
 )
-from derivations.splines import X
+from semispline.derivations.splines import X
 
 T = sp.Symbol("t")
 

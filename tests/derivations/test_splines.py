@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from scipy.interpolate import BSpline
 from sympy import Matrix, Rational, Symbol, cancel, diag
 
-from derivations.splines import (
+from semispline.derivations.splines import (
     X,
     basis_pieces,
     end_derivative_step,
@@ -57,7 +57,7 @@ def test_induction_step_sees_a_wrong_closed_form(monkeypatch):
         # What the appendix of the paper prints: the width h_2 left out.
         return right(order, degree, [spans[0]] * len(spans))
 
-    monkeypatch.setattr("derivations.splines.end_derivatives", wrong)
+    monkeypatch.setattr("semispline.derivations.splines.end_derivatives", wrong)
     assert not is_zero(end_derivative_step(2))
 
 

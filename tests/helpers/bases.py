@@ -3,9 +3,9 @@
 import numpy as np
 from scipy.interpolate import make_interp_spline
 
-from solver import Base, BSplineSurface
-from solver.de_boor import curve_points
-from solver.refinement import clamp_knots
+from semispline import Base, BSplineSurface
+from semispline.solver.judge.de_boor import curve_points
+from semispline.solver.splines.refinement import clamp_knots
 
 IDENTITY = np.eye(3)
 

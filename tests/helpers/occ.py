@@ -7,8 +7,8 @@ from OCP.GeomAbs import GeomAbs_G2
 from OCP.gp import gp_Pnt
 from OCP.LocalAnalysis import LocalAnalysis_SurfaceContinuity
 
-from solver import BSplineSurface
-from solver.operations import reverse_v
+from semispline import BSplineSurface
+from semispline.solver.splines.operations import reverse_v
 
 
 def _knots(knots):

@@ -6,18 +6,17 @@ from pathlib import Path
 
 from PIL import Image
 
-from papers.baselines.registry import method
-from papers.lin2014.findings import findings
-from papers.lin2014.section5 import example
-from papers.lin2014.study import pair, tables
-from papers.reproduction import collect
-from papers.study import Drawing, Example, Study
-from papers.verification import verify
+from semispline.papers.baselines.registry import method
+from semispline.papers.ledger.verification import verify
+from semispline.papers.lin2014.examples.section5 import example
+from semispline.papers.lin2014.findings import findings
+from semispline.papers.lin2014.paper_as_printed import METHODS as OWN
+from semispline.papers.lin2014.study import pair, tables
+from semispline.papers.reproduction.study import Drawing, Example, Study
+from semispline.papers.whole_study import collect
 
-METHODS = (
-    "paper-as-printed", "paper-corrected", "semistructured-c2", "semistructured-reduced", "hartmann-inside",
-    "bloor-wilson-4",
-)  # fmt: skip
+RIVALS = ("paper-corrected", "semistructured-c2", "semistructured-reduced", "hartmann-inside", "bloor-wilson-4")
+METHODS = (*OWN, *map(method, RIVALS))
 
 
 def colored(color, size, path: Path):
@@ -40,7 +39,7 @@ def small_study(*more: Drawing) -> Study:
         Example(example(10)),
         Example(made.task, made.notes),
     )
-    return Study(examples, drawings, tables, findings, "What a reader must know.")
+    return Study(examples, drawings, tables, findings, OWN, "What a reader must know.")
 
 
 @contextmanager
@@ -54,6 +53,5 @@ def told(steps, doing, total):
 def small_results(paper: Path, folder: Path, steps=None, study=None):
     """Decide the made-up paper in a folder and run the small study."""
     ledger = verify(str(paper), workers=1)
-    chosen = [method(name) for name in METHODS]
     progress = partial(told, {} if steps is None else steps)
-    return collect(ledger, study or small_study(), folder, chosen, progress, "semispline reproduce small")
+    return collect(ledger, study or small_study(), folder, METHODS, progress, "semispline reproduce small")

@@ -6,7 +6,7 @@ from math import comb
 import numpy as np
 from hypothesis import strategies as st
 
-from solver import BSplineCurve, BSplineSurface, SemiStructuredSurface
+from semispline import BSplineCurve, BSplineSurface, SemiStructuredSurface
 
 DOMAINS = ((0.0, 1.0), (-2.0, 3.5), (100.0, 101.0))
 

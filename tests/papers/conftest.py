@@ -9,7 +9,7 @@ PRINTED = '''
 
 import sympy as sp
 
-from papers.ledger import Formula
+from semispline.papers.ledger.records import Formula
 
 n = sp.Symbol("n", integer=True, positive=True)
 total = sp.Symbol("T", integer=True)
@@ -21,10 +21,10 @@ from functools import partial
 
 import sympy as sp
 
-from papers.ledger import (
+from semispline.papers.ledger.records import (
     Case, Check, Claim, Consequence, Correction, Counterexample, Formula, Part, Reading, Strength, Verdict,
 )
-from papers.search import smallest_assignment
+from semispline.papers.ledger.search import smallest_assignment
 
 from . import printed as pr
 

@@ -7,7 +7,7 @@ import sys
 import pytest
 from typer.testing import CliRunner
 
-from papers.cli import app
+from semispline.papers.cli import app
 
 runner = CliRunner()
 
@@ -25,7 +25,7 @@ def test_all_commands_are_mounted():
 
 def test_help_loads_nothing_heavy():
     code = (
-        "import sys\nfrom papers.cli import app\nfrom typer.testing import CliRunner\n"
+        "import sys\nfrom semispline.papers.cli import app\nfrom typer.testing import CliRunner\n"
         "assert CliRunner().invoke(app, ['--help']).exit_code == 0\n"
         "print([name for name in ('sympy', 'scipy', 'casadi', 'pyvista', 'OCP') if name in sys.modules])"
     )

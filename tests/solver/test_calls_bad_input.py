@@ -6,8 +6,8 @@ import pickle
 import numpy as np
 import pytest
 
-import solver as ss
-from solver.errors import ControlPointError, InputError, KnotError, OptionError
+import semispline as ss
+from semispline.solver.errors import ControlPointError, InputError, KnotError, OptionError
 
 UNIT = [0, 0, 1, 1]
 CUBIC = [0, 0, 0, 0, 1, 1, 1, 1]

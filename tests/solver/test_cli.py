@@ -9,15 +9,15 @@ import pyiges
 import pytest
 from typer.testing import CliRunner
 
-import solver.blending
+import semispline
 from helpers.bases import facing_pair
-from solver import BSplineSurface, ComputationError, SemiStructuredSurface
-from solver.cli import app
-from solver.io.surface_files import read_surface, write_surface
+from semispline import BSplineSurface, ComputationError, SemiStructuredSurface
+from semispline.solver.cli import app
+from semispline.solver.io.surface_files import read_surface, write_surface
 
 IMPELLER = Path(pyiges.__file__).parent / "examples" / "impeller.igs"
 K = [0.0, 0.0, 1.0, 1.0]
-ENTRY = "from papers.cli import main; main()"
+ENTRY = "from semispline.papers.cli import main; main()"
 
 
 def run(*words):
@@ -162,7 +162,7 @@ def test_failed_computation_is_status_3(pair, monkeypatch):
     def fail(*_, **__):
         raise ComputationError("the solver gave up\nafter a while; try fewer middle curves")
 
-    monkeypatch.setattr(solver.blending, "blend", fail)
+    monkeypatch.setattr(semispline.solver.blending, "blend", fail)
     (pair / "c.json").write_text("old")
     done = run("blend", pair / "a.json", pair / "b.json", *edges(), "-o", pair / "c.json")
     assert done.exit_code == 3
@@ -172,7 +172,7 @@ def test_failed_computation_is_status_3(pair, monkeypatch):
 
 def test_help_imports_nothing_heavy():
     heavy = {"numpy", "scipy", "casadi", "sympy", "OCP", "pydantic"}
-    code = f"import sys, solver.cli; print(sorted({heavy} & set(sys.modules)))"
+    code = f"import sys, semispline.solver.cli; print(sorted({heavy} & set(sys.modules)))"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stdout == "[]\n"
 

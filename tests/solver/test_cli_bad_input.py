@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from solver import BSplineSurface
-from solver.cli import app
-from solver.io.json_files import surface_record
-from solver.io.surface_files import write_surface
+from semispline import BSplineSurface
+from semispline.solver.cli import app
+from semispline.solver.io.json_files import surface_record
+from semispline.solver.io.surface_files import write_surface
 
 K = [0.0, 0.0, 1.0, 1.0]
 FLOOR = BSplineSurface(1, 1, K, K, [[[0, 0, 0], [0, 1, 0]], [[1, 0, 0], [1, 1, 0]]])
@@ -185,7 +185,7 @@ def test_usage_errors_are_status_2(words):
 def test_the_installed_command_ends_the_same_way(folder):
     """In a process of its own, through the entry point that `semispline` runs."""
     (folder / "a.json").write_text(BAD_FILES["knots that decrease"][0])
-    command = [sys.executable, "-c", "from papers.cli import main; main()"]
+    command = [sys.executable, "-c", "from semispline.papers.cli import main; main()"]
     for words, said in (
         (blend_words(folder), "knots_u[4]"),
         (blend_words(folder, a="none.json"), "no such file"),

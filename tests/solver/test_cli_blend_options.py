@@ -7,8 +7,8 @@ import pytest
 from typer.testing import CliRunner
 
 from helpers.bases import facing_pair
-from papers.cli import app
-from solver.io.surface_files import write_surface
+from semispline.papers.cli import app
+from semispline.solver.io.surface_files import write_surface
 
 
 @pytest.fixture

@@ -1,0 +1,5 @@
+"""The engine: records, their checks, loading, deciding, mutants, search. Knows no paper."""
+
+import lazy_loader as _lazy
+
+__getattr__, __dir__, __all__ = _lazy.attach_stub(__name__, __file__)

@@ -1,0 +1,241 @@
+"""Mutants of a formula: one sign, factor, index, exponent, limit, number or knot changed. A check must notice each.
+
+A check that would accept a changed formula decides nothing, so every mutant must change what the check finds; one
+that does not is listed with the written reason why it says the same as the formula, or why nothing printed tells the
+two apart.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from functools import cache
+from itertools import pairwise, zip_longest
+from typing import Any
+
+import sympy as sp
+from sympy.core.function import AppliedUndef
+
+from semispline.papers.ledger.records import Case, Check, Formula, Part, decided_cases
+from semispline.papers.ledger.vectors import Knots, Numbers, exchanges, knot_changes, near, number_changes
+
+
+@dataclass(frozen=True)
+class Mutant:
+    """A formula with one change.
+
+    Attributes
+    ----------
+    kind : str
+        What was changed: sign, factor, exponent, index, limit, number, or knot.
+    relation : sympy.Rel
+    """
+
+    kind: str
+    relation: Any
+
+    @property
+    def text(self) -> str:
+        """How a record names it, to say why it is equivalent."""
+        return str(self.relation)
+
+
+@dataclass(frozen=True)
+class MutationResult:
+    """How the mutants of some formulas fared.
+
+    Attributes
+    ----------
+    kinds : mapping
+        Kind of change -> how many mutants of it were tried.
+    survivors : tuple of str
+        Mutants that the check did not notice and that nobody explained.
+    equivalent, undecidable : tuple of (str, str)
+        The other survivors, with the written reason: those that say the same as the formula, and those that nothing
+        printed can tell from it.
+    undefined : int
+        Mutants that were noticed since they divide by zero.
+    """
+
+    kinds: Mapping[str, int] = field(default_factory=dict)
+    survivors: tuple[str, ...] = ()
+    equivalent: tuple[tuple[str, str], ...] = ()
+    undecidable: tuple[tuple[str, str], ...] = ()
+    undefined: int = 0
+
+    @property
+    def tried(self) -> int:
+        """All mutants."""
+        return sum(self.kinds.values())
+
+    @property
+    def noticed(self) -> int:
+        """Those whose change the check found."""
+        return self.tried - len(self.survivors) - len(self.equivalent) - len(self.undecidable)
+
+    def __add__(self, other: MutationResult) -> MutationResult:
+        return MutationResult(
+            Counter(self.kinds) + Counter(other.kinds),
+            self.survivors + other.survivors,
+            self.equivalent + other.equivalent,
+            self.undecidable + other.undecidable,
+            self.undefined + other.undefined,
+        )
+
+
+def mutants(formula: Formula) -> list[Mutant]:
+    """Return all mutants of the right-hand side, and of the left one where that is not a single symbol.
+
+    Examples
+    --------
+    >>> x, y = sp.symbols("x y")
+    >>> [(m.kind, m.relation.rhs) for m in mutants(Formula(sp.Eq(y, x**2), (x, y)))]
+    [('sign', -x**2), ('factor', 2*x**2), ('exponent', x), ('exponent', x**3)]
+    """
+    relation = formula.relation
+    neighbours = _neighbour_map(formula.neighbours)
+    found: dict[Any, Mutant] = {}
+    for side in (1, 0):
+        expression = relation.args[side]
+        if side == 0 and not expression.args:
+            continue
+        for kind, changed in [*(_whole_variants(expression) if side else ()), *_variants(expression, neighbours)]:
+            sides = (relation.args[0], changed) if side else (changed, relation.args[1])
+            mutant = relation.func(*sides, evaluate=False)
+            if changed != expression and mutant not in found:
+                found[mutant] = Mutant(kind, mutant)
+    return list(found.values())
+
+
+def try_mutants(part: Part) -> MutationResult:
+    """Try every mutant of a part's formula against the part's own check.
+
+    A probe only saves time: of the mutants that it tells apart, the first ones of each kind are put to the check too.
+    """
+    return MutationResult() if part.formula is None else _tried(part.check, part.formula)
+
+
+@cache
+def _tried(check: Check, formula: Formula) -> MutationResult:
+    """Try the mutants once, also where several records rest on one formula and its check."""
+    original: list[Case] | None = None
+    probed = check.probe(formula) if check.probe else None
+    survivors: list[Mutant] = []
+    undefined = 0
+    kinds: Counter[str] = Counter()
+    probed_of_kind: Counter[str] = Counter()
+    for mutant in mutants(formula):
+        kinds[mutant.kind] += 1
+        changed = Formula(mutant.relation, formula.variables, formula.assumptions)
+        try:
+            if check.probe and check.probe(changed) != probed:
+                probed_of_kind[mutant.kind] += 1
+                if probed_of_kind[mutant.kind] > _PROBED_AND_CHECKED:
+                    continue
+            if original is None:
+                original = list(decided_cases(check, formula))
+            if not _differs(original, decided_cases(check, changed)):
+                survivors.append(mutant)
+        except ZeroDivisionError:
+            undefined += 1
+    # A reason that says nothing explains nothing.
+    same, open_ = (
+        {text: why for text, why in reasons.items() if why.strip()}
+        for reasons in (formula.equivalent, formula.undecidable)
+    )
+    return MutationResult(
+        kinds,
+        tuple(f"{m.kind}: {m.text}" for m in survivors if m.text not in same and m.text not in open_),
+        tuple((m.text, same[m.text]) for m in survivors if m.text in same),
+        tuple((m.text, open_[m.text]) for m in survivors if m.text in open_),
+        undefined,
+    )
+
+
+# How many mutants of a kind go to the check itself although a probe has told them apart.
+_PROBED_AND_CHECKED = 2
+
+
+def _differs(original: list[Case], other: Any) -> bool:
+    """Compare case by case and stop at the first difference: most mutants show in the first case."""
+    pairs = zip_longest(original, other)
+    return any(a is None or b is None or (a.true, a.residual) != (b.true, b.residual) for a, b in pairs)
+
+
+def _neighbour_map(chains: tuple[tuple[Any, ...], ...]) -> dict[Any, list[Any]]:
+    near: dict[Any, list[Any]] = {}
+    for chain in chains:
+        for left, right in pairwise(chain):
+            near.setdefault(left, []).append(right)
+            near.setdefault(right, []).append(left)
+    return near
+
+
+def _whole_variants(expression: Any) -> Iterator[tuple[str, Any]]:
+    """Yield changes of a whole side."""
+    if isinstance(expression, sp.Tuple):
+        return
+    yield "sign", -expression
+    yield "factor", 2 * expression
+    if expression.is_Integer:
+        yield from (("number", changed) for changed in near(expression))
+
+
+def _data_variants(data: Knots | Numbers) -> Iterator[tuple[str, Any]]:
+    if isinstance(data, Knots):
+        yield from (("knot", changed) for changed in knot_changes(data))
+    else:
+        yield from (("number", changed) for changed in number_changes(data))
+        yield from (("index", changed) for changed in exchanges(data))
+
+
+def _variants(expression: Any, near_by: dict[Any, list[Any]]) -> Iterator[tuple[str, Any]]:
+    """Yield (kind, expression with one change), walking through the whole tree."""
+    yield from (("index", other) for other in near_by.get(expression, []))
+    yield from _node_variants(expression)
+    if isinstance(expression, Knots | Numbers | sp.Indexed):
+        return
+    if isinstance(expression, sp.Sum | sp.Integral):
+        for kind, changed in _variants(expression.function, near_by):
+            yield kind, expression.func(changed, *expression.limits)
+        return
+    for i, argument in enumerate(expression.args):
+        for kind, changed in _variants(argument, near_by):
+            yield kind, _with_arg(expression, i, changed)
+
+
+def _node_variants(expression: Any) -> Iterator[tuple[str, Any]]:
+    """Yield changes of one node of the tree."""
+    if isinstance(expression, Knots | Numbers):
+        yield from _data_variants(expression)
+    elif expression.is_Rational and not expression.is_Integer:
+        yield from (("number", changed) for changed in near(expression))
+    elif isinstance(expression, sp.Add):
+        for i, term in enumerate(expression.args):
+            yield "sign", _with_arg(expression, i, -term)
+            yield "factor", _with_arg(expression, i, 2 * term)
+    elif isinstance(expression, sp.Pow) and expression.exp.is_number:
+        yield from (("exponent", expression.base ** (expression.exp + step)) for step in (-1, 1))
+    elif isinstance(expression, sp.Indexed):
+        for i in range(1, len(expression.args)):
+            yield "index", _with_arg(expression, i, expression.args[i] + 1)
+    elif isinstance(expression, AppliedUndef):
+        for i, argument in enumerate(expression.args):
+            if argument.is_integer:
+                yield "index", _with_arg(expression, i, argument + 1)
+    elif isinstance(expression, sp.Sum):
+        yield from _limit_variants(expression)
+    elif isinstance(expression, sp.Integral):
+        yield "factor", 2 * expression
+
+
+def _limit_variants(expression: Any) -> Iterator[tuple[str, Any]]:
+    for i, (index, lower, upper) in enumerate(expression.limits):
+        for changed in ((index, lower + 1, upper), (index, lower, upper - 1)):
+            limits = (*expression.limits[:i], changed, *expression.limits[i + 1 :])
+            yield "limit", sp.Sum(expression.function, *limits)
+
+
+def _with_arg(expression: Any, i: int, changed: Any) -> Any:
+    return expression.func(*expression.args[:i], changed, *expression.args[i + 1 :])

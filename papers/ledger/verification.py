@@ -1,0 +1,358 @@
+"""Deciding a paper: every check is run anew, and its verdict compared with the recorded one."""
+
+from __future__ import annotations
+
+import signal
+import threading
+import time
+from collections import Counter
+from collections.abc import Callable, Iterator
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from contextlib import contextmanager
+from dataclasses import dataclass
+from math import isfinite
+from multiprocessing import get_context
+from typing import Any
+
+from semispline.papers.ledger.loading import collected, load_paper
+from semispline.papers.ledger.mutation import MutationResult, try_mutants
+from semispline.papers.ledger.records import (
+    Case,
+    CheckFailedError,
+    Claim,
+    Consequence,
+    Paper,
+    Reading,
+    Strength,
+    Verdict,
+    decided_cases,
+)
+
+
+@dataclass(frozen=True)
+class ReadingDecision:
+    """What one reading came to.
+
+    Attributes
+    ----------
+    label, condition : str
+        As in the record.
+    verdict : Verdict
+    strength : Strength
+        The weakest among the parts.
+    proof : bool
+        Every part is proved, not only checked on instances.
+    method : str
+    cases : int
+    residual : sympy.Expr or None
+        What the first false case leaves.
+    false_case, true_case : str
+        One instance on each side; empty where there is none.
+    """
+
+    label: str
+    condition: str
+    verdict: Verdict
+    strength: Strength
+    proof: bool
+    method: str
+    cases: int
+    residual: Any
+    false_case: str
+    true_case: str
+
+    @property
+    def proved(self) -> bool:
+        """Whether the verdict is proved: a single exact instance disproves."""
+        return self.proof or (self.verdict is Verdict.FAILS and self.strength <= Strength.RATIONAL)
+
+
+@dataclass(frozen=True)
+class Decision:
+    """One record, decided anew.
+
+    Attributes
+    ----------
+    id : str
+    recorded : Verdict
+    verdict : Verdict or None
+        None where a check gave no answer.
+    problem : str
+        Why there is no verdict, or what the record lacks; empty where all is well.
+    vacuous : bool
+        Some check had no instance.
+    readings : tuple of ReadingDecision
+    counterexample : str
+    correction : ReadingDecision or None
+        Decided like a reading; it must hold.
+    consequence : Consequence or None
+    mutation : MutationResult
+        Of all printed and corrected formulas.
+    seconds : float
+    """
+
+    id: str
+    recorded: Verdict
+    verdict: Verdict | None
+    problem: str
+    vacuous: bool
+    readings: tuple[ReadingDecision, ...]
+    counterexample: str
+    correction: ReadingDecision | None
+    consequence: Consequence | None
+    mutation: MutationResult
+    seconds: float
+
+    @property
+    def ok(self) -> bool:
+        """The verdict is the recorded one and nothing is missing."""
+        return self.verdict is self.recorded and not self.problem and not self.vacuous and not self.mutation.survivors
+
+    @property
+    def proved(self) -> bool:
+        """Proved, or disproved by an exact instance: nothing rests on floating point or on a sample."""
+        return bool(self.readings) and self.verdict is not None and all(reading.proved for reading in self.readings)
+
+    @property
+    def false_case(self) -> str:
+        """The first instance of a failing reading."""
+        return next((r.false_case for r in self.readings if r.verdict is Verdict.FAILS), "")
+
+
+class VacuousError(CheckFailedError):
+    """A check without a single instance."""
+
+
+# No check of a paper that ships takes a tenth of this.
+TIME_LIMIT = 120.0
+
+
+def decide(claim: Claim, time_limit: float = TIME_LIMIT) -> Decision:
+    """Run every check of one record.
+
+    A check without an answer does not raise: it leaves a decision without a verdict, which is never `ok`. So does one
+    that takes longer than `time_limit` seconds, on systems with an interval timer.
+    """
+    started = time.perf_counter()
+    readings: tuple[ReadingDecision, ...] = ()
+    verdict, problem, vacuous = None, "", False
+    counterexample, correction, consequence = "", None, None
+    mutation = MutationResult()
+    try:
+        with _limited(time_limit):
+            readings = tuple(_decide_reading(reading) for reading in claim.readings)
+            verdict = _combined(readings)
+            if claim.counterexample:
+                found = claim.counterexample()
+                if found is None or not found.values:
+                    raise CheckFailedError("the search found no counterexample, expected one with its values")
+                counterexample = str(found)
+            if claim.correction:
+                correction = _decide_reading(Reading(claim.correction.parts))
+                if correction.verdict is not Verdict.HOLDS:
+                    raise CheckFailedError(f"the correction {correction.verdict}, expected a formula that holds")
+                if not correction.true_case:
+                    raise CheckFailedError("the correction has no true instance, expected at least one")
+            if claim.consequence:
+                consequence = claim.consequence()
+            _require_evidence(verdict, readings, counterexample, consequence)
+            mutation = _mutation(claim)
+    except VacuousError as error:
+        verdict, problem, vacuous = None, str(error), True
+    except Exception as error:  # a check may fail in any way; none may pass for it
+        verdict, problem = None, f"{type(error).__name__}: {error}"
+    return Decision(
+        claim.id,
+        claim.verdict,
+        verdict,
+        problem,
+        vacuous,
+        readings,
+        counterexample,
+        correction,
+        consequence,
+        mutation,
+        time.perf_counter() - started,
+    )
+
+
+def _require_evidence(
+    verdict: Verdict,
+    readings: tuple[ReadingDecision, ...],
+    counterexample: str,
+    consequence: Consequence | None,
+) -> None:
+    """Raise `CheckFailedError` where a verdict lacks what it has to stand on, whatever the record promised."""
+    if verdict is Verdict.FAILS and not counterexample and all(reading.residual is None for reading in readings):
+        raise CheckFailedError("fails with neither residual nor counterexample, expected one of them")
+    if consequence is not None:
+        numbers = consequence.measured.values()
+        if not consequence.text.strip() or not numbers or not all(isfinite(number) for number in numbers):
+            raise CheckFailedError(
+                f"the consequence measured {dict(consequence.measured)}, expected a text and finite numbers"
+            )
+    if verdict is Verdict.HOLDS_IF and not all(reading.true_case and reading.false_case for reading in readings):
+        raise CheckFailedError("holds-if without an instance on each side of its condition")
+
+
+@contextmanager
+def _limited(seconds: float) -> Iterator[None]:
+    """Raise `CheckFailedError` in the body after some seconds; does nothing outside the main thread of a process."""
+    if not hasattr(signal, "setitimer") or threading.current_thread() is not threading.main_thread():
+        yield
+        return
+
+    def stop(_number: int, _frame: object) -> None:
+        raise CheckFailedError(f"no answer within {seconds:g} seconds")
+
+    before = signal.signal(signal.SIGALRM, stop)
+    signal.setitimer(signal.ITIMER_REAL, seconds)
+    try:
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, before)
+
+
+def _decide_reading(reading: Reading) -> ReadingDecision:
+    cases: list[Case] = []
+    for part in reading.parts:
+        found = list(decided_cases(part.check, part.formula))
+        if not found:
+            raise VacuousError(f"no instance satisfies the assumptions of: {part.check.method}")
+        cases += found
+    wrong = [case for case in cases if not case.true]
+    right = [case for case in cases if case.true]
+    # The residual shown is that of the paper's own setting where it has one.
+    shown = next((c for c in wrong if c.own), wrong[0] if wrong else None)
+    return ReadingDecision(
+        reading.label,
+        reading.condition,
+        _verdict(cases, reading.condition),
+        max(part.check.strength for part in reading.parts),
+        all(part.check.proof for part in reading.parts),
+        "; ".join(dict.fromkeys(part.check.method for part in reading.parts)),
+        len(cases),
+        shown.residual if shown else None,
+        shown.label if shown else "",
+        next((c.label for c in right if c.own), right[0].label if right else ""),
+    )
+
+
+def _verdict(cases: list[Case], condition: str) -> Verdict:
+    """Decide one reading: false in the paper's own setting is `fails`, false only outside it needs a condition."""
+    if all(case.true for case in cases):
+        return Verdict.HOLDS
+    if any(case.own and not case.true for case in cases):
+        return Verdict.FAILS
+    if not condition:
+        raise CheckFailedError(f"false for {next(c.label for c in cases if not c.true)}, expected a stated condition")
+    for case in cases:
+        if case.true != case.meets:
+            raise CheckFailedError(f"the condition «{condition}» does not separate true from false at {case.label}")
+    if not any(case.own for case in cases):
+        raise CheckFailedError("no instance of the paper's own setting, expected one that meets the condition")
+    return Verdict.HOLDS_IF
+
+
+def _combined(readings: tuple[ReadingDecision, ...]) -> Verdict:
+    """Combine readings: where they differ the claim is ambiguous, else it is what they all are."""
+    if not readings:
+        return Verdict.NOT_CHECKABLE
+    verdicts = {reading.verdict for reading in readings}
+    return verdicts.pop() if len(verdicts) == 1 else Verdict.AMBIGUOUS
+
+
+def _mutation(claim: Claim) -> MutationResult:
+    return sum((try_mutants(part) for part in claim.parts + claim.correction_parts), MutationResult())
+
+
+@dataclass(frozen=True)
+class Ledger:
+    """A paper, decided: the records and their decisions in the same order."""
+
+    paper: Paper
+    decisions: tuple[Decision, ...]
+
+    @property
+    def ok(self) -> bool:
+        """Every verdict is the recorded one, nothing vacuous, no mutant survived without a reason."""
+        return all(decision.ok for decision in self.decisions)
+
+    def counts(self) -> dict[str, int]:
+        """Return how many records are printed, decided, proved; each verdict; vacuous, changed; mutants."""
+        decided = [d for d in self.decisions if d.verdict not in (None, Verdict.NOT_CHECKABLE)]
+        return {
+            "printed": len(self.decisions),
+            "decided": len(decided),
+            "proved": sum(d.proved for d in decided),
+            **{str(v): sum(d.verdict is v for d in self.decisions) for v in Verdict},
+            "vacuous": sum(d.vacuous for d in self.decisions),
+            "changed": sum(d.verdict is not d.recorded for d in self.decisions),
+            "mutants": sum(d.mutation.tried for d in self.decisions),
+            "mutants_equivalent": sum(len(d.mutation.equivalent) for d in self.decisions),
+            "mutants_undecidable": sum(len(d.mutation.undecidable) for d in self.decisions),
+            "mutants_undefined": sum(d.mutation.undefined for d in self.decisions),
+            "mutants_survived": sum(len(d.mutation.survivors) for d in self.decisions),
+        }
+
+    def mutants_by_kind(self) -> dict[str, int]:
+        """Return how many mutants of each kind were tried."""
+        total: Counter[str] = Counter()
+        for decision in self.decisions:
+            total.update(decision.mutation.kinds)
+        return dict(total)
+
+
+def verify(
+    name: str,
+    *,
+    workers: int = 2,
+    progress: Callable[[Decision], None] | None = None,
+) -> Ledger:
+    """Load a paper and decide all its records.
+
+    Parameters
+    ----------
+    name : str
+        Folder name under `papers/`, or the path of a folder.
+    workers : int
+        Processes; 1 decides in this one.
+    progress : callable, optional
+        Told of each decision as it comes.
+
+    Raises
+    ------
+    LedgerError
+        The paper cannot be found, or a record is not well formed.
+    """
+    paper = load_paper(name)
+    decisions: dict[str, Decision] = {}
+    for decision in _decisions(paper, workers):
+        decisions[decision.id] = decision
+        if progress:
+            progress(decision)
+    return Ledger(paper, tuple(decisions[claim.id] for claim in paper.claims))
+
+
+def _decisions(paper: Paper, workers: int) -> Iterator[Decision]:
+    if workers == 1:
+        yield from map(decide, paper.claims)
+        return
+    # A fresh interpreter for each worker: forking a process with threads (BLAS, progress bar) is not safe.
+    with ProcessPoolExecutor(workers, mp_context=get_context("spawn")) as pool:
+        # Neighbours share oracles, which each worker derives for itself: so they go to one worker.
+        ids = [claim.id for claim in paper.claims]
+        groups = [ids[start : start + _GROUP] for start in range(0, len(ids), _GROUP)]
+        waiting = [pool.submit(_decide_by_id, paper.name, group) for group in groups]
+        for future in as_completed(waiting):
+            yield from future.result()
+
+
+_GROUP = 6
+
+
+def _decide_by_id(name: str, identifiers: list[str]) -> list[Decision]:
+    """Decide some records in a worker, which imports the paper once: checks are functions and do not travel."""
+    paper = collected(name)
+    return [decide(paper.claim(identifier)) for identifier in identifiers]

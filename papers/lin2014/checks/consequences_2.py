@@ -1,0 +1,88 @@
+"""What the misprints of section 2 do to a surface, measured in exact arithmetic on the patch that stands for Fig. 3."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from functools import cache
+from typing import Any
+
+import numpy as np
+
+from semispline.derivations.bezier import blossom, division_curve, division_rows
+from semispline.papers.ledger import Consequence
+from semispline.papers.lin2014.checks.consequences import made_blend
+from semispline.solver.judge import curve_points
+
+# A bicubic patch over the unit square, one number a coordinate, and the Bezier function that divides it.
+_HEIGHTS = ((0, 50, 10, 40), (50, 150, 30, 80), (20, -40, 150, 70), (60, 40, 90, 0))
+_FUNCTION = tuple(Fraction(x) for x in ("0.3", "0.95", "0.2", "0.6"))
+_PATCH = "The bicubic patch that stands for Fig. 3 (extent 2.4), divided by a cubic Bezier function"
+
+
+@cache
+def _nets() -> tuple[list[list[Fraction]], ...]:
+    return (
+        [[Fraction(8 * i, 10)] * 4 for i in range(4)],
+        [[Fraction(2 * j, 3) for j in range(4)] for _ in range(4)],
+        [[Fraction(3 * z, 500) for z in row] for row in _HEIGHTS],
+    )
+
+
+def _largest_change(wrong: Any, true: Any) -> float:
+    """Return the largest distance of two versions of the top sub-patch; each gives rows for a net of one coordinate."""
+    worst = 0.0
+    rows = [(wrong(net), true(net)) for net in _nets()]
+    for u in (Fraction(r, 12) for r in range(13)):
+        for w in (Fraction(r, 12) for r in range(13)):
+            distance = [float(_at(a, u, w) - _at(b, u, w)) for a, b in rows]
+            worst = max(worst, float(np.linalg.norm(distance)))
+    return worst
+
+
+def _at(rows: Any, u: Fraction, w: Fraction) -> Fraction:
+    points = [_bezier(row, u) if row else Fraction(0) for row in rows]
+    return _bezier(points, w)
+
+
+def _bezier(points: Any, x: Fraction) -> Any:
+    return blossom(points, [x] * (len(points) - 1))
+
+
+def top_last_row() -> Consequence:
+    """Take the printed name of the last row of the top sub-patch at its word."""
+
+    def wrong(net: Any) -> Any:
+        return [*division_rows(net, _FUNCTION, "top")[:-1], division_curve(net, _FUNCTION, 0, 3)]
+
+    change = _largest_change(wrong, lambda net: division_rows(net, _FUNCTION, "top"))
+    return Consequence(
+        f"{_PATCH}: with Q_0^n as last row the far edge of the top sub-patch falls on the dividing curve",
+        {"largest displacement": change},
+    )
+
+
+def missing_first_row() -> Consequence:
+    """Leave out the rows with s = 0, which the printed range does not define."""
+
+    def wrong(net: Any) -> Any:
+        return [*division_rows(net, _FUNCTION, "top")[:-1], ()]
+
+    change = _largest_change(wrong, lambda net: division_rows(net, _FUNCTION, "top"))
+    return Consequence(
+        f"{_PATCH}: a program that follows the range has no Q_n^0 and leaves zeros there",
+        {"largest displacement": change},
+    )
+
+
+def one_function_for_all() -> Consequence:
+    """Evaluate a v-control curve with the family B_{i,l}, j = 0 .. n_i: one function for all control points."""
+    curve = made_blend().surface.control_curves[3]
+    v = np.linspace(curve.knots[0], curve.knots[-1], 41)
+    unit = np.eye(len(curve.control_points))[3]
+    function = curve_points(curve.degree, curve.knots, unit[:, None], v)
+    wrong = function * curve.control_points.sum(axis=0)
+    change = np.linalg.norm(wrong - curve_points(curve.degree, curve.knots, curve.control_points, v), axis=1).max()
+    return Consequence(
+        "The middle curve of the made pair's blend (extent 8), each control point weighted by B_3",
+        {"largest displacement": float(change)},
+    )

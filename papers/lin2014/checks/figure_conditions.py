@@ -1,0 +1,306 @@
+"""Running the conditions as printed on bases like those of section 5: k = k_r = 4, uniform u_i.
+
+The paper prints no control points. What can be decided is what its words say of them: planes, cylinders, cones.
+
+(3.1) as printed gives the blend the second derivative across the contact that the base has, along the normal, times
+(w_{k_r+1} - w_s) / u_2. So curvature stays continuous where the base is straight across the contact (zero times
+anything), or by accident.
+
+For C2 the coordinates are decided one by one, so that one symbolic letter a row stands for any control points. For G2
+only the coordinate along the normal counts: there R_0 and R_1 agree, since R_w is a multiple of R_1 - R_0 and tangent,
+and R_2 is apart from them by as much as the base is curved.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from functools import cache
+from typing import Any, Literal
+
+import sympy as sp
+
+from semispline.derivations.splines import end_derivatives, span_symbols
+from semispline.papers.ledger import (
+    Case,
+    Check,
+    Counterexample,
+    Formula,
+    Meaning,
+    Strength,
+    UndefinedError,
+    given,
+    interpret,
+    mutants,
+    smallest_assignment,
+)
+from semispline.papers.lin2014 import printed as pr
+from semispline.papers.lin2014.checks.contact import CUBIC, Side, difference_form, t_ks1, u_before, u_last, w_kr1
+
+# What a base is like across the contact; "any" decides all coordinates, the others the one along the normal.
+Kind = Literal["any", "curved", "straight"]
+
+_BLEND = {"start": (pr.P_0, pr.P_1, pr.P_2), "end": (pr.P_m, pr.P_m1, pr.P_m2)}
+_BASE = {"start": (pr.R_0, pr.R_1, pr.R_2), "end": (pr.S_0, pr.S_1, pr.S_2)}
+_FIRST_ROW = {"start": pr.COND_2_1, "end": pr.COND_2_2}
+_SHAPE = {"start": pr.alpha, "end": pr.beta}
+_BASE_H = span_symbols(2, "H")
+
+
+def _uniform(m: int) -> tuple[Any, Any]:
+    """Return the distances of the first two inner knots from the contact, the same at both ends."""
+    return sp.Rational(1, m - 2), sp.Rational(2, m - 2)
+
+
+def at_figure(formula: Formula, m: int, *, parametric: bool) -> Formula:
+    """Return a condition for k = k_r = k_s = 4 and uniform u_i, m + 1 curves; with alpha = beta = 1 if `parametric`."""
+    h = _uniform(m)
+    numbers = {pr.k: CUBIC, pr.k_r: CUBIC, pr.k_s: CUBIC, pr.u_1: h[0], pr.u_2: h[1]}
+    numbers |= {pr.u_m3: 1 - h[0], u_last: 1 - h[0], u_before: 1 - h[1]}
+    if parametric:
+        numbers |= {pr.alpha: 1, pr.beta: 1}
+    relation = formula.relation.subs(numbers)
+    assumptions = tuple(a for a in formula.assumptions if not a.free_symbols & set(numbers))
+    used = relation.free_symbols.union(*(a.free_symbols for a in assumptions))
+    return Formula(relation, tuple(sorted(used, key=str)), assumptions, formula.neighbours)
+
+
+def row_2_check(side: Side, m: int, kind: Kind, *, parametric: bool) -> Check:
+    """Return the check of a condition for row 2 of a figure: P_uu against alpha^4 R_ww, for all rows of a kind."""
+
+    def cases(formula: Formula | None) -> Iterator[Case]:
+        yield _row_2_case(f"any rows, {m + 1} curves", formula, side, m, kind, parametric)
+
+    def probe(formula: Formula) -> Any:
+        try:
+            return _residual(formula.relation.rhs, side, m, kind, parametric)
+        except UndefinedError as error:
+            return str(error)
+
+    what = "all coordinates" if kind == "any" else "the coordinate along the normal"
+    return Check(
+        cases,
+        Strength.SYMBOLIC_ORDER,
+        f"P_uu by row 2 against the base's second derivative, {what}; k = k_r = 4, uniform u_i as in the figure, any "
+        "control points and knots of the base",
+        proof=True,
+        probe=probe,
+    )
+
+
+EQUAL_SPANS = "the first two spans of the base across the contact have one length"
+
+
+def equal_spans_check(side: Side, m: int) -> Check:
+    """Return the check of a condition for row 2 of a figure along the normal, on bases with equal and other spans.
+
+    A base as in the figures, with one inner knot across, has two equal spans where this knot is in the middle.
+    """
+
+    def cases(formula: Formula | None) -> Iterator[Case]:
+        rows = f"any rows, {m + 1} curves"
+        yield _row_2_case(f"{rows}, two spans of one length", formula, side, m, "curved", False, equal=True)
+        other = _row_2_case(f"{rows}, spans of other lengths", formula, side, m, "curved", False)
+        yield replace(other, own=False, meets=False)
+
+    def probe(formula: Formula) -> Any:
+        try:
+            return [_residual(formula.relation.rhs, side, m, "curved", False, equal) for equal in (True, False)]
+        except UndefinedError as error:
+            return str(error)
+
+    return Check(
+        cases,
+        Strength.SYMBOLIC_ORDER,
+        "P_uu by row 2 against the base's second derivative along the normal, with two equal spans of the base and "
+        "with any; k = k_s = 4, uniform u_i as in the figure, any control points",
+        proof=True,
+        probe=probe,
+    )
+
+
+def _row_2_case(
+    label: str, formula: Formula | None, side: Side, m: int, kind: Kind, parametric: bool, equal: bool = False
+) -> Case:
+    try:
+        residual = _residual(given(formula).relation.rhs, side, m, kind, parametric, equal)
+    except UndefinedError as error:
+        return Case(label, False, residual=sp.Symbol(f"undefined: {error}"))
+    if residual == 0:
+        return Case(label, True, residual=sp.Integer(0))
+    expression = residual.as_expr()
+    shown = difference_form(expression, _BASE[side]) if kind == "any" else sp.factor(expression)
+    return Case(label, False, residual=shown)
+
+
+def _residual(row: Any, side: Side, m: int, kind: Kind, parametric: bool, equal: bool = False) -> Any:
+    values, base = _letters(side, kind, parametric, equal)
+    values = dict(values)
+    values[_BLEND[side][0]] = values[_BASE[side][0]]
+    first = at_figure(_FIRST_ROW[side], m, parametric=parametric).relation.rhs
+    values[_BLEND[side][1]] = interpret(first, Meaning(values))
+    rows = [*(values[p] for p in _BLEND[side][:2]), interpret(row, Meaning(values))]
+    ends = end_derivatives(2, CUBIC - 1, _uniform(m))
+    second = sum(row * int(ends[2, i].p) / int(ends[2, i].q) for i, row in enumerate(rows))
+    return second - base
+
+
+@cache
+def _letters(side: Side, kind: Kind, parametric: bool, equal: bool) -> tuple[dict[Any, Any], Any]:
+    """Return what each letter stands for, in a field of rational functions, and alpha^4 R_ww.
+
+    With `equal` the first two spans of the base have one length.
+    """
+    spans = (_BASE_H[0], 2 * _BASE_H[0]) if equal else _BASE_H
+    start = pr.w_s if side == "start" else pr.t_s
+    knots = (pr.w_kr, w_kr1) if side == "start" else (pr.t_ks, t_ks1)
+    shape, base, last = _SHAPE[side], _BASE[side], _BLEND[side][2]
+    field = sp.QQ.frac_field(*base, last, *_BASE_H, shape, start)
+    of = {s: field.from_sympy(s) for s in (*base, last, shape, start)}
+    if kind != "any":
+        of[base[1]] = of[base[0]]
+    if kind == "straight":
+        of[base[2]] = of[base[0]]
+    if parametric:
+        of[shape] = field.one
+    of |= {knot: field.from_sympy(start + h) for knot, h in zip(knots, spans, strict=True)}
+    ends = end_derivatives(2, CUBIC - 1, spans)
+    second = sum((field.from_sympy(ends[2, i]) * of[base[i]] for i in range(3)), field.zero)
+    return of, of[shape] ** 4 * second
+
+
+_TANGENT = "differs from the formula within the tangent plane alone, where (16) leaves P_uu free"
+_UNSEEN = (
+    "with R_2 in the tangent plane too, as on a base that is straight across, every such row is in it: this record "
+    "does not see the formula; fig-6.g2, with a curved base, and cond-3.1 do"
+)
+
+
+def along_normal(formula: Formula, side: Side, kind: Kind) -> Formula:
+    """Return the formula with the mutants explained that change P_uu within the tangent plane only.
+
+    These are the ones that give the same where R_0 and R_1, so that P_0 and P_1 as well, have one coordinate x along
+    the normal, and R_2 too if the base is straight across.
+    """
+    x = sp.Symbol("x")
+    base = _BASE[side][: 3 if kind == "straight" else 2]
+    flat = dict.fromkeys((*base, *_BLEND[side][:2]), x)
+    wanted = formula.relation.rhs.subs(flat)
+    same = [m for m in mutants(formula) if sp.cancel(m.relation.rhs.subs(flat) - wanted) == 0]
+    reason = _UNSEEN if kind == "straight" else _TANGENT
+    return replace(formula, equivalent={mutant.text: reason for mutant in same})
+
+
+# As printed, and with the squares that the scan may have lost.
+_SECOND_ROWS = {"start": (pr.COND_3_1, pr.COND_3_1_SQUARES), "end": (pr.COND_3_2, pr.COND_3_2_SQUARES)}
+
+
+def _printed_derivatives(
+    rows: tuple[sp.Matrix, ...],
+    m: int,
+    spans: tuple[Any, Any],
+    alpha: Any = 1,
+    side: Side = "start",
+    squares: bool = False,
+) -> Any:
+    """Return P_u and P_uu at the contact when rows 1 and 2 are set as printed, k = k_r = 4, uniform u_i.
+
+    `rows` are R_0, R_1, R_2 (or S_0, S_1, S_2) as vectors, `spans` the distances of the first two inner knots of the
+    base from the contact; with `squares` both distances of row 2 are squared.
+    """
+    h = _uniform(m)
+    knots = (pr.w_s, pr.w_kr) if side == "start" else (pr.t_s, pr.t_ks)
+    values = {knots[0]: 0, knots[1]: spans[0], _SHAPE[side]: alpha}
+    own, next_row, _ = _BLEND[side]
+    first_row, second_row = (
+        at_figure(formula, m, parametric=False).relation.rhs
+        for formula in (_FIRST_ROW[side], _SECOND_ROWS[side][squares])
+    )
+    coordinates = []
+    for c in range(3):
+        at = values | {symbol: row[c] for symbol, row in zip(_BASE[side], rows, strict=True)} | {own: rows[0][c]}
+        first = first_row.subs(at)
+        second = second_row.subs(at | {next_row: first})
+        coordinates.append(end_derivatives(2, CUBIC - 1, h) * sp.Matrix([rows[0][c], first, second]))
+    return tuple(sp.Matrix([column[d] for column in coordinates]) for d in (1, 2))
+
+
+def _rows_across(kind: str) -> tuple[tuple[sp.Matrix, ...], sp.Matrix]:
+    """Return R_0, R_1, R_2 at a point of the contact curve, symbolic, and the direction of the contact curve."""
+    x = sp.symbols("x1 x2 y0 y1 y2 z2", real=True)
+    along = sp.Matrix([0, 1, 0])
+    if kind == "straight":  # planes, cylinders and cones along their rulings: all three on one line
+        direction = sp.Matrix(sp.symbols("d_x d_y d_z", real=True))
+        return (sp.zeros(3, 1), x[0] * direction, x[1] * direction), along
+    if kind == "plane":
+        return (sp.zeros(3, 1), sp.Matrix([x[0], x[3], 0]), sp.Matrix([x[1], x[4], 0])), along
+    return (sp.zeros(3, 1), sp.Matrix([x[0], 0, 0]), sp.Matrix([x[1], 0, x[5]])), along
+
+
+def _base_derivatives(rows: tuple[sp.Matrix, ...], spans: Any) -> tuple[sp.Matrix, sp.Matrix]:
+    matrix = end_derivatives(2, CUBIC - 1, spans)
+    return tuple(sum((matrix[d, i] * rows[i] for i in range(3)), sp.zeros(3, 1)) for d in (1, 2))
+
+
+def row_counterexample(side: Side, kind: str, m: int) -> Any:
+    """Return a search for the smallest rows at which P_uu misses along the normal, as printed and with squares.
+
+    The first two spans of the base are 1 and 2: with squares, equal ones give the right value.
+    """
+
+    def search() -> Counterexample | None:
+        rows, along = _rows_across(kind)
+        spans = (sp.Integer(1), sp.Integer(3))
+        seconds = [_printed_derivatives(rows, m, spans, side=side, squares=squares)[1] for squares in (False, True)]
+        r_first, r_second = _base_derivatives(rows, spans)
+        misses_by = [second - r_second for second in seconds]
+        symbols = sorted(set().union(*(row.free_symbols for row in rows)), key=str)
+
+        def misses(at: dict[Any, Any]) -> bool:
+            normal = r_first.subs(at).cross(along)
+            return not normal.is_zero_matrix and all(miss.subs(at).dot(normal) != 0 for miss in misses_by)
+
+        found = smallest_assignment(symbols, misses)
+        if found is None:
+            return None
+        base, parameter, start, shape = ("R", "w", "w_s", "alpha") if side == "start" else ("S", "t", "t_s", "beta")
+        spell = ", ".join(f"{base}_{i} = {tuple(row.subs(found))}" for i, row in enumerate(rows))
+        wrong, squared, true = (tuple(x.subs(found)) for x in (*seconds, r_second))
+        values = (("rows", spell), ("contact curve along", str(tuple(along))),
+                  (f"knots of {base} after {start}", f"{start} + 1, {start} + 3"), (shape, "1"),
+                  ("m", str(m)))  # fmt: skip
+        return Counterexample(
+            values, f"P_uu = {wrong}, with squares {squared}", f"{base}_{parameter}{parameter} = {true}"
+        )
+
+    return search
+
+
+def straight_counterexample(m: int) -> Any:
+    """Return the search for rows on a straight line at which the printed C2 conditions miss, natural ones first.
+
+    Rows at the Greville abscissae run along the line at constant speed; evenly spaced rows are what a user draws. The
+    first two spans have one length, where squares would give G2: C2 they do not give.
+    """
+
+    def search() -> Counterexample | None:
+        missed = []
+        for name, places in (("at the Greville abscissae, constant speed", (0, sp.Rational(1, 3), 1)),
+                             ("evenly spaced", (0, 1, 2))):  # fmt: skip
+            rows = tuple(sp.Matrix([place, 0, 0]) for place in places)
+            spans = (sp.Integer(1), sp.Integer(2))
+            printed, squared = (_printed_derivatives(rows, m, spans, squares=s)[1][0] for s in (False, True))
+            true = _base_derivatives(rows, spans)[1][0]
+            if true not in (printed, squared):
+                wrong = f"{printed}, with squares {squared}"
+                missed.append((f"R_0, R_1, R_2 = {', '.join(map(str, places))} ({name})", wrong, true))
+        if not missed:
+            return None
+        (label, printed, true), *others = missed
+        also = "; ".join(f"with {name} printed {wrong}, true {right}" for name, wrong, right in others)
+        first = str(sp.Rational(1, m - 2))
+        spans_of_r = ("knots of R after w_s", "w_s + 1, w_s + 2")
+        values = (("rows on a line", label), spans_of_r, ("u_1", first), ("alpha", "1"))
+        return Counterexample(values, f"P_uu = {printed}", f"R_ww = {true}", also=also)
+
+    return search

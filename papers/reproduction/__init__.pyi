@@ -1,0 +1,10 @@
+from .cad_judge import cad_verdict as cad_verdict
+from .comparison import Comparison as Comparison
+from .comparison import run as run
+from .measures import Measures as Measures
+from .study import Comparisons as Comparisons
+from .study import Drawing as Drawing
+from .study import Example as Example
+from .study import Finding as Finding
+from .study import Study as Study
+from .study import Table as Table

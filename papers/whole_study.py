@@ -1,0 +1,196 @@
+"""`semispline reproduce`: verify a paper, run its examples with every method, write pictures, numbers and a page."""
+
+from __future__ import annotations
+
+import importlib
+import os
+from collections.abc import Callable, Iterable
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from contextlib import AbstractContextManager
+from dataclasses import asdict
+from multiprocessing import get_context
+from pathlib import Path
+from typing import Any, TypeAlias
+
+from semispline.papers.baselines import Method, methods
+from semispline.papers.ledger import Ledger
+from semispline.papers.report import (
+    METHODS_NOTE,
+    STUDY_HEADING,
+    Results,
+    blends_table,
+    environment,
+    ledger_markdown,
+    ledger_record,
+    markdown_lines,
+    methods_table,
+    page,
+    text_lines,
+)
+from semispline.papers.reproduction import Comparison, Comparisons, Drawing, Example, Study, Table, run
+from semispline.solver.errors import FileError
+from semispline.solver.io import check_output, pyvista_module, to_text, write_text
+
+# (what is done, how many steps) -> a context that gives a function to be told of each step
+Progress: TypeAlias = Callable[[str, int], AbstractContextManager[Callable[[str], None]]]
+
+# Our own solver's two blends, of which the terminal shows every edge.
+_EDGE_BY_EDGE = {"C2": "semistructured-c2", "G2": "semistructured-reduced"}
+
+
+def reproduce(
+    paper: str,
+    out: str,
+    *,
+    decide: Callable[[str], Ledger],
+    show: Callable[[Ledger], None],
+    echo: Callable[[str], Any],
+    progress: Progress,
+) -> Ledger:
+    """Write the whole report of a paper into a folder.
+
+    Parameters
+    ----------
+    paper : str
+        A paper of this package, with a module `study`.
+    out : str
+        Folder, made where it is missing.
+    decide : callable
+        Name -> decided ledger.
+    show, echo : callables
+        Print the ledger, and a line.
+    progress : callable
+        Told of each step.
+
+    Raises
+    ------
+    FileError
+        The folder cannot be made or written to, or pyvista, which draws the pictures, is not installed.
+    """
+    folder = _folder(out)
+    # Found now rather than after minutes of work.
+    pyvista_module("reproduce")
+    study: Study = importlib.import_module(f"semispline.papers.{paper}.study").study()
+    ledger = decide(paper)
+    show(ledger)
+    results = collect(
+        ledger, study, folder, methods(study.methods), progress, f"semispline reproduce {paper} --out {out}"
+    )
+    for line in _spoken(results):
+        echo(line)
+    write_report(results, folder)
+    echo(f"wrote {folder / 'index.html'}, numbers.json, REPORT.md, report.md and the pictures beside it")
+    return ledger
+
+
+def collect(
+    ledger: Ledger, study: Study, folder: Path, chosen: Iterable[Method], progress: Progress, command: str
+) -> Results:
+    """Run the chosen methods on all examples, one after another so that times compare, and draw all pictures."""
+    chosen = tuple(chosen)
+    comparisons: dict[str, list[Comparison]] = {}
+    with progress("blending", len(study.examples) * len(chosen)) as advance:
+        for example in study.examples:
+            found = comparisons.setdefault(example.task.name, [])
+            for method in chosen:
+                advance(f"{example.task.name}, {method.name}")
+                found.append(run(example.task, method))
+    pictures = draw(study.drawings, folder, progress)
+    blends = blends_table(_edge_by_edge(study.examples, comparisons))
+    return Results(ledger, study, comparisons, blends, pictures, environment(), command)
+
+
+def draw(drawings: Iterable[Drawing], folder: Path, progress: Progress) -> dict[str, Path]:
+    """Draw pictures into files of their names, some at a time; return their paths."""
+    paths = {drawing.name: folder / f"{drawing.name}.png" for drawing in drawings}
+    # A fresh interpreter for each worker: forking a process with threads is not safe.
+    pool = ProcessPoolExecutor(min(os.cpu_count() or 1, 4, max(len(paths), 1)), mp_context=get_context("spawn"))
+    with progress("drawing", len(paths)) as advance, pool:
+        waiting = {pool.submit(drawing.draw, paths[drawing.name]): drawing.name for drawing in drawings}
+        for done in as_completed(waiting):
+            done.result()
+            advance(waiting[done])
+    return paths
+
+
+def write_report(results: Results, folder: Path) -> None:
+    """Write `numbers.json`, `REPORT.md` for a reader of the paper, `report.md` with every table, and `index.html`."""
+    write_text(folder / "numbers.json", to_text(numbers(results)))
+    write_text(folder / "REPORT.md", report_document(results))
+    write_text(folder / "report.md", "\n".join(markdown(results)))
+    write_text(folder / "index.html", page(results))
+
+
+def numbers(results: Results) -> dict[str, Any]:
+    """Return every number as the file has it."""
+    return {
+        "format": "semispline/1",
+        "kind": "reproduction",
+        "paper": results.ledger.paper.name,
+        "findings": [asdict(finding) for finding in results.study.findings(results.comparisons)],
+        "comparisons": [c.record() for found in results.comparisons.values() for c in found],
+        "tables": [asdict(table) for table in results.study.tables(results.comparisons)],
+        "ledger": ledger_record(results.ledger),
+        "environment": dict(results.environment),
+        "command": results.command,
+    }
+
+
+def markdown(results: Results) -> list[str]:
+    """Return the report in Markdown: findings, tables, ledger, machine."""
+    lines = [f"# {results.ledger.paper.title.rstrip('.')}", "", results.study.preface, "", "## What was found", ""]
+    lines += [f"- **{f.short}.** {f.detail}" for f in results.study.findings(results.comparisons)]
+    for table in results.study.tables(results.comparisons):
+        lines += ["", *markdown_lines(table)]
+    lines += ["## Examples and rivals", "", METHODS_NOTE, ""]
+    for example in results.study.examples:
+        lines += [*markdown_lines(methods_table(results.comparisons[example.task.name]))]
+        lines += [*(f"- {note}" for note in example.notes), ""]
+    lines += [*markdown_lines(results.blends), "## How this was made", "", f"`{results.command}`", ""]
+    lines += [f"- {name}: {text}" for name, text in results.environment.items()]
+    return [*lines, "", ledger_markdown(results.ledger)]
+
+
+def report_document(results: Results) -> str:
+    """Return what a reader of the paper wants to know: every claim decided, then what the study finds, and prior art.
+
+    Its copy in the paper's folder is what the last study said; numbers that depend on the machine are left out.
+    """
+    lines = [f"{STUDY_HEADING}: {results.ledger.paper.title.rstrip('.')}", "", results.study.preface, ""]
+    lines += [f"Every statement here was computed by `{results.command}`.", ""]
+    lines += [f"- **{f.short}.** {f.detail}" for f in results.study.findings(results.comparisons)]
+    lines += ["", "Prior art:", "", *(f"- {work}" for work in results.study.prior_art), ""]
+    return "\n".join([ledger_markdown(results.ledger), *lines])
+
+
+def _edge_by_edge(examples: Iterable[Example], comparisons: Comparisons) -> list[tuple[str, Comparison]]:
+    """Return the C2 and G2 blends of our own solver on every pair that is no figure of the paper."""
+    names = [e.task.name for e in examples if not e.task.name.startswith("figure-")]
+    return [
+        (contact, c)
+        for name in names
+        for contact, method in _EDGE_BY_EDGE.items()
+        for c in comparisons[name]
+        if c.method.name == method
+    ]
+
+
+def _spoken(results: Results) -> list[str]:
+    """Return what the terminal shows after the ledger."""
+    tables: list[Table] = [*results.study.tables(results.comparisons), results.blends]
+    lines = []
+    for table in tables:
+        lines += ["", table.title, *text_lines(table)]
+    lines += ["", "Found"]
+    lines += [f"- {finding.short}" for finding in results.study.findings(results.comparisons)]
+    return [*lines, ""]
+
+
+def _folder(out: str) -> Path:
+    folder = Path(out)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise FileError(f"{out}: cannot be made: {error.strerror or error}; give another folder") from error
+    check_output(folder / "index.html")
+    return folder

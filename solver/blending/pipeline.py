@@ -1,0 +1,442 @@
+"""The whole solve, from two bases to a checked blend: stages with input and output, one after the other."""
+
+from __future__ import annotations
+
+import reprlib
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, Literal, TypeAlias, cast, get_args
+
+import numpy as np
+
+from semispline.solver.arrays import FloatArray, real_number, require
+from semispline.solver.blending.gram import thin_plate_energy
+from semispline.solver.blending.problem import BlendProblem, ProblemOptions, VScale, make_problem
+from semispline.solver.blending.result import BlendResult
+from semispline.solver.blending.sides import Continuity, Side, make_side, matched_sides
+from semispline.solver.errors import ContactError, FoldError, OptionError
+from semispline.solver.judge import (
+    Base,
+    Contact,
+    Correspondence,
+    Crease,
+    Flip,
+    Regularity,
+    check_regular_edge,
+    correspond,
+    is_closed,
+    measure_contact,
+    measure_creases,
+    measure_regularity,
+    required_limits,
+    snapped_seam,
+)
+from semispline.solver.proof import Certificate, check_certificate
+from semispline.solver.splines import BSplineCurve, SemiStructuredSurface
+
+Method: TypeAlias = Literal["reduced", "casadi", "bfgs"]
+Shape: TypeAlias = float | Literal["free", "natural"]
+
+# A normal that turns this far between neighbouring samples has met a fold.
+FOLD_TURN = 90.0
+# An area element this far below its mean is as good as a fold.
+PINCH = 1e-3
+# A normal that turns this far across a knot of full multiplicity, in degrees, makes a crease: well below what CAD
+# systems take for tangent (0.01 and more), well above the rounding of a surface that is smooth there.
+SHARP = 1e-3
+_NAMED = 5
+# Energies have the fourth power of alpha^2 and of the box: far from any blend, and far from where floats end.
+_MOST_ALPHA = 1e15
+_MOST_BOX = 1e20
+
+
+def blend(
+    a: Base,
+    b: Base,
+    *,
+    continuity: Continuity | tuple[Continuity, Continuity] = "G2",
+    middle_curves: int = 1,
+    degree_u: int = 3,
+    method: Method = "reduced",
+    flip: Flip = "auto",
+    alpha: Shape | tuple[Shape, Shape] = "free",
+    box: tuple[float, float] = (1 / 8, 8.0),
+    v_scale: VScale = "paper",
+    u_knots: Sequence[float] | None = None,
+    middle_knots: Sequence[Sequence[float]] | None = None,
+    strict: bool = False,
+) -> BlendResult:
+    """Blend two B-spline surfaces with a semi-structured surface of least thin-plate energy.
+
+    Parameters
+    ----------
+    a, b : Base
+        Polynomial B-spline surfaces and the edges to be joined. Neither is changed.
+    continuity : {"C0", "C1", "C2", "G0", "G1", "G2"} or a pair of them
+        At a and at b.
+    middle_curves : int
+        Number of v-control curves between the three of each contact.
+    degree_u : int
+        Degree of the blend across, p = k - 1.
+    method : {"reduced", "casadi", "bfgs"}
+        How alpha and beta are found where contact is geometric: the proved global minimum, the constrained problem in
+        CasADi, or the paper's own search.
+    flip : {"auto", "yes", "no"}
+        Whether edge b runs against edge a; "auto" takes the way without a twist.
+    alpha : "free", "natural", a number, or a pair of these for a and b
+        Where contact is geometric: search alpha, take its natural size (mean gap over mean cross speed, for alpha^2),
+        or set alpha itself.
+    box : (float, float)
+        Admissible alpha^2 and beta^2, in units of their natural sizes.
+    v_scale : {"paper", "unit", "length"}
+        What (11) takes the length of the v-domain for: itself, 1, or mean contact length over mean gap. With the last
+        two the blend does not depend on the units of v nor on the order of the bases.
+    u_knots : sequence of float, optional
+        Inner knots of U instead of uniform ones.
+    middle_knots : sequence of sequences of float, optional
+        Inner knots of each middle curve, in v of a's edge, instead of the paper's rule.
+    strict : bool
+        Refuse a blend with warnings.
+
+    Returns
+    -------
+    BlendResult
+
+    Raises
+    ------
+    OptionError, EdgeError
+        An option or a base that cannot be used.
+    ComputationError
+        The solver failed.
+    ContactError
+        The referee found the contact worse than its limits.
+    FoldError
+        With `strict`: the blend folds or is creased.
+
+    Source: section 3 and equation (11) of the paper; contact conditions from `semispline.derivations.contact`.
+
+    Examples
+    --------
+    >>> from semispline.solver.splines.surfaces import BSplineSurface
+    >>> k = [0, 0, 1, 1]
+    >>> floor = BSplineSurface(1, 1, k, k, [[[0, 0, 0], [0, 1, 0]], [[1, 0, 0], [1, 1, 0]]])
+    >>> wall = BSplineSurface(1, 1, k, k, [[[2, 0, 1], [2, 1, 1]], [[2, 0, 2], [2, 1, 2]]])
+    >>> result = blend(Base(floor, "u1"), Base(wall, "u0"), middle_curves=0)
+    >>> result.surface.n_control_points, round(result.alpha2, 6), round(result.beta2, 6)
+    (12, 1.6875, 1.6875)
+    """
+    started = time.perf_counter()
+    if not isinstance(strict, bool):
+        raise OptionError(f"strict: found {strict!r}, expected True or False")
+    if not isinstance(method, str) or method not in get_args(Method):
+        raise OptionError(f"method: found {method!r}, expected one of {', '.join(get_args(Method))}")
+    stated = state_problem(
+        a,
+        b,
+        continuity=continuity,
+        middle_curves=middle_curves,
+        degree_u=degree_u,
+        flip=flip,
+        alpha=alpha,
+        box=box,
+        v_scale=v_scale,
+        u_knots=u_knots,
+        middle_knots=middle_knots,
+    )
+    problem, sides, frame, matched = stated.problem, stated.sides, stated.frame, stated.matched
+    pair = sides[0].continuity, sides[1].continuity
+    # The one or two numbers that are not linear, then everything that is.
+    found = _shape_parameters(problem, method)
+    surface = _surface(problem, found, sides, frame)
+    energy = thin_plate_energy(surface)
+    seconds = time.perf_counter() - started
+    # What came out, judged by code that knows nothing of the above.
+    contact_a, contact_b = _checked_contacts(a, b, surface, pair, matched, found)
+    if found.certificate is not None:
+        check_certificate(found.certificate)
+    seam = _seam(surface, problem)
+    regularity = measure_regularity(surface)
+    creases = measure_creases(surface)
+    warnings = _warnings(regularity, creases) + _bound_warnings(problem, found) + _seam_warning(a, b)
+    if strict and warnings:
+        raise FoldError(f"{'; '.join(warnings)}; try other middle curves, alpha='natural', or without strict")
+    return BlendResult(
+        surface=surface,
+        continuity=pair,
+        method=found.method,
+        energy=energy,
+        alpha2=None if sides[0].order == 0 else found.a,
+        beta2=None if sides[1].order == 0 else found.b,
+        alpha2_bounds=problem.bounds[0] if problem.free[0] else None,
+        beta2_bounds=problem.bounds[1] if problem.free[1] else None,
+        active_bounds=_active_bounds(problem, found),
+        flipped=matched.flipped,
+        seam_shift=matched.shift,
+        contact_a=contact_a,
+        contact_b=contact_b,
+        seam=seam,
+        regularity=regularity,
+        creases=creases,
+        warnings=warnings,
+        iterations=found.iterations,
+        status=found.status,
+        search_excess=found.search_excess,
+        kkt_residual=found.kkt_residual,
+        certificate=found.certificate,
+        proven_gap=found.proven_gap,
+        constraint_rank=found.constraint_rank,
+        seconds=seconds,
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class StatedProblem:
+    """A blend to be found, and the way back to the bases.
+
+    Attributes
+    ----------
+    problem : BlendProblem
+    sides : (Side, Side)
+        Both contacts in one parameter v, in model units.
+    frame : (ndarray of shape (3,), float)
+        Centre and size: the problem has coordinates (x - centre) / size.
+    matched : Correspondence
+        How edge b runs along edge a.
+    """
+
+    problem: BlendProblem
+    sides: tuple[Side, Side]
+    frame: tuple[FloatArray, float]
+    matched: Correspondence
+
+
+def state_problem(
+    a: Base,
+    b: Base,
+    *,
+    continuity: Continuity | tuple[Continuity, Continuity] = "G2",
+    middle_curves: int = 1,
+    degree_u: int = 3,
+    flip: Flip = "auto",
+    alpha: Shape | tuple[Shape, Shape] = "free",
+    box: tuple[float, float] = (1 / 8, 8.0),
+    v_scale: VScale = "paper",
+    u_knots: Sequence[float] | None = None,
+    middle_knots: Sequence[Sequence[float]] | None = None,
+) -> StatedProblem:
+    """State the problem that `blend` solves; arguments and errors are those of `blend`."""
+    require(a, "a", Base)
+    require(b, "b", Base)
+    pair = (continuity, continuity) if isinstance(continuity, str) else continuity
+    if not isinstance(pair, tuple | list) or len(pair) != 2:
+        raise OptionError(f"continuity: found {continuity!r}, expected one of C0..G2 or a pair of them")
+    options = ProblemOptions(
+        middle_curves,
+        degree_u,
+        _checked_shape(alpha),
+        _checked_box(box),
+        v_scale,
+        u_knots=u_knots,
+        middle_knots=middle_knots,
+    )
+    # The bases as the blend sees them: contact at w = 0, one parameter v, coordinates of size 1.
+    sides = make_side(a, pair[0], "base a"), make_side(b, pair[1], "base b")
+    matched = snapped_seam(a, b, correspond(a, b, flip))
+    sides = matched_sides(*sides, matched)
+    frame = _frame(*sides)
+    problem = make_problem(sides[0].moved(*frame), sides[1].moved(*frame), options)
+    return StatedProblem(problem, sides, frame, matched)
+
+
+@dataclass(frozen=True)
+class _Found:
+    """Shape parameters, and how they were found."""
+
+    a: float
+    b: float
+    method: str
+    iterations: int = 0
+    kkt_residual: float | None = None
+    certificate: Certificate | None = None
+    proven_gap: float | None = None
+    constraint_rank: tuple[int, int] | None = None
+    status: str | None = None
+    search_excess: float | None = None
+
+
+def _checked_box(box: object) -> tuple[float, float]:
+    """Return both ends of the box as floats."""
+    if not isinstance(box, tuple | list | np.ndarray) or len(box) != 2:
+        raise OptionError(f"box: found {reprlib.repr(box)}, expected (low, high)")
+    low, high = (real_number(end, f"box[{i}]", OptionError) for i, end in enumerate(box))
+    if not 1 / _MOST_BOX <= low <= high <= _MOST_BOX:
+        raise OptionError(f"box: found ({low:g}, {high:g}), expected {1 / _MOST_BOX:g} <= low <= high <= {_MOST_BOX:g}")
+    return low, high
+
+
+def _checked_shape(alpha: object) -> tuple[Shape, Shape]:
+    """Return "free", "natural" or alpha^2 for both sides."""
+    is_pair = isinstance(alpha, tuple | list) or (isinstance(alpha, np.ndarray) and alpha.ndim == 1)
+    pair = tuple(cast("Any", alpha)) if is_pair else (alpha, alpha)
+    if len(pair) != 2:
+        raise OptionError(f"alpha: found {len(pair)} values, expected one or a pair")
+    first, second = map(_checked_alpha, pair)
+    return first, second
+
+
+def _checked_alpha(value: object) -> Shape:
+    if isinstance(value, str):
+        if value in ("free", "natural"):
+            return cast("Shape", value)
+        raise OptionError(f"alpha: found {value!r}, expected free, natural or a positive number")
+    number = real_number(value, "alpha", OptionError)
+    if not 1 / _MOST_ALPHA <= number <= _MOST_ALPHA:
+        raise OptionError(f"alpha: found {number:g}, expected {1 / _MOST_ALPHA:g} to {_MOST_ALPHA:g}")
+    return number**2
+
+
+def _frame(a: Side, b: Side) -> tuple[FloatArray, float]:
+    """Centre and size of the control points that contact reads: the solve works in coordinates of size 1."""
+    points = np.concatenate([a.rows.reshape(-1, 3), b.rows.reshape(-1, 3)])
+    low, high = points.min(axis=0), points.max(axis=0)
+    return (low + high) / 2, float((high - low).max()) or 1.0
+
+
+def _shape_parameters(problem: BlendProblem, method: Method) -> _Found:
+    """Find alpha^2 and beta^2 of least energy; where both are fixed there is nothing to find."""
+    if not any(problem.free):
+        return _Found(*problem.start, method="linear")
+    if method == "reduced":
+        from semispline.solver.blending.reduced import solve_reduced
+
+        proved = solve_reduced(problem)
+        return _Found(proved.a, proved.b, method, certificate=proved.certificate, proven_gap=proved.gap)
+    if method == "casadi":
+        from semispline.solver.blending.nlp import solve_constrained
+
+        local = solve_constrained(problem)
+        return _Found(
+            local.a,
+            local.b,
+            method,
+            local.iterations,
+            local.kkt_residual,
+            constraint_rank=local.constraint_rank,
+            status=local.status,
+        )
+    from semispline.solver.blending.quasi_newton import solve_quasi_newton
+
+    rough = solve_quasi_newton(problem)
+    return _Found(rough.a, rough.b, method, rough.iterations, status=rough.status, search_excess=rough.excess)
+
+
+def _surface(
+    problem: BlendProblem, found: _Found, sides: tuple[Side, Side], frame: tuple[FloatArray, float]
+) -> SemiStructuredSurface:
+    """Set the prescribed rows anew from alpha and beta, solve for the free ones, and go back to model units."""
+    centre, size = frame
+    points = problem.control_points(found.a, found.b) * size + centre
+    pieces = np.split(points, problem.form.offsets[1:-1])
+    # The contact curves themselves are the bases' own, to the last bit.
+    pieces[0], pieces[-1] = sides[0].rows[0], sides[1].rows[0]
+    curves = [
+        BSplineCurve(row.degree, row.knots, piece, name=f"control_curves[{i}]")
+        for i, (row, piece) in enumerate(zip(problem.rows, pieces, strict=True))
+    ]
+    return SemiStructuredSurface(problem.form.u.degree, problem.form.u.knots, tuple(curves))
+
+
+def _shape_unknowns(problem: BlendProblem, found: _Found) -> list[tuple[str, float, float, float]]:
+    """Return name, value found and admissible ends of each shape parameter that was searched."""
+    return [
+        (name, value, *ends)
+        for name, is_free, value, ends in zip(
+            ("alpha2", "beta2"), problem.free, (found.a, found.b), problem.bounds, strict=True
+        )
+        if is_free
+    ]
+
+
+def _active_bounds(problem: BlendProblem, found: _Found) -> tuple[str, ...]:
+    active = []
+    for name, value, low, high in _shape_unknowns(problem, found):
+        # 1e-9: what the ways there and back between alpha and alpha^2 in natural units may round.
+        active += [f"{name} lower"] * (value <= low * (1 + 1e-9)) + [f"{name} upper"] * (value >= high * (1 - 1e-9))
+    return tuple(active)
+
+
+def _checked_contacts(
+    a: Base,
+    b: Base,
+    surface: SemiStructuredSurface,
+    continuity: tuple[Continuity, Continuity],
+    matched: Correspondence,
+    found: _Found,
+) -> tuple[Contact, Contact]:
+    """Let the referee measure both contacts, and refuse a result that misses its limits."""
+    contact_a = measure_contact(a, Base(surface, "u0"), correspondence=Correspondence(flipped=False))
+    contact_b = measure_contact(Base(surface, "u1"), b, correspondence=matched)
+    for name, base, contact, wanted, shape in (
+        ("a", a, contact_a, continuity[0], found.a),
+        ("b", b, contact_b, continuity[1], found.b),
+    ):
+        for measure, value, limit in required_limits(contact, wanted):
+            if np.isnan(value):
+                check_regular_edge(base)
+                raise ContactError(
+                    f"contact {name}: the blend is degenerate where it meets the base, its shape parameter is "
+                    f"{shape:.1e}; try method reduced, which keeps it admissible"
+                )
+            if not value <= limit:
+                raise ContactError(
+                    f"contact {name}: {measure} is {value:.3g}, expected at most {limit:.3g} for {wanted}; "
+                    "try fewer middle curves, or bases whose knots are not so close"
+                )
+    return contact_a, contact_b
+
+
+def _seam(surface: SemiStructuredSurface, problem: BlendProblem) -> Contact | None:
+    if problem.seam_order < 0:
+        return None
+    return measure_contact(Base(surface, "v1"), Base(surface, "v0"), flip="no")
+
+
+def _warnings(regularity: Regularity, creases: tuple[Crease, ...]) -> tuple[str, ...]:
+    """Return what a user should look at before the blend is used."""
+    found = []
+    sharpest = max((crease.angle_degrees for crease in creases), default=0.0)
+    # A turn that a crease explains is no fold.
+    if regularity.largest_turn_degrees - sharpest >= FOLD_TURN:
+        found.append(
+            f"the blend folds: its normal turns by {regularity.largest_turn_degrees:.0f} degrees between samples"
+        )
+    elif regularity.least_area_ratio < PINCH:
+        found.append(f"the blend is pinched: its area element falls to {regularity.least_area_ratio:.1e} of the mean")
+    sharp = [crease for crease in creases if crease.angle_degrees >= SHARP]
+    if sharp:
+        places = ", ".join(f"{crease.parameter} = {crease.at:g}" for crease in sharp[:_NAMED])
+        more = f" and {len(sharp) - _NAMED} more" if len(sharp) > _NAMED else ""
+        found.append(
+            f"the blend is creased at {places}{more}, by up to {sharpest:.2g} degrees: knots of full multiplicity, "
+            "across which the energy counts nothing"
+        )
+    return tuple(found)
+
+
+def _bound_warnings(problem: BlendProblem, found: _Found) -> tuple[str, ...]:
+    """Return a warning for each shape parameter outside of its bounds: method bfgs, the paper's own, knows none."""
+    return tuple(
+        f"{name} is {value:.3g}, outside of the admissible {low:.3g} to {high:.3g}: "
+        f"method {found.method} knows no bounds"
+        for name, value, low, high in _shape_unknowns(problem, found)
+        if not low <= value <= high
+    )
+
+
+def _seam_warning(a: Base, b: Base) -> tuple[str, ...]:
+    """Return a warning where one contact curve is closed and the other is open."""
+    if is_closed(a) == is_closed(b):
+        return ()
+    which = "a" if is_closed(a) else "b"
+    return (f"contact curve {which} is closed, the other is open: the blend is open along the seam of {which}",)

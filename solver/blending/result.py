@@ -1,0 +1,90 @@
+"""What a blend comes to: the surface, and everything that was measured of it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from semispline.solver.blending.sides import Continuity
+from semispline.solver.judge import Contact, Crease, Regularity
+from semispline.solver.proof import Certificate
+from semispline.solver.splines import SemiStructuredSurface
+
+
+@dataclass(frozen=True, eq=False)
+class BlendResult:
+    """A blend of two bases, with what was measured of it.
+
+    Attributes
+    ----------
+    surface : SemiStructuredSurface
+        u = 0 on a, u = 1 on b; the v-domain is that of a's edge.
+    continuity : (str, str)
+        Asked for and confirmed at a and at b.
+    method : str
+        "linear" where nothing but a linear solve was needed.
+    energy : float
+        Thin-plate energy (11) over [0, 1] x the v-domain, whatever `v_scale` was minimised.
+    alpha2, beta2 : float or None
+        Of (2.1) and (2.2), the bases in their own parameters; 1 for C1 and C2, None for C0 and G0.
+    alpha2_bounds, beta2_bounds : (float, float) or None
+        The admissible box; None where there is no such unknown. Method bfgs does not know it: see `warnings`.
+    active_bounds : tuple of str
+        Which bounds stopped the search, such as "alpha2 lower", or were passed by it (method bfgs).
+    flipped : bool
+        Whether edge b runs against edge a.
+    seam_shift : float
+        Closed contact curves: how far b was re-seamed, in b's own parameter, to face the seam of a.
+    contact_a, contact_b : Contact
+        Judged by the de Boor referee.
+    seam : Contact or None
+        Closed contact curves: how the blend's own edges v0 and v1 meet.
+    regularity : Regularity
+        How far the blend is from folding.
+    creases : tuple of Crease
+        Knots of full multiplicity, across which (11) counts nothing, and how far the normal turns there.
+    warnings : tuple of str
+        What a user should look at: folds, creases, shape parameters out of their bounds.
+    iterations : int
+        Of the nonlinear solver; 0 where there is none.
+    status : str or None
+        The nonlinear solver's own word on how it ended.
+    search_excess : float or None
+        How much more energy the search left than this blend has, as a fraction: `blend` sets the free rows anew from
+        the alpha and beta found; only for method bfgs.
+    kkt_residual : float or None
+        Largest entry of the gradient of the Lagrangian and of multiplier times slack, scaled; only for method casadi.
+    certificate : Certificate or None
+        Proof that no admissible alpha and beta have less energy, in coordinates of size 1; only for method reduced.
+    proven_gap : float or None
+        What the proof leaves open, as a fraction of the energy.
+    constraint_rank : (int, int) or None
+        Rank of the constraint Jacobian at the solution, and its number of rows; only for method casadi.
+    seconds : float
+        For the solve, without the final checks.
+    """
+
+    surface: SemiStructuredSurface
+    continuity: tuple[Continuity, Continuity]
+    method: str
+    energy: float
+    alpha2: float | None
+    beta2: float | None
+    alpha2_bounds: tuple[float, float] | None
+    beta2_bounds: tuple[float, float] | None
+    active_bounds: tuple[str, ...]
+    flipped: bool
+    seam_shift: float
+    contact_a: Contact
+    contact_b: Contact
+    seam: Contact | None
+    regularity: Regularity
+    creases: tuple[Crease, ...]
+    warnings: tuple[str, ...]
+    iterations: int
+    status: str | None
+    search_excess: float | None
+    kkt_residual: float | None
+    certificate: Certificate | None
+    proven_gap: float | None
+    constraint_rank: tuple[int, int] | None
+    seconds: float

@@ -1,0 +1,145 @@
+"""What a blend needs of one base: the contact, seen from the blend, with all orientation already undone."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Literal, TypeAlias, get_args
+
+import numpy as np
+
+from semispline.solver.arrays import FloatArray
+from semispline.solver.blending.closing import reseamed
+from semispline.solver.errors import EdgeError, OptionError
+from semispline.solver.generated import contact_numpy, shape_numpy
+from semispline.solver.judge import Base, Correspondence
+from semispline.solver.splines import Basis, BSplineCurve, BSplineSurface, affine_knots, elevate_curve, reversed_knots
+
+Continuity: TypeAlias = Literal["C0", "C1", "C2", "G0", "G1", "G2"]
+
+# Contact up to second order reads three control rows and two knot spans.
+_ROWS = 3
+
+
+@dataclass(frozen=True, eq=False)
+class Side:
+    """The contact of the blend with one base, which the blend leaves backwards.
+
+    Attributes
+    ----------
+    continuity : {"C0", "C1", "C2", "G0", "G1", "G2"}
+    degree : int
+        Degree of the base across the edge.
+    spans : (float, float)
+        Distances w_(degree+1) - w_s and w_(degree+2) - w_s from the edge, in the base's own parameter.
+    along : Basis
+        Degree and knots along the edge, in the parameter v of the blend.
+    rows : ndarray, shape (3, n, 3)
+        Control rows from the edge inwards; a base with fewer rows repeats its last one, which contact does not read.
+    """
+
+    continuity: Continuity
+    degree: int
+    spans: tuple[float, float]
+    along: Basis
+    rows: FloatArray
+
+    @property
+    def order(self) -> int:
+        """Order of contact: how many derivatives agree."""
+        return int(self.continuity[1])
+
+    @property
+    def has_shape_parameter(self) -> bool:
+        """Whether a = alpha^2 is free: geometric contact beyond position."""
+        return self.continuity in ("G1", "G2")
+
+    def contact_rows(self, a: float, blend_degree: int, blend_spans: tuple[float, float]) -> FloatArray:
+        """Return the rows P_0 .. P_order of the blend that the contact prescribes, shape (order + 1, n, 3).
+
+        Source: generated from `semispline.derivations.contact`.
+        """
+        p, q = blend_degree, self.degree
+        if self.order == 0:
+            matrix = np.ones((1, 1))
+        elif self.order == 1:
+            matrix = contact_numpy.contact_rows_1(a, p, blend_spans[0], q, self.spans[0])
+        else:
+            matrix = contact_numpy.contact_rows_2(a, p, *blend_spans, q, *self.spans)
+        return np.asarray(np.einsum("ij,jnd->ind", matrix, self.rows[: self.order + 1]))
+
+    def row_powers(self, centre: float, blend_degree: int, blend_spans: tuple[float, float]) -> FloatArray:
+        """Return the prescribed rows as a polynomial in a - centre, shape (order + 1 powers, order + 1, n, 3).
+
+        Only where contact is geometric, order 1 or 2. Source: generated from `semispline.derivations.shape`.
+        """
+        p, q, order = blend_degree, self.degree, self.order
+        if order == 1:
+            matrix = shape_numpy.contact_row_powers_1(centre, p, blend_spans[0], q, self.spans[0])
+        else:
+            matrix = shape_numpy.contact_row_powers_2(centre, p, *blend_spans, q, *self.spans)
+        powers = matrix.reshape(order + 1, order + 1, order + 1)
+        return np.asarray(np.einsum("kij,jnd->kind", powers, self.rows[: order + 1]))
+
+    def moved(self, centre: FloatArray, size: float) -> Side:
+        """Return the same side in coordinates (x - centre) / size."""
+        return replace(self, rows=(self.rows - centre) / size)
+
+
+def make_side(base: Base, continuity: Continuity, name: str = "base") -> Side:
+    """Read the contact of `base`, in the base's own parameter along its edge; messages call it `name`.
+
+    Raises
+    ------
+    EdgeError
+        The base is rational or semi-structured.
+    OptionError
+        The continuity is not one of the six.
+    """
+    if continuity not in get_args(Continuity):
+        raise OptionError(f"continuity: found {continuity!r}, expected one of {', '.join(get_args(Continuity))}")
+    surface = base.surface
+    if not isinstance(surface, BSplineSurface):
+        raise EdgeError(f"{name}: a semi-structured surface, expected a B-spline surface; convert it with to_bspline()")
+    # Equal weights cancel: such a surface is polynomial.
+    if surface.weights is not None and np.ptp(surface.weights) > 0:
+        raise EdgeError(
+            f"{name}: rational, but only polynomial B-spline surfaces are blended; approximate it without weights"
+        )
+    net = surface.control_points
+    across, along = (surface.degree_u, surface.knots_u), (surface.degree_v, surface.knots_v)
+    if base.edge[0] == "v":
+        net, across, along = net.transpose(1, 0, 2), along, across
+    degree, knots = across
+    if base.edge[1] == "1":
+        net, steps = net[::-1], knots[-1] - knots[::-1]
+    else:
+        steps = knots - knots[0]
+    rows = net[[min(i, len(net) - 1) for i in range(_ROWS)]]
+    spans = (float(steps[degree + 1]), float(steps[min(degree + 2, len(steps) - 1)]))
+    return Side(continuity, degree, spans, Basis(*along), rows)
+
+
+def matched_sides(a: Side, b: Side, matched: Correspondence) -> tuple[Side, Side]:
+    """Bring both sides to one parameter v, that of a, and to one degree along it; all exact up to rounding.
+
+    Side b is re-seamed and turned round as `matched` says; the lower degree is elevated.
+    """
+    along, rows = b.along, b.rows
+    if matched.shift:
+        along, rows = reseamed(along, rows, matched.shift)
+    knots = along.knots
+    if matched.flipped:
+        rows, knots = rows[:, ::-1], reversed_knots(knots)
+    knots = affine_knots(knots, float(a.along.knots[0]), float(a.along.knots[-1]))
+    b = replace(b, along=Basis(along.degree, knots), rows=rows)
+    degree = max(a.along.degree, b.along.degree)
+    return _elevated(a, degree), _elevated(b, degree)
+
+
+def _elevated(side: Side, degree: int) -> Side:
+    if side.along.degree == degree:
+        return side
+    curves = [elevate_curve(BSplineCurve(side.along.degree, side.along.knots, row), degree) for row in side.rows]
+    return replace(
+        side, along=Basis(degree, curves[0].knots), rows=np.stack([curve.control_points for curve in curves])
+    )

@@ -1,0 +1,1 @@
+from .files import write_c as write_c

@@ -1,0 +1,176 @@
+"""C99 for one blend problem, written by CasADi.
+
+Always the constrained problem as `blending.nlp` states it, with exact derivatives. Where contact is linear also the
+whole solve: control rows of the bases in, control points of the blend out. The matrix of that map is dense, so the code
+carries the sparse Cholesky factor of the stationarity system instead, as constants, and solves with it: its size is
+linear in the number of control points, and nothing is factorised, allocated or can fail when it runs.
+"""
+
+from __future__ import annotations
+
+import tempfile
+from pathlib import Path
+from typing import Any
+
+import casadi as ca
+import numpy as np
+
+from semispline.solver.blending import (
+    ConstrainedProblem,
+    StatedProblem,
+    casadi_matrix,
+    constrained_problem,
+    contact_rows,
+    state_problem,
+)
+from semispline.solver.c_export.readme import readme
+from semispline.solver.io import check_folder, read_problem, read_surfaces, write_texts
+from semispline.solver.judge import Base
+
+NAME = "blend"
+# Options of `blend` that change how a problem is solved and judged, not the problem.
+_OF_THE_SOLVE = ("method", "strict")
+_NOTICE = """\
+/* Written by `semispline generate --c`. Do not edit: change the problem and generate again.
+   How to call it: README.md. */
+"""
+
+
+def write_c(folder: str | Path, problem_file: str | Path) -> list[Path]:
+    """Write C for a stored blend problem into a folder, made if missing; all files or none.
+
+    Returns
+    -------
+    list of Path
+        What was written.
+
+    Raises
+    ------
+    InputError
+        A file, an option or a base that cannot be used.
+    ComputationError
+        As `c_files`.
+    """
+    check_folder(folder)
+    stored = read_problem(problem_file)
+    bases = [stored.a, stored.b]
+    # Both at once: surfaces of different files come in one unit.
+    specs = [base for base in bases if isinstance(base, str)]
+    read = iter(read_surfaces(specs) if specs else [])
+    surfaces = [next(read).surface if isinstance(base, str) else base for base in bases]
+    options = {name: value for name, value in stored.options.items() if name not in _OF_THE_SOLVE}
+    edges: list[Any] = [stored.edge_a, stored.edge_b]
+    a, b = (Base(surface, edge) for surface, edge in zip(surfaces, edges, strict=True))
+    return write_texts(folder, c_files(state_problem(a, b, **options)))
+
+
+def c_files(stated: StatedProblem) -> dict[str, str]:
+    """Return name and text of each file: blend.c, blend.h and README.md, which says how to call what is in them.
+
+    Parameters
+    ----------
+    stated : StatedProblem
+        As `state_problem` makes it.
+
+    Raises
+    ------
+    ComputationError
+        The stationarity system cannot be trusted.
+
+    Examples
+    --------
+    >>> from semispline import Base, BSplineSurface
+    >>> from semispline.solver.blending.pipeline import state_problem
+    >>> k = [0, 0, 1, 1]
+    >>> floor = BSplineSurface(1, 1, k, k, [[[0, 0, 0], [0, 1, 0]], [[1, 0, 0], [1, 1, 0]]])
+    >>> wall = BSplineSurface(1, 1, k, k, [[[2, 0, 1], [2, 1, 1]], [[2, 0, 2], [2, 1, 2]]])
+    >>> files = c_files(state_problem(Base(floor, "u1"), Base(wall, "u0"), continuity="C2"))
+    >>> sorted(files), "int blend_solve(" in files["blend.c"]
+    (['README.md', 'blend.c', 'blend.h'], True)
+    """
+    nlp = constrained_problem(stated.problem)
+    functions = c_functions(stated, nlp)
+    generator = ca.CodeGenerator(f"{NAME}.c", {"with_header": True})
+    for function in functions:
+        generator.add(function)
+    with tempfile.TemporaryDirectory() as folder:
+        generator.generate(folder + "/")
+        source, header = (Path(folder, f"{NAME}.{suffix}").read_text(encoding="utf-8") for suffix in "ch")
+    return {
+        f"{NAME}.c": _NOTICE + source,
+        f"{NAME}.h": f"{_NOTICE}#ifndef BLEND_H\n#define BLEND_H\n{header}#endif\n",
+        "README.md": readme(stated, nlp, functions),
+    }
+
+
+def c_functions(stated: StatedProblem, nlp: ConstrainedProblem) -> list[ca.Function]:
+    """Return the functions that become C, each with named inputs and outputs."""
+    x, lam_f, lam_g = nlp.x, ca.MX.sym("lam_f"), ca.MX.sym("lam_g", nlp.g.shape[0])
+    functions = [
+        _function("start", [], [nlp.start, nlp.lower, nlp.upper], [], ["x", "lower", "upper"]),
+        _function("objective", [x], [nlp.f], ["x"], ["f"]),
+        _function("gradient", [x], [ca.gradient(nlp.f, x)], ["x"], ["df"]),
+        _function("constraints", [x], [nlp.g], ["x"], ["g"]),
+        _function("jacobian", [x], [ca.jacobian(nlp.g, x)], ["x"], ["dg"]),
+        _function(
+            "hessian", [x, lam_f, lam_g], [nlp.hessian(x, [], lam_f, lam_g)], ["x", "lam_f", "lam_g"], ["hessian"]
+        ),
+        _function("points", [x], [_points(stated, nlp)], ["x"], ["points"]),
+    ]
+    if not any(stated.problem.free):
+        given = [ca.DM(side.rows[: side.order + 1].reshape(-1, 3)).T for side in stated.sides]
+        rows = [ca.MX.sym("rows", points.sparsity()) for points in given]
+        functions += [
+            _function("contact", [], given, [], ["a", "b"]),
+            _function("solve", rows, [_solve(stated, *rows)], ["a", "b"], ["points"]),
+        ]
+    return functions
+
+
+def _function(
+    name: str, inputs: list[Any], outputs: list[Any], names_in: list[str], names_out: list[str]
+) -> ca.Function:
+    return ca.Function(f"{NAME}_{name}", inputs, [ca.MX(output) for output in outputs], names_in, names_out)
+
+
+def _points(stated: StatedProblem, nlp: ConstrainedProblem) -> Any:
+    """Control points in model units, (3, N), from the unknowns of the constrained problem."""
+    n = stated.problem.form.offsets[-1]
+    centre, size = stated.frame
+    return ca.reshape(nlp.x[: 3 * n], n, 3).T * size + ca.repmat(ca.DM(centre), 1, n)
+
+
+def _solve(stated: StatedProblem, a: Any, b: Any) -> Any:
+    """Control points of least energy, (3, N), from the rows of both bases, each (3, rows times n)."""
+    problem = stated.problem
+    form, system = problem.form, problem.free_system
+    # Asking for the points that Python finds refuses a system that cannot be trusted.
+    problem.control_points(*problem.start)
+    n_rows = len(form.rows)
+    points: list[Any] = [None] * n_rows
+    for (side, order, spans), given, value in zip(problem.contacts, (a, b), problem.start, strict=True):
+        base = [row.T for row in ca.horzsplit(given, side.along.size)]
+        for i, row in zip(order, contact_rows(side, value, form.u.degree, spans, base), strict=False):
+            points[i] = row
+    if system.size:
+        # Around the first point of a, so that a model far from the origin loses no digits.
+        centre = a[:, 0].T
+        right = []
+        for i in problem.free_rows:
+            terms = [
+                ca.mtimes(casadi_matrix(block.tocsc()), points[j] - ca.repmat(centre, form.rows[j].size, 1))
+                for (row, j), block in system.blocks.items()
+                if row == i and j not in problem.free_rows
+            ]
+            right.append(-sum(terms[1:], terms[0]))
+        z = ca.DM.eye(system.size) if system.z is None else casadi_matrix(system.z.tocsc())
+        # Sorting, and Z where closed rows stay smooth, in one constant matrix.
+        z = z[:, system.order.tolist()]
+        # Upper triangular R with R'R = matrix, sparse: the order makes the matrix banded.
+        root = ca.MX(ca.chol(casadi_matrix(system.matrix)))
+        y = ca.solve(root, ca.solve(root.T, ca.mtimes(z.T, ca.vertcat(*right))))
+        free = ca.mtimes(z, y) + ca.repmat(centre, system.size, 1)
+        ends = np.cumsum([0, *(form.rows[i].size for i in problem.free_rows)]).tolist()
+        for i, row in zip(problem.free_rows, ca.vertsplit(free, ends), strict=True):
+            points[i] = row
+    return ca.vertcat(*points).T

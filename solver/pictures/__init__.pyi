@@ -1,0 +1,9 @@
+from .plotting import BASE_COLOR as BASE_COLOR
+from .plotting import BLEND_COLOR as BLEND_COLOR
+from .plotting import CURVE_COLORS as CURVE_COLORS
+from .plotting import PALETTE as PALETTE
+from .plotting import check_picture as check_picture
+from .plotting import render as render
+from .viewer import model as model
+from .viewer import viewer_html as viewer_html
+from .viewer import viewer_script as viewer_script

@@ -1,0 +1,79 @@
+"""What the evaluation of every spline shares: checked parameters, local bases, the quotient rule."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import comb
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from semispline.solver.arrays import FloatArray, is_whole, real_array
+from semispline.solver.errors import InputError, OptionError
+from semispline.solver.splines.knots import MERGE_TOLERANCE, basis_matrix
+
+
+def domain_of(knots: FloatArray) -> tuple[float, float]:
+    """Return the range of a clamped vector."""
+    return float(knots[0]), float(knots[-1])
+
+
+def checked_parameters(x: ArrayLike, knots: FloatArray, name: str) -> FloatArray:
+    """Return parameters as an array, shape (K,), refused outside the domain.
+
+    One that is outside by no more than 1e-12 of the domain means the end.
+    """
+    array = np.atleast_1d(real_array(x, name, InputError))
+    if array.ndim != 1:
+        raise InputError(f"{name}: {array.ndim} dimensions, expected a one-dimensional array of parameters")
+    start, end = domain_of(knots)
+    tolerance = MERGE_TOLERANCE * (end - start)
+    outside = ~((array >= start - tolerance) & (array <= end + tolerance))
+    if outside.any():
+        i = int(np.argmax(outside))
+        raise InputError(f"{name}[{i}]: found {array[i]}, expected a parameter in [{start}, {end}]")
+    return np.asarray(np.clip(array, start, end))
+
+
+def point_parameters(
+    u: ArrayLike, v: ArrayLike, knots_u: FloatArray, knots_v: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Return the parameters of points, shapes (K,) and (K,); a single value goes with each of the other."""
+    uu, vv = checked_parameters(u, knots_u, "u"), checked_parameters(v, knots_v, "v")
+    if len(uu) != len(vv) and 1 not in (len(uu), len(vv)):
+        raise InputError(f"v: {len(vv)} parameters, expected as many as u has, {len(uu)}, or one")
+    uu, vv = np.broadcast_arrays(uu, vv)
+    return uu, vv
+
+
+def check_orders(**orders: int) -> None:
+    """Refuse orders of a derivative that are not whole numbers of at least 0."""
+    for name, order in orders.items():
+        if not is_whole(order) or order < 0:
+            raise OptionError(f"{name}: found {order!r}, expected an order of at least 0")
+
+
+def local_basis(degree: int, knots: FloatArray, x: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Values of the degree + 1 basis functions that live at each x, and their indices, shapes (K, degree + 1)."""
+    matrix = basis_matrix(degree, knots, x)
+    shape = (len(x), degree + 1)
+    return matrix.data.reshape(shape), matrix.indices.reshape(shape)
+
+
+def quotient(homogeneous: Callable[[int, int], FloatArray], du: int, dv: int) -> FloatArray:
+    """Return derivative (du, dv) of X / w from the derivatives of (X, w), by the product rule on X = w S."""
+    raw = {(a, b): homogeneous(a, b) for a in range(du + 1) for b in range(dv + 1)}
+    weight = {order: np.ascontiguousarray(value[..., 3]) for order, value in raw.items()}
+    result = np.empty((*weight[0, 0].shape, 3))
+    # One coordinate after the other: an inner loop of length 3 would cost more than the arithmetic.
+    for d in range(3):
+        known: dict[tuple[int, int], FloatArray] = {}
+        for a, b in raw:
+            value = raw[a, b][..., d]
+            for i in range(a + 1):
+                for j in range(b + 1):
+                    if i or j:
+                        value = value - comb(a, i) * comb(b, j) * weight[i, j] * known[a - i, b - j]
+            last = result[..., d] if (a, b) == (du, dv) else None
+            known[a, b] = np.divide(value, weight[0, 0], out=last)
+    return result

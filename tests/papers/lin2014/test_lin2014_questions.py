@@ -1,0 +1,253 @@
+"""Checks that have no formula to perturb: each turns when the object that it is about is perturbed."""
+
+from fractions import Fraction
+
+import pytest
+import sympy as sp
+
+from semispline.papers.ledger.exact import spline_basis
+from semispline.papers.ledger.verification import decide
+from semispline.papers.lin2014 import printed as pr
+from semispline.papers.lin2014.checks import blending as blending_checks
+from semispline.papers.lin2014.checks import contact as contact_checks
+from semispline.papers.lin2014.checks import energy as energy_checks
+from semispline.papers.lin2014.checks import geometry as geometry_checks
+from semispline.papers.lin2014.checks import normal as normal_checks
+from semispline.papers.lin2014.checks import objective as objective_checks
+from semispline.papers.lin2014.checks import property as property_checks
+from semispline.papers.lin2014.checks import quality as quality_checks
+from semispline.papers.lin2014.checks import spline as spline_checks
+from semispline.papers.lin2014.claims import appendix as claims_appendix
+from semispline.papers.lin2014.claims import section_2 as claims_2_definition
+from semispline.papers.lin2014.claims import section_3 as claims_3_blending
+from semispline.papers.lin2014.claims import section_3_conditions as claims_3_conditions
+from semispline.papers.lin2014.claims import section_4 as claims_4_implementation
+
+RECORDS = (claims_2_definition, claims_3_blending, claims_3_conditions, claims_4_implementation, claims_appendix)
+MODULES = (
+    *(blending_checks, contact_checks, energy_checks, geometry_checks, normal_checks),
+    *(objective_checks, property_checks, quality_checks, spline_checks),
+)
+CLAIMS = {claim.id: claim for module in RECORDS for claim in module.CLAIMS}
+
+
+def questions(claim):
+    """Return the parts without a formula, of readings and correction."""
+    return [part for part in claim.parts + claim.correction_parts if part.formula is None]
+
+
+def doubled_basis(knots):
+    """Return twice the basis."""
+    right = spline_basis(knots)
+    return lambda *arguments: 2 * right(*arguments)
+
+
+def basis_without_slope(knots):
+    """Return the functions themselves for their derivatives."""
+    right = spline_basis(knots)
+    return lambda i, order, x, name, derivative=0: right(i, order, x, name)
+
+
+def bent(order, knots, points, x):
+    """Evaluate nothing that is linear in the points."""
+    return points[0] * points[0] * x + points[-1]
+
+
+def saddle():
+    return sp.Symbol("P_uu") ** 2 - sp.Symbol("P_vv") ** 2
+
+
+def first_of(order, *vectors):
+    return vectors[0]
+
+
+SADDLE = (objective_checks, "thin_plate_density", saddle)
+# Least at a = gap - 3/2, so that plates that are close do not join.
+PLATES = (
+    energy_checks,
+    "end_energy",
+    lambda k, m, data: (data[1] - data[3] + Fraction(3, 2)) ** 2 + (data[4] - 1) ** 2,
+)
+BENT = (property_checks, "de_boor", bent)
+# Record, which of its questions -> what is replaced where, by what.
+PERTURBED = {
+    ("def-1", 0): [(property_checks, "spline_basis", doubled_basis)],
+    ("sec-2.different-vectors", 0): [(property_checks, "weights", lambda *_: [Fraction(2)])],
+    ("sec-1.generalisation", 0): [BENT],
+    ("sec-2.evaluation-classical", 0): [BENT],
+    ("sec-2.convex-hull", 0): [
+        (property_checks, "spline_basis", doubled_basis),
+        (property_checks, "partition_residuals", lambda *_: [sp.Poly(1, sp.Symbol("x"))]),
+        (property_checks, "least_bernstein_coefficient", lambda *_: -1),
+    ],
+    ("sec-2.affine-invariance", 0): [(spline_checks, "de_boor", bent)],
+    ("sec-2.localness", 0): [
+        (property_checks, "supports", lambda degree, knots: [tuple(range(degree, 9))] * (len(knots) - degree - 1)),
+        (property_checks, "_lower_function", lambda j, order, span: sp.Symbol(f"N_{j}")),
+        (property_checks, "weights", lambda sample, u, v: [Fraction(1)] * sum(sample.sizes)),
+    ],
+    ("sec-2.continuity-control", 0): [(property_checks, "contact_orders", lambda *_: [7])],
+    ("sec-2.continuity-control", 1): [(property_checks, "_jump", lambda vector: sp.Integer(0))],
+    ("sec-2.transformation", 0): [(property_checks, "union", first_of)],
+    ("sec-2.derivatives-classical", 0): [(property_checks, "spline_basis", basis_without_slope)],
+    ("sec-2.derivatives-hard", 0): [(property_checks, "contained", lambda *_: True)],
+    ("sec-2.derivatives-hard", 1): [(property_checks, "union", first_of)],
+    ("sec-3.contact-knots", 0): [
+        (blending_checks, "de_boor", bent),
+        (blending_checks, "end_derivatives", lambda *_: sp.ones(3)),
+    ],
+    ("sec-3.not-classical", 0): [(blending_checks, "contained", lambda *_: True)],
+    ("sec-3.thin-plate", 0): [(objective_checks, "thin_plate_density", lambda: sp.Integer(0))],
+    ("eq-11", 0): [(energy_checks, "gram_matrix", lambda derivative, one, other: sp.eye(one.size))],
+    ("eq-12", 0): [SADDLE],
+    ("eq-12", 1): [PLATES],
+    ("sec-3.three-curves", 0): [(blending_checks, "contact_rows", lambda *_: sp.eye(3))],
+    ("sec-1.fairness", 0): [(blending_checks, "PRINTED_PAIRS", {"one": ("fig-5.first", "fig-5.first")})],
+    ("sec-1.fairness", 1): [(energy_checks, "middle_knot_energies", lambda: (sp.Integer(1), sp.Integer(2)))],
+    ("sec-1.fairness", 2): [(blending_checks, "union", first_of)],
+    ("sec-3.averaging", 0): [
+        (blending_checks, "merged", lambda name: (Fraction(3, 4), Fraction(1, 2), Fraction(1, 4)))
+    ],
+    ("sec-3.sides", 0): [(pr, "COND_2_1", pr.COND_2_2)],
+    ("sec-3.sufficient-g1", 0): [
+        (geometry_checks, "tangent_coordinates", lambda vector: (1, 1)),
+        (geometry_checks, "_regular", lambda patch: True),
+    ],
+    ("sec-3.sufficient-g2", 1): [
+        (geometry_checks, "tangent_coordinates", lambda vector: (1, 1)),
+        (geometry_checks, "_slope_and_mixed", lambda: (sp.zeros(3, 1), sp.zeros(3, 1))),
+        (geometry_checks, "special_conditions", lambda order: (0, *[sp.Symbol("R_w")] * order)),
+    ],
+    ("sec-4.no-middle-curve", 0): [
+        (blending_checks, "contact_matrix", lambda *_: sp.ones(6)),
+        (blending_checks, "set_rows", lambda order: (1, pr.m - 1)),
+    ],
+    ("sec-4.normal-equation", 0): [SADDLE],
+    ("sec-4.c1-similarly", 0): [SADDLE],
+    ("eq-14", 0): [(energy_checks, "printed_system", lambda: (sp.eye(5), sp.eye(5)))],
+    ("eq-14", 1): [
+        (energy_checks, "_integral", lambda *_: sp.Integer(1)),
+        (objective_checks, "end_derivatives", lambda *_: sp.ones(3)),
+    ],
+    ("sec-4.unconstrained", 0): [PLATES],
+}
+# Its object is the list of parts of its own record.
+BY_HAND = {("sec-3.sufficient-g2", 0)}
+
+
+def clear_caches():
+    for module in MODULES:
+        for value in vars(module).values():
+            if hasattr(value, "cache_clear"):
+                value.cache_clear()
+
+
+@pytest.fixture
+def fresh_caches():
+    """Start from nothing, and leave nothing behind that was computed from a perturbed object."""
+    clear_caches()
+    yield
+    clear_caches()
+
+
+@pytest.fixture(scope="module")
+def answers():
+    """Return what each question comes to as it is."""
+    return {(name, n): truths(part) for name, claim in CLAIMS.items() for n, part in enumerate(questions(claim))}
+
+
+def truths(part):
+    return [case.true for case in part.check.cases(None)]
+
+
+def test_every_question_of_these_records_is_perturbed():
+    asked = {(name, n) for name, claim in CLAIMS.items() for n, _ in enumerate(questions(claim))}
+    assert asked == set(PERTURBED) | BY_HAND
+
+
+@pytest.mark.parametrize(
+    ("place", "module", "name", "wrong"),
+    [(place, *change) for place, changes in PERTURBED.items() for change in changes],
+    ids=lambda value: value if isinstance(value, str) else None,
+)
+def test_a_question_turns_when_its_object_is_perturbed(place, module, name, wrong, answers, monkeypatch, fresh_caches):
+    identifier, n = place
+    monkeypatch.setattr(module, name, wrong)
+    assert truths(questions(CLAIMS[identifier])[n]) != answers[place]
+
+
+def test_a_missing_part_of_the_corrected_g2_conditions_is_noticed():
+    parts = CLAIMS["sec-3.sufficient-g2"].correction_parts
+    formulas = tuple(part.formula for part in parts if part.formula is not None)
+    assert all(case.true for case in claims_3_conditions.set_rows_cases(formulas))
+    for missing in formulas:
+        left = tuple(formula for formula in formulas if formula is not missing)
+        assert [case.true for case in claims_3_conditions.set_rows_cases(left)].count(False) == 1
+    # The check of the record sees just the formulas that stand beside it.
+    assert len(formulas) == 6
+    (question, _) = questions(CLAIMS["sec-3.sufficient-g2"])
+    assert question.check.cases.__closure__[0].cell_contents.args[0] == formulas
+
+
+@pytest.mark.parametrize(("order", "formula"), [(1, pr.EQ_15), (2, pr.EQ_16)])
+def test_necessity_is_proved_for_any_surfaces(order, formula, monkeypatch):
+    """Without the part on necessity, or with wrong coordinates in the tangent plane, this is red."""
+    check = geometry_checks.general_check(order)
+    name = f"necessity, any R and P: some p_{order}, q_{order}"
+
+    def found():
+        return next(case.true for case in check.cases(formula) if case.label.startswith(name))
+
+    assert found()
+    right = geometry_checks.tangent_coordinates
+    monkeypatch.setattr(geometry_checks, "tangent_coordinates", lambda vector: right(vector)[::-1])
+    assert not found()
+
+
+@pytest.mark.parametrize(("order", "formula", "name"), [(1, pr.EQ_15, "P_u x P_v"), (2, pr.EQ_16, "the forms agree")])
+def test_sufficiency_is_proved_for_any_surfaces(order, formula, name):
+    """A condition that asks for something else does not suffice."""
+    check = geometry_checks.general_check(order)
+
+    def found(given):
+        return next(c.true for c in check.cases(given) if c.label.startswith("sufficiency") and name in c.label)
+
+    wrong = pr.Formula(formula.relation.xreplace({pr.R_ww: pr.R_wv, pr.R_w: 2 * pr.R_w}), formula.variables)
+    assert (found(formula), found(wrong)) == (True, False)
+
+
+def test_tangent_coordinates_at_numbers():
+    """By hand: 3 R_w - 2 R_v + 5 N for R_w = (1, 2, 0), R_v = (0, 1, 1)."""
+    r_w, r_v = sp.Matrix([1, 2, 0]), sp.Matrix([0, 1, 1])
+    vector = 3 * r_w - 2 * r_v + 5 * r_w.cross(r_v)
+    at = {}
+    for letter, value in ((pr.R_w, r_w), (pr.R_v, r_v)):
+        at |= dict(zip(sp.symbols(f"{letter}_x:z"), value, strict=True))
+    assert [x.subs(at) for x in geometry_checks.tangent_coordinates(vector)] == [3, -2]
+
+
+@pytest.mark.parametrize("name", ["eq-12", "sec-4.unconstrained", "sec-1.fairness"])
+def test_what_is_only_checked_is_not_called_proved(name):
+    decision = decide(CLAIMS[name])
+    assert decision.ok
+    assert not decision.proved
+
+
+def test_a_layout_with_other_rows_would_be_counted():
+    """Rows that enter the contact are counted, not set: for first-order contact they are 0, 1 and m - 1, m."""
+    assert {(m, ends) for _, m, ends, _ in blending_checks.counted_rows(1)} >= {(5, (1, 4)), (6, (1, 5))}
+    assert blending_checks.set_rows(1) == (1, pr.m - 1)
+    assert blending_checks.set_rows(3) == (3, pr.m - 3)
+
+
+def test_the_end_of_the_domain_follows_from_the_number_of_functions(monkeypatch, fresh_caches):
+    """Where each step of the recurrence lost two functions the domain would end elsewhere."""
+
+    def first_case():
+        counting = spline_checks.domain_instances(pr.m_r, pr.k_r)
+        return next(iter(spline_checks.count_check(counting, "-").cases(pr.RUN_STARTS[0])))
+
+    assert first_case().true
+    clear_caches()
+    monkeypatch.setattr(spline_checks, "functions_of_order", lambda last, order: last - 2 * order)
+    assert not first_case().true

@@ -1,0 +1,221 @@
+"""Proofs for every order, knot vector and count: each kind turns red when its formula or its premise is wrong."""
+
+from fractions import Fraction
+
+import pytest
+import sympy as sp
+
+from semispline.papers.ledger.exact import clamped, de_boor
+from semispline.papers.ledger.records import Formula, Strength
+from semispline.papers.ledger.symbolic_sums import SAME, WITHIN, coefficient
+from semispline.papers.ledger.verification import decide
+from semispline.papers.lin2014 import printed as pr
+from semispline.papers.lin2014.checks import blending, objective
+from semispline.papers.lin2014.checks import property as properties
+from semispline.papers.lin2014.checks import spline as splines
+from semispline.papers.lin2014.checks.contact import mirror_check, row_check
+from semispline.papers.lin2014.claims import appendix as claims_appendix
+from semispline.papers.lin2014.claims import section_2 as claims_2_definition
+from semispline.papers.lin2014.claims import section_3 as claims_3_blending
+from semispline.papers.lin2014.claims import section_3_conditions as claims_3_conditions
+from semispline.papers.lin2014.claims import section_4 as claims_4_implementation
+from semispline.papers.lin2014.claims.section_4 import NORMAL_EQUATION, TRUE_14
+
+CLAIMS = {
+    claim.id: claim
+    for module in (
+        claims_2_definition,
+        claims_3_blending,
+        claims_3_conditions,
+        claims_4_implementation,
+        claims_appendix,
+    )
+    for claim in module.CLAIMS
+}
+
+
+def truths(cases):
+    return [case.true for case in cases]
+
+
+def changed(formula, old, new):
+    return Formula(formula.relation.xreplace({old: new}), formula.variables)
+
+
+def reading_holds(reading):
+    return all(case.true for part in reading.parts for case in part.check.cases(part.formula) if case.meets)
+
+
+# Decided at less than strength 2, and why that is enough, or that it is not a proof; it stands in the method.
+BY_INSTANCES = {
+    "fig-1.counts": ["seven printed numbers"],
+    "sec-3.sides": ["all that the claim is on"],
+    "sec-2.different-vectors": ["one counterexample is enough", "one example is enough"],
+    "sec-3.fewer-better": ["least energy (11) of strips"],
+    "sec-1.fairness": ["counted in the printed pairs", "one counterexample is enough"],
+    "eq-12": ["checked on plates"],
+    "sec-4.unconstrained": ["checked on plates"],
+}
+# A proof of a general claim is none of these.
+ONLY_CHECKED = {"sec-1.fairness", "eq-12", "sec-4.unconstrained"}
+
+
+def test_no_claim_of_sections_2_to_4_rests_on_instances_without_a_reason():
+    for name, claim in CLAIMS.items():
+        weak = [part.check for part in claim.parts if part.check.strength > Strength.EACH_ORDER]
+        reasons = BY_INSTANCES.get(name, [])
+        assert len(weak) == len(reasons), name
+        assert all(reason in check.method for reason, check in zip(reasons, weak, strict=True)), name
+        if name in ONLY_CHECKED:
+            assert not any(check.proof for check in weak), name
+        if claim.correction:
+            parts = claim.correction.parts
+            assert all(p.check.proof and p.check.strength <= Strength.EACH_ORDER for p in parts), name
+
+
+@pytest.mark.parametrize(
+    ("name", "holds"),
+    [
+        ("sec-2.derivatives-hard", [True, False]),
+        ("sec-3.thin-plate", [True, False]),
+        ("sec-3.strain-energy", [False, True]),
+        ("eq-12", [True, True]),
+        ("sec-3.u-numbering", [True, False]),
+        ("sec-1.fairness", [True, False]),
+        ("sec-3.averaging", [False, True, True]),
+        ("sec-3.parametric-c1", [False, True]),
+        ("sec-2.different-vectors", [False, True]),
+        ("cond-3.1", [False, False]),
+        ("cond-3.2", [False, False]),
+        ("sec-3.sufficient-g2", [False, False]),
+        ("sec-3.parametric-c2", [False, False]),
+    ],
+)
+def test_each_reading_of_a_claim(name, holds):
+    """Decided by hand: which reading is true, so that two errors cannot hide behind one verdict."""
+    assert [reading_holds(reading) for reading in CLAIMS[name].readings] == holds
+
+
+def test_what_multiplies_a_control_point():
+    i, j, a, b, n = sp.symbols("i j a b n", integer=True)
+    P, f = sp.IndexedBase("P"), sp.Function("f")
+    assert coefficient(sp.Sum(2 * P[i + 1] * f(i), (i, 1, n)), P[a]) == 2 * f(a - 1) * WITHIN(1, a - 1, n)
+    double = sp.Sum(sp.Sum(P[i, j] * f(i, j), (j, 0, i)), (i, 0, n))
+    assert coefficient(double, P[a, b]) == f(a, b) * WITHIN(0, b, a) * WITHIN(0, a, n)
+    assert coefficient(sp.Sum(P[i, i], (i, 0, n)), P[a, b]) == SAME(a, b) * WITHIN(0, a, n)
+    for wrong in (f(i), P[i] ** 2, P[i] * P[j]):
+        with pytest.raises(ValueError, match="expected sums and products linear"):
+            coefficient(wrong, P[a])
+
+
+@pytest.mark.parametrize(
+    ("check", "formula", "old", "new"),
+    [
+        (splines.SURFACE_CHECK, pr.EQ_1, pr.m, pr.m - 1),
+        (splines.SURFACE_CHECK, pr.EQ_3, pr.k, pr.k + 1),
+        (splines.CURVE_CHECK, pr.EQ_2, pr.B(pr.j, pr.ell, pr.v, pr.V(pr.i)), pr.B(pr.i, pr.ell, pr.v, pr.V(pr.j))),
+        (splines.base_check("R"), pr.EQ_7, pr.n_r, pr.m_r),
+        (splines.count_check(splines.knot_count_instances(pr.m, pr.k), "-"), pr.U_LAST, pr.k, pr.k - 1),
+        (splines.count_check(splines.domain_instances(pr.m_r, pr.k_r), "-"), pr.RUN_ENDS[0], pr.k_r, pr.k_r + 1),
+        (splines.count_check(splines.domain_instances(pr.m_r, pr.k_r), "-"), pr.RUN_STARTS[0], pr.m_r, pr.m_r + 1),
+        (splines.count_check(splines.inner_knots_count(), "-"), pr.INNER_LAST, pr.n_r, pr.n_r + 1),
+        (splines.count_check(blending.u_length(), "-"), pr.U_LENGTH, pr.m, pr.m + 1),
+        (blending.middle_count_check(1), claims_3_blending.ONE_MIDDLE, sp.Integer(6), sp.Integer(7)),
+        (objective.GRAM_CHECK, TRUE_14, pr.A_1, pr.A_2),
+        (objective.NORMAL_EQUATION_CHECK, NORMAL_EQUATION, objective.LAST_FREE, objective.LAST_KNOWN),
+        (objective.degree_check(2, geometric=True), pr.DEGREE_G2, sp.Integer(8), sp.Integer(6)),
+        (objective.direction_check(-1), claims_3_conditions.PARAMETRIC_2_1, pr.k, pr.k + 1),
+        (mirror_check(0), pr.COND_1_2, pr.S_0, pr.S_1),
+    ],
+)
+def test_the_first_case_alone_tells_a_wrong_formula(check, formula, old, new):
+    """The first case is the one for every order: no instance is needed to see the error."""
+    first = next(iter(check.cases(formula)))
+    assert first.true
+    assert first.residual == 0
+    wrong = next(iter(check.cases(changed(formula, old, new))))
+    assert not wrong.true
+    assert wrong.residual != 0
+
+
+def test_counts_at_known_numbers():
+    """Cubic with one inner knot: 5 points, knots 0 .. 8, domain from knot 3 to knot 5, inner knot 4."""
+    assert splines.last_knot(sp.Integer(4), sp.Integer(4)) == 8
+    assert splines.domain_ends(sp.Integer(4), sp.Integer(4)) == (3, 5)
+    counting = splines.inner_knots_count()
+    at = {pr.n_r: 4, pr.ell: 4}
+    assert [sp.sympify(counting.exact[letter]).subs(at) for letter in (pr.first, pr.last)] == [4, 4]
+
+
+@pytest.mark.parametrize("order", [2, 3, 4])
+@pytest.mark.parametrize("z", [Fraction(1, 10), Fraction(1, 2), Fraction(9, 10)])
+def test_the_insertion_formula_at_numbers(order, z):
+    """B = (z - s_0)/(s_k - s_0) B' + (s_(k+1) - z)/(s_(k+1) - s_1) B'', by de Boor's triangle on both sides."""
+    old = clamped(order, Fraction(1, 5), Fraction(2, 5), Fraction(4, 5))
+    new = tuple(sorted((*old, z)))
+    for i in range(len(old) - order):
+        s = sorted((*old[i : i + order + 1], z))
+        if not old[i] <= z < old[i + order] or s[order] == s[0] or s[-1] == s[1]:
+            continue
+        weights = (z - s[0]) / (s[order] - s[0]), (s[-1] - z) / (s[-1] - s[1])
+        unit = [Fraction(j == i) for j in range(len(old) - order)]
+        both = [Fraction(0)] * (len(new) - order)
+        both[i], both[i + 1] = weights
+        for x in (Fraction(1, 7), Fraction(3, 7), Fraction(6, 7)):
+            assert de_boor(order, old, unit, x) == de_boor(order, new, both, x)
+
+
+def test_smoothness_at_a_symbolic_knot():
+    assert [properties.contact_at_knot(4, r) for r in (1, 2, 3)] == [2, 1, 0]
+    assert [properties.contact_at_knot(7, r) for r in (1, 6)] == [5, 0]
+
+
+def test_the_gram_integrand_against_integrals_of_two_bumps():
+    """A pair of functions with known integrals: u^2 and u^3 over [0, 1], v and v^2 over [0, 1]."""
+    u, v = sp.symbols("u v")
+    of_u, of_v = (u**2, u**3), (v, v**2)
+    x, y = sp.symbols("x y")
+    P = x * of_u[0] * of_v[0] + y * of_u[1] * of_v[1]
+    density = P.diff(u, 2) ** 2 + 2 * P.diff(u, v) ** 2 + P.diff(v, 2) ** 2
+    energy = sp.integrate(sp.expand(density), (u, 0, 1), (v, 0, 1))
+    values = {}
+    for d, (across, along) in enumerate(((pr.A_0, pr.G_0), (pr.A_1, pr.G_1), (pr.A_2, pr.G_2))):
+        values[across] = sp.integrate(of_u[0].diff((u, d)) * of_u[1].diff((u, d)) if d else u**5, (u, 0, 1))
+        values[along] = sp.integrate(of_v[0].diff((v, d)) * of_v[1].diff((v, d)) if d else v**3, (v, 0, 1))
+    assert TRUE_14.relation.rhs.subs(values) == sp.diff(energy, x, y) / 2
+
+
+def test_a_premise_that_fails_makes_the_proof_red(monkeypatch):
+    """A saddle for the plate, a row of contact that is missing, a knot of full multiplicity: each is noticed."""
+    saddle = sp.Symbol("P_uu") ** 2 - sp.Symbol("P_vv") ** 2
+    monkeypatch.setattr(objective, "thin_plate_density", lambda: saddle)
+    assert truths(objective.unique_minimum_cases(2))[0] is False
+    monkeypatch.undo()
+    monkeypatch.setattr(objective, "end_derivatives", lambda *_: sp.Matrix([[1, 0], [1, 0]]))
+    assert truths(objective.unique_minimum_cases(2))[1] is False
+    monkeypatch.setattr(objective, "end_derivatives", lambda *_: sp.ones(3))
+    assert truths(objective.integrals_vanish_cases())[0] is False
+    monkeypatch.undo()
+    monkeypatch.setattr(properties, "contact_orders", lambda *_: [7])
+    properties.contact_at_knot.cache_clear()
+    found = [case.true for case in properties.continuity_control_cases() if "multiplicity" in case.label]
+    assert found
+    assert not any(found)
+    properties.contact_at_knot.cache_clear()
+
+
+@pytest.mark.parametrize("name", ["eq-12", "sec-4.normal-equation", "sec-4.c1-similarly"])
+def test_an_argument_without_its_premise_gives_no_verdict(name, monkeypatch):
+    """Where it would otherwise turn into `fails`, or hide behind `ambiguous`."""
+    monkeypatch.setattr(objective, "thin_plate_density", lambda: sp.Symbol("P_uu") ** 2 - sp.Symbol("P_vv") ** 2)
+    decision = decide(CLAIMS[name])
+    assert decision.verdict is None
+    assert "(11) is a sum of squares" in decision.problem
+
+
+def test_end_rows_hold_for_every_order_of_the_base():
+    """(2.2) for symbolic orders as if u_{m-3} were the last inner knot; (3.2) not even then."""
+    assert [next(iter(row_check("end", 1).cases(pr.COND_2_2))).true] == [True]
+    first = next(iter(row_check("end", 2).cases(pr.COND_3_2)))
+    assert not first.true
+    assert "every order" in first.label
