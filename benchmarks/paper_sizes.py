@@ -51,7 +51,7 @@ def bases_of(figure: int) -> tuple[Base, Base, dict[str, Any]]:
     """Return the bases of a figure's stand-in and its options but the continuity."""
     problem = read_problem(EXAMPLES / f"figure-{figure}.json")
     a, b = Base(problem.a, problem.edge_a), Base(problem.b, problem.edge_b)
-    return a, b, {name: value for name, value in problem.options.items() if name not in ("continuity", "method")}
+    return a, b, {"middle_curves": problem.options.middle_curves}
 
 
 def best_seconds(a: Base, b: Base, repeats: int, **options: Any) -> float:

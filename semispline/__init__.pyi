@@ -29,6 +29,7 @@ from .solver.judge.curvature import principal_curvatures as principal_curvatures
 from .solver.judge.curvature import zebra as zebra
 from .solver.judge.regularity import Regularity as Regularity
 from .solver.judge.regularity import measure_regularity as measure_regularity
+from .solver.options import BlendOptions as BlendOptions
 from .solver.splines.bezier import BezierFunction as BezierFunction
 from .solver.splines.bezier import bezier_patch as bezier_patch
 from .solver.splines.bezier import divide_bezier as divide_bezier

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import reprlib
 from dataclasses import fields
-from numbers import Real
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -54,23 +53,6 @@ def real_array(values: ArrayLike, name: str, error: type[InputError], ndim: int 
     raise error(_fault(values, ndim, name))
 
 
-def real_number(value: object, name: str, error: type[InputError]) -> float:
-    """Return a real number as a float (it may be NaN or infinite); True, strings and arrays are refused."""
-    if not isinstance(value, bool) and isinstance(value, Real):
-        try:
-            return float(value)
-        except OverflowError:
-            pass
-    raise error(f"{name}: found {reprlib.repr(value)}, expected a real number")
-
-
-def whole_number(value: object, name: str, least: int, error: type[InputError]) -> int:
-    """Return an integer of at least `least`; True, floats and strings are refused."""
-    if isinstance(value, int | np.integer) and not isinstance(value, bool) and value >= least:
-        return int(value)
-    raise error(f"{name}: found {reprlib.repr(value)}, expected a whole number of at least {least}")
-
-
 def require(value: object, name: str, *kinds: type) -> None:
     """Refuse a value that is none of the classes.
 
@@ -112,8 +94,3 @@ def _fault(values: Any, ndim: int, name: str) -> str:
         return None
 
     return search(values, ndim, ()) or f"{name}: not a rectangular array of real numbers with {ndim} dimension(s)"
-
-
-def is_whole(value: object) -> bool:
-    """Tell whether a value is an integer of Python or NumPy; True and False are not."""
-    return isinstance(value, int | np.integer) and not isinstance(value, bool)

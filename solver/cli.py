@@ -9,12 +9,14 @@ from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from dataclasses import asdict
 from math import isnan
-from typing import TYPE_CHECKING, Annotated, Any, cast, get_args
+from typing import TYPE_CHECKING, Annotated, Any, cast
 
 import typer
 
 from semispline.solver.errors import EdgeError, OptionError
 from semispline.solver.exit_status import ANSWER_IS_NO, reports_errors
+from semispline.solver.option_flags import takes_blend_options
+from semispline.solver.options import BlendOptions, Continuity, continuity_name
 
 if TYPE_CHECKING:
     from semispline.solver.blending import BlendResult
@@ -36,41 +38,14 @@ EdgeB = Annotated[str, typer.Option("--edge-b", metavar="EDGE", help=_EDGE_HELP.
 
 @app.command("blend")
 @reports_errors
+@takes_blend_options
 def blend_command(
     a: SurfaceA,
     b: SurfaceB,
     edge_a: EdgeA,
     edge_b: EdgeB,
     out: Annotated[str, typer.Option("-o", "--out", metavar="OUT", help="File to write; the suffix says the format.")],
-    continuity: Annotated[str, typer.Option(metavar="C", help=f"At both edges: {_CONTINUITY_HELP}")] = "G2",
-    continuity_b: Annotated[str | None, typer.Option(metavar="C", help="At B, where it differs.")] = None,
-    flip: Annotated[
-        str, typer.Option(metavar="FLIP", help="Whether edge B runs against edge A: auto, yes or no.")
-    ] = "auto",
-    middle_curves: Annotated[int, typer.Option(metavar="N", help="v-control curves between the contacts.")] = 1,
-    degree_u: Annotated[int, typer.Option(metavar="P", help="Degree of the blend across.")] = 3,
-    method: Annotated[
-        str, typer.Option(metavar="METHOD", help="How alpha and beta are found: reduced, casadi or bfgs.")
-    ] = "reduced",
-    alpha: Annotated[
-        str, typer.Option(metavar="ALPHA", help="At A, for G1 and G2: free (searched), natural, or a number.")
-    ] = "free",
-    alpha_b: Annotated[str | None, typer.Option(metavar="BETA", help="The same at B, where it differs.")] = None,
-    box: Annotated[
-        tuple[float, float],
-        typer.Option(metavar="LOW HIGH", help="Range of a free alpha² and beta², times their natural sizes."),
-    ] = (1 / 8, 8.0),
-    v_scale: Annotated[
-        str, typer.Option(metavar="SCALE", help="Length of v in the energy: paper (as it is), unit or length.")
-    ] = "paper",
-    u_knots: Annotated[
-        str | None, typer.Option(metavar="K1,K2,...", help="Inner knots in u, in (0, 1); uniform if left out.")
-    ] = None,
-    middle_knots: Annotated[
-        list[str] | None,
-        typer.Option(metavar="K1,K2,...", help="Inner knots of a middle curve, in v of edge A; once for each curve."),
-    ] = None,
-    strict: Annotated[bool, typer.Option("--strict", help="Refuse a blend with warnings: folds, creases.")] = False,
+    options: BlendOptions,
     report: Annotated[str | None, typer.Option(metavar="FILE", help="JSON with energy, alpha, beta, contact.")] = None,
 ) -> None:
     """Join an edge of A and an edge of B by a semi-structured surface of least energy."""
@@ -93,21 +68,7 @@ def blend_command(
         from semispline.solver.blending import blend
         from semispline.solver.judge import Base
 
-        result = blend(
-            Base(first.surface, cast(Any, edge_a)),
-            Base(second.surface, cast(Any, edge_b)),
-            continuity=cast(Any, (continuity, continuity if continuity_b is None else continuity_b)),
-            middle_curves=middle_curves,
-            degree_u=degree_u,
-            method=cast(Any, method),
-            flip=cast(Any, flip),
-            alpha=(_shape(alpha), _shape(alpha if alpha_b is None else alpha_b)),
-            box=box,
-            v_scale=cast(Any, v_scale),
-            u_knots=None if u_knots is None else _knots("--u-knots", u_knots),
-            middle_knots=[_knots("--middle-knots", text) for text in middle_knots] if middle_knots else None,
-            strict=strict,
-        )
+        result = blend(Base(first.surface, cast(Any, edge_a)), Base(second.surface, cast(Any, edge_b)), options)
     with ExitStack() as stack:
         # The report first, into its temporary file: neither file is touched unless both can be written.
         if report is not None:
@@ -136,22 +97,22 @@ def check_command(
     from semispline.solver.judge import Base, measure_contact
 
     _check_edges(edge_a, edge_b)
-    _check_required(require)
+    required = None if require is None else continuity_name(require, "--require")
     _check_json_output(json_file)
     with _progress("reading"):
         first, second = read_surfaces([a, b])
     with _progress("measuring"):
         contact = measure_contact(Base(first.surface, cast(Any, edge_a)), Base(second.surface, cast(Any, edge_b)))
-    misses = _misses(contact, require)
+    misses = _misses(contact, required)
     if json_file is not None:
         record = {"a": a, "edge_a": edge_a, "b": b, "edge_b": edge_b, "unit": first.unit, **contact_record(contact)}
         if require is not None:
-            record |= {"require": require, "meets": not misses, "misses": misses}
+            record |= {"require": required, "meets": not misses, "misses": misses}
         _write_json(json_file, {"format": "semispline/1", "kind": "contact", **record})
     if json_file != "-":
         _print_contact(contact, first.unit)
         if require is not None:
-            typer.echo(f"{require}: " + ("no: " + "; ".join(misses) if misses else "yes"))
+            typer.echo(f"{required}: " + ("no: " + "; ".join(misses) if misses else "yes"))
     if misses:
         raise typer.Exit(ANSWER_IS_NO)
 
@@ -269,32 +230,10 @@ def report_record(result: BlendResult) -> dict[str, Any]:
     }
 
 
-def _shape(text: str) -> Any:
-    """Return free, natural, or the number that the text holds; `blend` refuses any other."""
-    try:
-        return float(text)
-    except ValueError:
-        return text
-
-
-def _knots(option: str, text: str) -> list[float]:
-    try:
-        return [float(part) for part in text.split(",") if part.strip()]
-    except ValueError:
-        raise OptionError(f"{option}: found {text!r}, expected numbers with commas between them") from None
-
-
 def _check_edges(edge_a: str, edge_b: str) -> None:
     for name, edge in (("--edge-a", edge_a), ("--edge-b", edge_b)):
         if edge not in _EDGES:
             raise EdgeError(f"{name}: found {edge!r}, expected one of {', '.join(_EDGES)}")
-
-
-def _check_required(require: str | None) -> None:
-    from semispline.solver.blending import Continuity
-
-    if require is not None and require not in get_args(Continuity):
-        raise OptionError(f"--require: found {require!r}, expected one of {', '.join(get_args(Continuity))}")
 
 
 def _check_json_output(path: str | None) -> None:
@@ -313,7 +252,7 @@ def _write_json(path: str, record: dict[str, Any]) -> None:
         write_text(path, to_text(record))
 
 
-def _misses(contact: Contact, require: str | None) -> list[str]:
+def _misses(contact: Contact, require: Continuity | None) -> list[str]:
     """Return, of each measure that falls short, its name, value and limit."""
     if require is None:
         return []
@@ -321,7 +260,7 @@ def _misses(contact: Contact, require: str | None) -> list[str]:
 
     return [
         f"{name.replace('_', ' ')} is {value:.3g}, at most {limit:.3g} allowed"
-        for name, value, limit in required_limits(contact, cast(Any, require))
+        for name, value, limit in required_limits(contact, require)
         if not value <= limit
     ]
 

@@ -6,7 +6,7 @@ from functools import partial
 
 from semispline.papers.baselines.interface import BlendTask, Method, Outcome
 from semispline.solver.blending import BlendResult, blend
-from semispline.solver.blending import Method as Search
+from semispline.solver.options import Method as Search
 
 
 def blend_semistructured(search: Search, task: BlendTask) -> Outcome:

@@ -15,8 +15,9 @@ from semispline.papers.lin2014.findings import AS_PRINTED, CORRECTED, findings, 
 from semispline.papers.lin2014.paper_as_printed import METHODS as PRINTED_METHODS
 from semispline.papers.report import c2_residual, cell
 from semispline.papers.reproduction import Comparison, Comparisons, Drawing, Example, Study, Table
-from semispline.solver.blending import Continuity, blend
+from semispline.solver.blending import blend
 from semispline.solver.judge import Base
+from semispline.solver.options import Continuity
 from semispline.solver.pictures import BASE_COLOR, BLEND_COLOR, render
 
 IMPELLER_FACES = (102, 131)

@@ -3,10 +3,8 @@ from .nlp import ConstrainedProblem as ConstrainedProblem
 from .nlp import casadi_matrix as casadi_matrix
 from .nlp import constrained_problem as constrained_problem
 from .nlp import contact_rows as contact_rows
-from .pipeline import Method as Method
 from .pipeline import StatedProblem as StatedProblem
 from .pipeline import blend as blend
 from .pipeline import state_problem as state_problem
 from .result import BlendResult as BlendResult
-from .sides import Continuity as Continuity
 from .sides import make_side as make_side

@@ -6,8 +6,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from semispline.solver.arrays import FloatArray, finite_array, whole_number
+from semispline.solver.arrays import FloatArray, finite_array
 from semispline.solver.errors import OptionError
+from semispline.solver.scalars import whole_number
 from semispline.solver.splines import Basis, breakpoints, checked_knots, clamped, merge_breakpoints, uniform_knots
 
 # More than any blend needs; the energy in u is held in full.

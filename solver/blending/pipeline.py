@@ -2,26 +2,23 @@
 
 from __future__ import annotations
 
-import reprlib
 import time
-from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, Literal, TypeAlias, cast, get_args
+from typing import Any
 
 import numpy as np
 
-from semispline.solver.arrays import FloatArray, real_number, require
+from semispline.solver.arrays import FloatArray, require
 from semispline.solver.blending.gram import thin_plate_energy
-from semispline.solver.blending.problem import BlendProblem, ProblemOptions, VScale, make_problem
+from semispline.solver.blending.problem import BlendProblem, make_problem
 from semispline.solver.blending.result import BlendResult
-from semispline.solver.blending.sides import Continuity, Side, make_side, matched_sides
-from semispline.solver.errors import ContactError, FoldError, OptionError
+from semispline.solver.blending.sides import Side, make_side, matched_sides
+from semispline.solver.errors import ContactError, FoldError
 from semispline.solver.judge import (
     Base,
     Contact,
     Correspondence,
     Crease,
-    Flip,
     Regularity,
     check_regular_edge,
     correspond,
@@ -32,11 +29,9 @@ from semispline.solver.judge import (
     required_limits,
     snapped_seam,
 )
+from semispline.solver.options import BlendOptions, Continuity, Method, named_options
 from semispline.solver.proof import Certificate, check_certificate
 from semispline.solver.splines import BSplineCurve, SemiStructuredSurface
-
-Method: TypeAlias = Literal["reduced", "casadi", "bfgs"]
-Shape: TypeAlias = float | Literal["free", "natural"]
 
 # A normal that turns this far between neighbouring samples has met a fold.
 FOLD_TURN = 90.0
@@ -46,26 +41,13 @@ PINCH = 1e-3
 # systems take for tangent (0.01 and more), well above the rounding of a surface that is smooth there.
 SHARP = 1e-3
 _NAMED = 5
-# Energies have the fourth power of alpha^2 and of the box: far from any blend, and far from where floats end.
-_MOST_ALPHA = 1e15
-_MOST_BOX = 1e20
 
 
 def blend(
     a: Base,
     b: Base,
-    *,
-    continuity: Continuity | tuple[Continuity, Continuity] = "G2",
-    middle_curves: int = 1,
-    degree_u: int = 3,
-    method: Method = "reduced",
-    flip: Flip = "auto",
-    alpha: Shape | tuple[Shape, Shape] = "free",
-    box: tuple[float, float] = (1 / 8, 8.0),
-    v_scale: VScale = "paper",
-    u_knots: Sequence[float] | None = None,
-    middle_knots: Sequence[Sequence[float]] | None = None,
-    strict: bool = False,
+    options: BlendOptions | None = None,
+    **named: Any,
 ) -> BlendResult:
     """Blend two B-spline surfaces with a semi-structured surface of least thin-plate energy.
 
@@ -73,31 +55,8 @@ def blend(
     ----------
     a, b : Base
         Polynomial B-spline surfaces and the edges to be joined. Neither is changed.
-    continuity : {"C0", "C1", "C2", "G0", "G1", "G2"} or a pair of them
-        At a and at b.
-    middle_curves : int
-        Number of v-control curves between the three of each contact.
-    degree_u : int
-        Degree of the blend across, p = k - 1.
-    method : {"reduced", "casadi", "bfgs"}
-        How alpha and beta are found where contact is geometric: the proved global minimum, the constrained problem in
-        CasADi, or the paper's own search.
-    flip : {"auto", "yes", "no"}
-        Whether edge b runs against edge a; "auto" takes the way without a twist.
-    alpha : "free", "natural", a number, or a pair of these for a and b
-        Where contact is geometric: search alpha, take its natural size (mean gap over mean cross speed, for alpha^2),
-        or set alpha itself.
-    box : (float, float)
-        Admissible alpha^2 and beta^2, in units of their natural sizes.
-    v_scale : {"paper", "unit", "length"}
-        What (11) takes the length of the v-domain for: itself, 1, or mean contact length over mean gap. With the last
-        two the blend does not depend on the units of v nor on the order of the bases.
-    u_knots : sequence of float, optional
-        Inner knots of U instead of uniform ones.
-    middle_knots : sequence of sequences of float, optional
-        Inner knots of each middle curve, in v of a's edge, instead of the paper's rule.
-    strict : bool
-        Refuse a blend with warnings.
+    options : BlendOptions, optional
+        Or its fields by name: ``blend(a, b, continuity="G1", middle_curves=0)``.
 
     Returns
     -------
@@ -127,43 +86,27 @@ def blend(
     (12, 1.6875, 1.6875)
     """
     started = time.perf_counter()
-    if not isinstance(strict, bool):
-        raise OptionError(f"strict: found {strict!r}, expected True or False")
-    if not isinstance(method, str) or method not in get_args(Method):
-        raise OptionError(f"method: found {method!r}, expected one of {', '.join(get_args(Method))}")
-    stated = state_problem(
-        a,
-        b,
-        continuity=continuity,
-        middle_curves=middle_curves,
-        degree_u=degree_u,
-        flip=flip,
-        alpha=alpha,
-        box=box,
-        v_scale=v_scale,
-        u_knots=u_knots,
-        middle_knots=middle_knots,
-    )
+    chosen = named_options(options, named)
+    stated = state_problem(a, b, chosen)
     problem, sides, frame, matched = stated.problem, stated.sides, stated.frame, stated.matched
-    pair = sides[0].continuity, sides[1].continuity
     # The one or two numbers that are not linear, then everything that is.
-    found = _shape_parameters(problem, method)
+    found = _shape_parameters(problem, chosen.method)
     surface = _surface(problem, found, sides, frame)
     energy = thin_plate_energy(surface)
     seconds = time.perf_counter() - started
     # What came out, judged by code that knows nothing of the above.
-    contact_a, contact_b = _checked_contacts(a, b, surface, pair, matched, found)
+    contact_a, contact_b = _checked_contacts(a, b, surface, chosen.continuities, matched, found)
     if found.certificate is not None:
         check_certificate(found.certificate)
     seam = _seam(surface, problem)
     regularity = measure_regularity(surface)
     creases = measure_creases(surface)
     warnings = _warnings(regularity, creases) + _bound_warnings(problem, found) + _seam_warning(a, b)
-    if strict and warnings:
+    if chosen.strict and warnings:
         raise FoldError(f"{'; '.join(warnings)}; try other middle curves, alpha='natural', or without strict")
     return BlendResult(
         surface=surface,
-        continuity=pair,
+        continuity=chosen.continuities,
         method=found.method,
         energy=energy,
         alpha2=None if sides[0].order == 0 else found.a,
@@ -211,41 +154,18 @@ class StatedProblem:
     matched: Correspondence
 
 
-def state_problem(
-    a: Base,
-    b: Base,
-    *,
-    continuity: Continuity | tuple[Continuity, Continuity] = "G2",
-    middle_curves: int = 1,
-    degree_u: int = 3,
-    flip: Flip = "auto",
-    alpha: Shape | tuple[Shape, Shape] = "free",
-    box: tuple[float, float] = (1 / 8, 8.0),
-    v_scale: VScale = "paper",
-    u_knots: Sequence[float] | None = None,
-    middle_knots: Sequence[Sequence[float]] | None = None,
-) -> StatedProblem:
+def state_problem(a: Base, b: Base, options: BlendOptions | None = None, **named: Any) -> StatedProblem:
     """State the problem that `blend` solves; arguments and errors are those of `blend`."""
     require(a, "a", Base)
     require(b, "b", Base)
-    pair = (continuity, continuity) if isinstance(continuity, str) else continuity
-    if not isinstance(pair, tuple | list) or len(pair) != 2:
-        raise OptionError(f"continuity: found {continuity!r}, expected one of C0..G2 or a pair of them")
-    options = ProblemOptions(
-        middle_curves,
-        degree_u,
-        _checked_shape(alpha),
-        _checked_box(box),
-        v_scale,
-        u_knots=u_knots,
-        middle_knots=middle_knots,
-    )
+    chosen = named_options(options, named)
+    at_a, at_b = chosen.continuities
     # The bases as the blend sees them: contact at w = 0, one parameter v, coordinates of size 1.
-    sides = make_side(a, pair[0], "base a"), make_side(b, pair[1], "base b")
-    matched = snapped_seam(a, b, correspond(a, b, flip))
+    sides = make_side(a, at_a, "base a"), make_side(b, at_b, "base b")
+    matched = snapped_seam(a, b, correspond(a, b, chosen.flip))
     sides = matched_sides(*sides, matched)
     frame = _frame(*sides)
-    problem = make_problem(sides[0].moved(*frame), sides[1].moved(*frame), options)
+    problem = make_problem(sides[0].moved(*frame), sides[1].moved(*frame), chosen)
     return StatedProblem(problem, sides, frame, matched)
 
 
@@ -263,37 +183,6 @@ class _Found:
     constraint_rank: tuple[int, int] | None = None
     status: str | None = None
     search_excess: float | None = None
-
-
-def _checked_box(box: object) -> tuple[float, float]:
-    """Return both ends of the box as floats."""
-    if not isinstance(box, tuple | list | np.ndarray) or len(box) != 2:
-        raise OptionError(f"box: found {reprlib.repr(box)}, expected (low, high)")
-    low, high = (real_number(end, f"box[{i}]", OptionError) for i, end in enumerate(box))
-    if not 1 / _MOST_BOX <= low <= high <= _MOST_BOX:
-        raise OptionError(f"box: found ({low:g}, {high:g}), expected {1 / _MOST_BOX:g} <= low <= high <= {_MOST_BOX:g}")
-    return low, high
-
-
-def _checked_shape(alpha: object) -> tuple[Shape, Shape]:
-    """Return "free", "natural" or alpha^2 for both sides."""
-    is_pair = isinstance(alpha, tuple | list) or (isinstance(alpha, np.ndarray) and alpha.ndim == 1)
-    pair = tuple(cast("Any", alpha)) if is_pair else (alpha, alpha)
-    if len(pair) != 2:
-        raise OptionError(f"alpha: found {len(pair)} values, expected one or a pair")
-    first, second = map(_checked_alpha, pair)
-    return first, second
-
-
-def _checked_alpha(value: object) -> Shape:
-    if isinstance(value, str):
-        if value in ("free", "natural"):
-            return cast("Shape", value)
-        raise OptionError(f"alpha: found {value!r}, expected free, natural or a positive number")
-    number = real_number(value, "alpha", OptionError)
-    if not 1 / _MOST_ALPHA <= number <= _MOST_ALPHA:
-        raise OptionError(f"alpha: found {number:g}, expected {1 / _MOST_ALPHA:g} to {_MOST_ALPHA:g}")
-    return number**2
 
 
 def _frame(a: Side, b: Side) -> tuple[FloatArray, float]:

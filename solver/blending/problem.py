@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Literal, TypeAlias, get_args
 
 import numpy as np
 import scipy.sparse as sp
@@ -16,7 +14,8 @@ from semispline.solver.blending.closing import periodic_points, seam_order, with
 from semispline.solver.blending.gram import EnergyForm
 from semispline.solver.blending.layout import ROWS_PER_SIDE, blend_u_basis, middle_bases
 from semispline.solver.blending.sides import Side
-from semispline.solver.errors import ComputationError, EdgeError, OptionError
+from semispline.solver.errors import ComputationError, EdgeError
+from semispline.solver.options import BlendOptions, Shape
 from semispline.solver.splines import (
     Basis,
     affine_knots,
@@ -37,37 +36,6 @@ VANISHING = 1e-10
 # Means over v: points of the whole contact, and degree of the rule on each span where spans are many.
 _MOST_POINTS = 512
 _LEAST_RULE = 3
-
-VScale: TypeAlias = Literal["paper", "unit", "length"]
-
-
-@dataclass(frozen=True)
-class ProblemOptions:
-    """What may be chosen about a blend beside its bases and contact.
-
-    Attributes
-    ----------
-    middle_curves : int
-    degree_u : int
-    shape : pair of float, "free" or "natural"
-        alpha^2 and beta^2 where contact is geometric.
-    box : (float, float)
-        Admissible range of a free shape parameter, in units of its natural size; near zero the blend folds.
-    v_scale : {"paper", "unit", "length"}
-        Length of the v-domain in the energy: as it is, 1, or mean contact length over mean gap.
-    u_knots : sequence of float, optional
-        Inner knots of U.
-    middle_knots : sequence of sequences of float, optional
-        Inner knots of each middle curve.
-    """
-
-    middle_curves: int = 1
-    degree_u: int = 3
-    shape: tuple[float | Literal["free", "natural"], float | Literal["free", "natural"]] = ("free", "free")
-    box: tuple[float, float] = (1 / 8, 8.0)
-    v_scale: VScale = "paper"
-    u_knots: Sequence[float] | None = None
-    middle_knots: Sequence[Sequence[float]] | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -269,7 +237,7 @@ def _fraction(change: FloatArray, x: FloatArray) -> float:
     return float(np.abs(change).max()) / max(float(np.abs(x).max()), 1e-300)
 
 
-def make_problem(a: Side, b: Side, options: ProblemOptions) -> BlendProblem:
+def make_problem(a: Side, b: Side, options: BlendOptions) -> BlendProblem:
     """Lay out the knots of the blend and its admissible shape parameters.
 
     Raises
@@ -279,8 +247,6 @@ def make_problem(a: Side, b: Side, options: ProblemOptions) -> BlendProblem:
     EdgeError
         The contact curves coincide, one of them is a point, or a cross derivative that contact needs vanishes.
     """
-    if options.v_scale not in get_args(VScale):
-        raise OptionError(f"v_scale: found {options.v_scale!r}, expected one of {', '.join(get_args(VScale))}")
     u = blend_u_basis(options.degree_u, options.middle_curves, options.u_knots)
     orders = [seam_order(side.along, side.rows[: side.order + 1]) for side in (a, b)]
     closed = min(orders)
@@ -294,8 +260,8 @@ def make_problem(a: Side, b: Side, options: ProblemOptions) -> BlendProblem:
         for name, side, speed in zip("ab", (a, b), means.cross_speeds, strict=True)
     )
     bounds_a, bounds_b = (
-        (1.0, 1.0) if not side.has_shape_parameter else _bounds(size, shape, options.box)
-        for side, size, shape in zip((a, b), (natural_a, natural_b), options.shape, strict=True)
+        (1.0, 1.0) if not side.has_shape_parameter else _bounds(size, alpha, options.box)
+        for side, size, alpha in zip((a, b), (natural_a, natural_b), options.alphas, strict=True)
     )
     form = EnergyForm(u, rows)
     if options.v_scale != "paper":
@@ -304,10 +270,11 @@ def make_problem(a: Side, b: Side, options: ProblemOptions) -> BlendProblem:
     return BlendProblem(form, rows, a, b, (natural_a, natural_b), (bounds_a, bounds_b), closed)
 
 
-def _bounds(natural: float, shape: float | Literal["free", "natural"], box: tuple[float, float]) -> tuple[float, float]:
-    if shape == "free":
+def _bounds(natural: float, alpha: Shape, box: tuple[float, float]) -> tuple[float, float]:
+    """Return the admissible ends of alpha^2; they are equal where it is given."""
+    if alpha == "energy":
         return natural * box[0], natural * box[1]
-    fixed = natural if shape == "natural" else float(shape)
+    fixed = natural if alpha == "natural" else float(alpha) ** 2
     return fixed, fixed
 
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from semispline.solver.blending.sides import Continuity
 from semispline.solver.judge import Contact, Crease, Regularity
+from semispline.solver.options import Continuity
 from semispline.solver.proof import Certificate
 from semispline.solver.splines import SemiStructuredSurface
 

@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Literal, TypeAlias, get_args
 
 import numpy as np
 
 from semispline.solver.arrays import FloatArray
 from semispline.solver.blending.closing import reseamed
-from semispline.solver.errors import EdgeError, OptionError
+from semispline.solver.errors import EdgeError
 from semispline.solver.generated import contact_numpy, shape_numpy
 from semispline.solver.judge import Base, Correspondence
+from semispline.solver.options import Continuity
 from semispline.solver.splines import Basis, BSplineCurve, BSplineSurface, affine_knots, elevate_curve, reversed_knots
-
-Continuity: TypeAlias = Literal["C0", "C1", "C2", "G0", "G1", "G2"]
 
 # Contact up to second order reads three control rows and two knot spans.
 _ROWS = 3
@@ -92,11 +90,7 @@ def make_side(base: Base, continuity: Continuity, name: str = "base") -> Side:
     ------
     EdgeError
         The base is rational or semi-structured.
-    OptionError
-        The continuity is not one of the six.
     """
-    if continuity not in get_args(Continuity):
-        raise OptionError(f"continuity: found {continuity!r}, expected one of {', '.join(get_args(Continuity))}")
     surface = base.surface
     if not isinstance(surface, BSplineSurface):
         raise EdgeError(f"{name}: a semi-structured surface, expected a B-spline surface; convert it with to_bspline()")

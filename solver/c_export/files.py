@@ -28,8 +28,6 @@ from semispline.solver.io import check_folder, read_problem, read_surfaces, writ
 from semispline.solver.judge import Base
 
 NAME = "blend"
-# Options of `blend` that change how a problem is solved and judged, not the problem.
-_OF_THE_SOLVE = ("method", "strict")
 _NOTICE = """\
 /* Written by `semispline generate --c`. Do not edit: change the problem and generate again.
    How to call it: README.md. */
@@ -58,10 +56,9 @@ def write_c(folder: str | Path, problem_file: str | Path) -> list[Path]:
     specs = [base for base in bases if isinstance(base, str)]
     read = iter(read_surfaces(specs) if specs else [])
     surfaces = [next(read).surface if isinstance(base, str) else base for base in bases]
-    options = {name: value for name, value in stored.options.items() if name not in _OF_THE_SOLVE}
     edges: list[Any] = [stored.edge_a, stored.edge_b]
     a, b = (Base(surface, edge) for surface, edge in zip(surfaces, edges, strict=True))
-    return write_texts(folder, c_files(state_problem(a, b, **options)))
+    return write_texts(folder, c_files(state_problem(a, b, stored.options)))
 
 
 def c_files(stated: StatedProblem) -> dict[str, str]:

@@ -7,7 +7,7 @@ states its own `degree_v`; one that does not has that of the surface, which is t
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Annotated, Any, Literal, TypeAlias, TypeVar
@@ -15,9 +15,10 @@ from typing import Annotated, Any, Literal, TypeAlias, TypeVar
 from pydantic import AllowInfNan, BaseModel, ConfigDict, Field, Strict, ValidationError
 
 from semispline.solver.arrays import FloatArray
-from semispline.solver.errors import ControlPointError, EdgeError, FileError, InputError
+from semispline.solver.errors import ControlPointError, EdgeError, FileError, InputError, OptionError
 from semispline.solver.io.disk import write_text
 from semispline.solver.io.json_text import load_json, short, to_text
+from semispline.solver.options import BlendOptions, named_options
 from semispline.solver.splines import BSplineCurve, BSplineSurface, SemiStructuredSurface, Surface, clamped_surface
 
 FORMAT = "semispline/1"
@@ -25,9 +26,7 @@ EDGES = ("u0", "u1", "v0", "v1")
 
 _Number: TypeAlias = Annotated[float, Strict(), AllowInfNan(False)]
 _Degree: TypeAlias = Annotated[int, Strict(), Field(ge=1)]
-_Count: TypeAlias = Annotated[int, Strict()]
 _Text: TypeAlias = Annotated[str, Strict()]
-_Shape: TypeAlias = _Number | _Text
 _Points: TypeAlias = list[list[_Number]]
 
 
@@ -61,28 +60,12 @@ class _SemiStructuredRecord(_Record):
     control_curves: list[_CurveRecord]
 
 
-class _OptionsRecord(_Record):
-    """Keyword arguments of `blend`, which checks their values."""
-
-    continuity: _Text | tuple[_Text, _Text] = "G2"
-    middle_curves: _Count = 1
-    degree_u: _Count = 3
-    method: _Text = ""
-    flip: _Text = "auto"
-    alpha: _Shape | tuple[_Shape, _Shape] = "free"
-    box: tuple[_Number, _Number] = (0.125, 8.0)
-    v_scale: _Text = "paper"
-    u_knots: list[_Number] | None = None
-    middle_knots: list[list[_Number]] | None = None
-    strict: Annotated[bool, Strict()] = False
-
-
 class _ProblemRecord(_Record):
     a: _Text | dict[str, Any]
     edge_a: Literal["u0", "u1", "v0", "v1"]
     b: _Text | dict[str, Any]
     edge_b: Literal["u0", "u1", "v0", "v1"]
-    options: _OptionsRecord = _OptionsRecord()
+    options: dict[str, Any] = {}
 
 
 @dataclass(frozen=True)
@@ -94,22 +77,25 @@ class StoredProblem:
     a, b : BSplineSurface, SemiStructuredSurface or str
         A surface, or "PATH#N" with PATH relative to the folder of the file.
     edge_a, edge_b : {"u0", "u1", "v0", "v1"}
-    options : mapping
-        Keyword arguments of `blend`.
+    options : BlendOptions
 
     Raises
     ------
     EdgeError
         An edge that is not one of the four.
+    OptionError
+        Options that are no BlendOptions.
     """
 
     a: Surface | str
     edge_a: str
     b: Surface | str
     edge_b: str
-    options: Mapping[str, Any] = field(default_factory=dict)
+    options: BlendOptions = field(default_factory=BlendOptions)
 
     def __post_init__(self) -> None:
+        if not isinstance(self.options, BlendOptions):
+            raise OptionError(f"options: found a {type(self.options).__name__}, expected a BlendOptions")
         for name in ("edge_a", "edge_b"):
             if getattr(self, name) not in EDGES:
                 raise EdgeError(f"{name}: found {getattr(self, name)!r}, expected one of {', '.join(EDGES)}")
@@ -146,6 +132,8 @@ def read_problem(path: str | Path) -> StoredProblem:
     ------
     FileError, EdgeError, KnotError, ControlPointError
         As `read_json_surface`.
+    OptionError
+        An option that `blend` does not have, or a value that it cannot take.
     """
     where = str(path)
     record = _validated(_ProblemRecord, _content(load_json(path), ("blend_problem",), where), where)
@@ -155,7 +143,14 @@ def read_problem(path: str | Path) -> StoredProblem:
         return str(folder / value) if isinstance(value, str) else surface_from_record(value, f"{where}: {name}")
 
     a, b = base(record.a, "a"), base(record.b, "b")
-    return StoredProblem(a, record.edge_a, b, record.edge_b, record.options.model_dump(exclude_unset=True))
+    return StoredProblem(a, record.edge_a, b, record.edge_b, _options(record.options, where))
+
+
+def _options(record: dict[str, Any], where: str) -> BlendOptions:
+    try:
+        return named_options(None, record)
+    except OptionError as error:
+        raise OptionError(f"{where}: options.{error}") from None
 
 
 def write_problem(path: str | Path, problem: StoredProblem) -> None:
@@ -164,13 +159,12 @@ def write_problem(path: str | Path, problem: StoredProblem) -> None:
     Raises
     ------
     FileError
-        The file cannot be written, or an option that JSON cannot hold.
+        The file cannot be written.
     """
 
     def base(value: Surface | str) -> Any:
         return value if isinstance(value, str) else surface_record(value)
 
-    options = _validated(_OptionsRecord, dict(problem.options), f"{path}: options")
     record = {
         "format": FORMAT,
         "kind": "blend_problem",
@@ -178,7 +172,7 @@ def write_problem(path: str | Path, problem: StoredProblem) -> None:
         "edge_a": problem.edge_a,
         "b": base(problem.b),
         "edge_b": problem.edge_b,
-        "options": options.model_dump(exclude_unset=True),
+        "options": problem.options.said(),
     }
     write_text(path, to_text(record))
 

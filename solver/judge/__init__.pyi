@@ -4,7 +4,6 @@ from .continuity import check_regular_edge as check_regular_edge
 from .continuity import measure_contact as measure_contact
 from .continuity import model_size as model_size
 from .correspondence import Correspondence as Correspondence
-from .correspondence import Flip as Flip
 from .correspondence import correspond as correspond
 from .correspondence import is_closed as is_closed
 from .correspondence import snapped_seam as snapped_seam

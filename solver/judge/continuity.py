@@ -9,7 +9,8 @@ import numpy as np
 from semispline.solver.arrays import FloatArray
 from semispline.solver.errors import EdgeError
 from semispline.solver.judge.base import Base
-from semispline.solver.judge.correspondence import Correspondence, Flip, correspond, corresponding_samples
+from semispline.solver.judge.correspondence import Correspondence, correspond, corresponding_samples
+from semispline.solver.options import Flip
 from semispline.solver.splines import BSplineSurface, Surface, bounding_box
 
 # Samples that are measured at once.

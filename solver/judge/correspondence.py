@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Literal, TypeAlias, get_args
+from typing import get_args
 
 import numpy as np
 
 from semispline.solver.arrays import FloatArray
 from semispline.solver.errors import EdgeError
 from semispline.solver.judge.base import Base
+from semispline.solver.options import Flip
 from semispline.solver.splines import gauss_rule, merge_breakpoints
-
-Flip: TypeAlias = Literal["auto", "yes", "no"]
 
 # Where each merged span of the edge is sampled: inside, since at a knot the two sides may be seen from different spans.
 _FRACTIONS = np.array([0.002, 0.1, 0.3, 0.5, 0.7, 0.9, 0.998])

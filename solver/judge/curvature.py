@@ -22,8 +22,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from semispline.solver.arrays import FloatArray, finite_array, real_array, require, whole_number
+from semispline.solver.arrays import FloatArray, finite_array, real_array, require
 from semispline.solver.errors import InputError, OptionError
+from semispline.solver.scalars import whole_number
 from semispline.solver.splines import BSplineSurface, SemiStructuredSurface, Surface, bounding_box
 
 # A tangent shorter than this fraction of (extent of the surface / length of the parameter range), or an angle between

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from semispline.solver.blending import Continuity
 from semispline.solver.judge.continuity import Contact
+from semispline.solver.options import Continuity
 
 # What the referee must confirm; rounding of the input is allowed on top (see `Contact.rounding`).
 GAP_LIMIT = 1e-11  # of the size of the model

@@ -21,8 +21,9 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from semispline.solver.arrays import FloatArray, finite_array, real_array, real_number, rebuilt, require
+from semispline.solver.arrays import FloatArray, finite_array, real_array, rebuilt, require
 from semispline.solver.errors import ControlPointError, InputError, OptionError
+from semispline.solver.scalars import real_number
 from semispline.solver.splines.knots import clamped
 from semispline.solver.splines.outline import crossing_sides, signed_area
 from semispline.solver.splines.surfaces import BSplineCurve, BSplineSurface, SemiStructuredSurface, Surface

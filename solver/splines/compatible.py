@@ -7,8 +7,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from semispline.solver.arrays import FloatArray, SparseMatrix, real_number, require
+from semispline.solver.arrays import FloatArray, SparseMatrix, require
 from semispline.solver.errors import OptionError
+from semispline.solver.scalars import real_number
 from semispline.solver.splines.curves import restrict_curve
 from semispline.solver.splines.knots import MERGE_TOLERANCE, clamped, inner_knots
 from semispline.solver.splines.refinement import elevated_knots, elevation_matrix, refinement_matrix

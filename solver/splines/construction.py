@@ -9,8 +9,9 @@ from math import ceil, cos, pi, sin
 import numpy as np
 from numpy.typing import ArrayLike
 
-from semispline.solver.arrays import FloatArray, finite_array, is_whole, real_number, require, whole_number
+from semispline.solver.arrays import FloatArray, finite_array, require
 from semispline.solver.errors import ControlPointError, InputError, KnotError, OptionError
+from semispline.solver.scalars import is_whole, real_number, whole_number
 from semispline.solver.splines.knots import clamped, uniform_knots
 from semispline.solver.splines.operations import elevate_degree
 from semispline.solver.splines.refinement import clamp_knots

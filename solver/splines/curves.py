@@ -7,8 +7,9 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from semispline.solver.arrays import FloatArray, finite_array, is_whole, real_number, require
+from semispline.solver.arrays import FloatArray, finite_array, require
 from semispline.solver.errors import KnotError, OptionError
+from semispline.solver.scalars import is_whole, real_number
 from semispline.solver.splines.knots import reversed_knots
 from semispline.solver.splines.refinement import (
     elevated_knots,

@@ -8,8 +8,9 @@ from math import comb
 import numpy as np
 from numpy.typing import ArrayLike
 
-from semispline.solver.arrays import FloatArray, is_whole, real_array
+from semispline.solver.arrays import FloatArray, real_array
 from semispline.solver.errors import InputError, OptionError
+from semispline.solver.scalars import is_whole
 from semispline.solver.splines.knots import MERGE_TOLERANCE, basis_matrix
 
 

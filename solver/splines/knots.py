@@ -10,8 +10,9 @@ import scipy.sparse as sp
 from numpy.typing import ArrayLike
 from scipy.interpolate import BSpline
 
-from semispline.solver.arrays import FloatArray, SparseMatrix, finite_array, is_whole, whole_number
+from semispline.solver.arrays import FloatArray, SparseMatrix, finite_array
 from semispline.solver.errors import KnotError
+from semispline.solver.scalars import is_whole, whole_number
 
 # Knots closer than this fraction of the domain count as one wherever knot vectors are merged.
 MERGE_TOLERANCE = 1e-12

@@ -16,8 +16,9 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from semispline.solver.arrays import FloatArray, SparseMatrix, finite_array, real_array, real_number, require
+from semispline.solver.arrays import FloatArray, SparseMatrix, finite_array, real_array, require
 from semispline.solver.errors import ControlPointError, InputError, KnotError
+from semispline.solver.scalars import real_number
 from semispline.solver.splines.compatible import combined_curves
 from semispline.solver.splines.curves import elevate_curve, insert_named, restrict_curve, reverse_curve
 from semispline.solver.splines.knots import affine_knots, reversed_knots

@@ -16,8 +16,9 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import ArrayLike, NDArray
 
-from semispline.solver.arrays import FloatArray, SparseMatrix, finite_array, is_whole, whole_number
+from semispline.solver.arrays import FloatArray, SparseMatrix, finite_array
 from semispline.solver.errors import ControlPointError, KnotError
+from semispline.solver.scalars import is_whole, whole_number
 from semispline.solver.splines.knots import MERGE_TOLERANCE, clamped
 
 

@@ -15,16 +15,9 @@ from typing import Any, TypeAlias, final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from semispline.solver.arrays import (
-    FloatArray,
-    SparseMatrix,
-    finite_array,
-    is_whole,
-    real_number,
-    rebuilt,
-    whole_number,
-)
+from semispline.solver.arrays import FloatArray, SparseMatrix, finite_array, rebuilt
 from semispline.solver.errors import ControlPointError, InputError, KnotError, OptionError
+from semispline.solver.scalars import is_whole, real_number, whole_number
 from semispline.solver.splines.evaluation import (
     check_orders,
     checked_parameters,

@@ -38,7 +38,7 @@ def test_default_is_proved(pair):
 def test_alpha_and_box(pair):
     _, natural = run(pair, "--alpha", "natural")
     assert "alpha2_bounds" not in natural
-    _, one_set = run(pair, "--alpha", "0.9", "--alpha-b", "free")
+    _, one_set = run(pair, "--alpha", "0.9", "--alpha-b", "energy")
     assert one_set["alpha2"] == pytest.approx(0.81)
     assert "beta2_bounds" in one_set
     _, narrow = run(pair, "--box", "0.5", "2")

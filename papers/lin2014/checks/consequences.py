@@ -18,9 +18,10 @@ from semispline.papers.ledger import Consequence, Formula
 from semispline.papers.lin2014 import printed as pr
 from semispline.papers.lin2014.checks.contact import Side, t_ks1, u_before, u_last, w_kr1
 from semispline.papers.reproduction import cad_verdict
-from semispline.solver.blending import BlendResult, Continuity, blend, make_side
+from semispline.solver.blending import BlendResult, blend, make_side
 from semispline.solver.io import read_problem
 from semispline.solver.judge import Base, measure_contact
+from semispline.solver.options import Continuity
 from semispline.solver.splines import BSplineCurve, BSplineSurface, SemiStructuredSurface
 
 EXAMPLES = Path(__file__).parents[1] / "examples"

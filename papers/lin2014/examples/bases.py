@@ -26,6 +26,7 @@ from semispline.papers.lin2014.examples.section5 import (
 )
 from semispline.solver.arrays import FloatArray
 from semispline.solver.io import StoredProblem, write_problem
+from semispline.solver.options import BlendOptions
 from semispline.solver.splines import (
     BSplineSurface,
     basis_matrix,
@@ -51,7 +52,7 @@ def stand_in(figure: int) -> StoredProblem:
     }
     a, b = make[figure]() if figure != 9 else _part_cylinders(second_posture=True)
     printed = PRINTED[figure]
-    options = {"continuity": [printed.continuity] * 2, "middle_curves": printed.middle_curves}
+    options = BlendOptions(continuity=printed.continuity, middle_curves=printed.middle_curves)
     return StoredProblem(a, "u0", b, "u0", options)
 
 

@@ -10,9 +10,9 @@ from scipy.optimize import brute, minimize
 from scipy.stats import special_ortho_group
 
 from helpers.bases import cylinder, facing_pair, moved, patch
-from semispline import Base, BSplineSurface, ComputationError, ContactError, EdgeError, FoldError, blend
+from semispline import Base, BlendOptions, BSplineSurface, ComputationError, ContactError, EdgeError, FoldError, blend
 from semispline.solver.blending.pipeline import state_problem
-from semispline.solver.blending.problem import ProblemOptions, make_problem
+from semispline.solver.blending.problem import make_problem
 from semispline.solver.blending.reduced import shape_polynomial, solve_reduced
 from semispline.solver.blending.sides import make_side, matched_sides
 from semispline.solver.judge.correspondence import Correspondence
@@ -172,7 +172,7 @@ def test_another_polynomial_is_refused(certificate):
 def problem_of(seed, **options):
     a, b = facing_pair(np.random.default_rng(seed), edges=("u0", "u0"), backwards=(False, False))
     sides = matched_sides(make_side(a, "G2"), make_side(b, "G2"), Correspondence(flipped=False))
-    return make_problem(*sides, ProblemOptions(**options))
+    return make_problem(*sides, BlendOptions(**options))
 
 
 def energy_at(problem, shape):
@@ -281,14 +281,14 @@ def test_alpha_can_be_set():
     natural = blend(a, b, alpha="natural")
     assert natural.method == "linear"
     assert natural.alpha2_bounds is None
-    set_one = blend(a, b, alpha=(0.9, "free"))
+    set_one = blend(a, b, alpha=(0.9, "energy"))
     assert set_one.alpha2 == pytest.approx(0.81, rel=1e-15)
     assert set_one.alpha2_bounds is None
     assert set_one.beta2_bounds is not None
     for result in (natural, set_one):
         assert result.contact_a.curvature_jump_relative < 1e-9
         assert blend(a, b).energy <= result.energy
-    local = blend(a, b, alpha=(0.9, "free"), method="casadi")
+    local = blend(a, b, alpha=(0.9, "energy"), method="casadi")
     assert local.energy == pytest.approx(set_one.energy, rel=1e-8)
 
 

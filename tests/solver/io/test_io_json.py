@@ -1,6 +1,6 @@
-import inspect
 import json
 import math
+from dataclasses import fields
 
 import numpy as np
 import pytest
@@ -9,10 +9,18 @@ from hypothesis import strategies as st
 from scipy.interpolate import BSpline
 
 from helpers.splines import surfaces
-from semispline import BSplineCurve, BSplineSurface, EdgeError, FileError, InputError, SemiStructuredSurface, blend
+from semispline import (
+    BlendOptions,
+    BSplineCurve,
+    BSplineSurface,
+    EdgeError,
+    FileError,
+    InputError,
+    OptionError,
+    SemiStructuredSurface,
+)
 from semispline.solver.io.json_files import (
     StoredProblem,
-    _OptionsRecord,
     read_json_surface,
     read_problem,
     surface_from_record,
@@ -217,7 +225,7 @@ def test_text_refuses_what_json_cannot_hold():
 def test_a_problem_keeps_surfaces_paths_and_options(tmp_path):
     folder = tmp_path / "problems"
     folder.mkdir()
-    options = {"continuity": ("G2", "C1"), "middle_curves": 0}
+    options = BlendOptions(continuity=("G2", "C1"), middle_curves=0)
     write_problem(folder / "p.json", StoredProblem(mixed_degrees(), "u1", "../parts.step#3", "v0", options))
     problem = read_problem(folder / "p.json")
     assert same(problem.a, mixed_degrees())
@@ -232,7 +240,7 @@ def test_a_problem_keeps_surfaces_paths_and_options(tmp_path):
         (changed("edge_a", to="w0"), ["edge_a", "'w0'", "u0"]),
         (changed("a", to=5), ["a", "5"]),
         (changed("a", "degree_u", to=0), ["a", "degree_u"]),
-        (changed("options", "tension", to=1), ["options.tension", "no such key"]),
+        (changed("options", "tension", to=1), ["options.tension", "no such option"]),
         (changed("options", "middle_curves", to=1.5), ["options.middle_curves", "1.5"]),
         (changed("options", "continuity", to=["G2"]), ["options.continuity"]),
         (changed("c", to=1), ["c", "no such key"]),
@@ -240,7 +248,7 @@ def test_a_problem_keeps_surfaces_paths_and_options(tmp_path):
 )
 def test_bad_problem_is_refused(tmp_path, change, words):
     path = tmp_path / "p.json"
-    write_problem(path, StoredProblem(SQUARE, "u1", "b.json", "v0", {"middle_curves": 1}))
+    write_problem(path, StoredProblem(SQUARE, "u1", "b.json", "v0", BlendOptions(middle_curves=2)))
     record = json.loads(path.read_text())
     change(record)
     path.write_text(json.dumps(record))
@@ -250,13 +258,22 @@ def test_bad_problem_is_refused(tmp_path, change, words):
         assert word in str(caught.value)
 
 
-def test_a_problem_can_hold_every_option_of_blend():
-    keywords = {name for name, p in inspect.signature(blend).parameters.items() if p.kind is p.KEYWORD_ONLY}
-    assert set(_OptionsRecord.model_fields) == keywords
-
-
 def test_options_come_back_as_they_were(tmp_path):
-    options = {"alpha": ("natural", 0.5), "box": (0.5, 2.0), "strict": True, "u_knots": [0.25, 0.5], "v_scale": "unit"}
+    options = BlendOptions(
+        continuity=("G1", "C2"),
+        middle_curves=2,
+        degree_u=4,
+        method="casadi",
+        flip="yes",
+        alpha=("natural", 0.5),
+        box=(0.5, 2.0),
+        v_scale="unit",
+        u_knots=[0.25, 0.5],
+        middle_knots=[[0.5], []],
+        strict=True,
+    )
+    default = BlendOptions()
+    assert all(getattr(options, f.name) != getattr(default, f.name) for f in fields(options))
     write_problem(tmp_path / "p.json", StoredProblem(SQUARE, "u1", SQUARE, "v0", options))
     assert read_problem(tmp_path / "p.json").options == options
 
@@ -265,6 +282,6 @@ def test_bad_problem_is_not_written(tmp_path):
     path = tmp_path / "p.json"
     with pytest.raises(EdgeError, match="edge_b"):
         StoredProblem(SQUARE, "u1", SQUARE, "w")
-    with pytest.raises(FileError, match="options"):
-        write_problem(path, StoredProblem(SQUARE, "u1", SQUARE, "v0", {"middle_curves": object()}))
+    with pytest.raises(OptionError, match="options: found a dict, expected a BlendOptions"):
+        StoredProblem(SQUARE, "u1", SQUARE, "v0", {"middle_curves": 1})
     assert not path.exists()

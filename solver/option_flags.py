@@ -1,0 +1,99 @@
+"""Flags of the command line for the fields of `BlendOptions`, so that an option is written once."""
+
+from __future__ import annotations
+
+import functools
+import inspect
+from collections.abc import Callable, Iterator
+from dataclasses import Field, fields
+from typing import Annotated, Any
+
+import typer
+
+from semispline.solver.errors import OptionError
+from semispline.solver.options import BlendOptions
+
+# How the command line reads each form of option. None is unsaid.
+_READ_AS: dict[str, Any] = {
+    "text": str | None,
+    "whole": int | None,
+    "number-or-word": str | None,
+    "range": tuple[float, float] | None,
+    "numbers": str | None,
+    "lists": list[str] | None,
+    "flag": bool | None,
+}
+
+
+def takes_blend_options(command: Callable[..., None]) -> Callable[..., None]:
+    """Give a command a flag for each field of `BlendOptions`; its parameter `options` gets what was said.
+
+    A field that may differ at the two edges has a second flag, such as `--alpha-b`.
+    """
+    given = inspect.signature(command, eval_str=True)
+    own = [p for p in given.parameters.values() if p.name != "options"]
+    flags = [flag for option in fields(BlendOptions) for flag in _flags(option)]
+
+    @functools.wraps(command)
+    def run(**said: Any) -> None:
+        options = {flag.name: said.pop(flag.name) for flag in flags}
+        command(**said, options=BlendOptions(**dict(_said(options))))
+
+    # Flags with defaults follow the arguments that have none.
+    parameters = sorted([*own, *flags], key=lambda p: p.default is not inspect.Parameter.empty)
+    run.__signature__ = given.replace(parameters=parameters)  # type: ignore[attr-defined]
+    run.__annotations__ = {p.name: p.annotation for p in parameters}
+    return run
+
+
+def _flags(option: Field[Any]) -> Iterator[inspect.Parameter]:
+    form, metavar, text = (option.metadata[key] for key in ("form", "metavar", "help"))
+    name = "--" + option.name.replace("_", "-")
+    default = False if form == "flag" or option.default is None else _shown(option.default)
+    words: dict[str, Any] = {"help": text, "show_default": default}
+    if metavar:
+        words["metavar"] = metavar
+    yield _parameter(option.name, form, typer.Option(name, **words))
+    if option.metadata["sides"]:
+        words |= {"help": "The same at B, where it differs.", "show_default": False}
+        yield _parameter(f"{option.name}_b", form, typer.Option(f"{name}-b", **words))
+
+
+def _parameter(name: str, form: str, flag: Any) -> inspect.Parameter:
+    kind = inspect.Parameter.KEYWORD_ONLY
+    return inspect.Parameter(name, kind, default=None, annotation=Annotated[_READ_AS[form], flag])
+
+
+def _shown(default: Any) -> str:
+    return " ".join(f"{x:g}" for x in default) if isinstance(default, tuple) else str(default)
+
+
+def _said(values: dict[str, Any]) -> Iterator[tuple[str, Any]]:
+    """Yield name and value of each option that was said, as `BlendOptions` takes it."""
+    for option in fields(BlendOptions):
+        first, second = values[option.name], values.get(f"{option.name}_b")
+        if first is None and second is None:
+            continue
+        name = "--" + option.name.replace("_", "-")
+        at_a = option.default if first is None else _value(option.metadata["form"], name, first)
+        yield option.name, at_a if second is None else (at_a, _value(option.metadata["form"], f"{name}-b", second))
+
+
+def _value(form: str, name: str, said: Any) -> Any:
+    if form == "number-or-word":
+        try:
+            return float(said)
+        except ValueError:
+            return said
+    if form == "numbers":
+        return _numbers(name, said)
+    if form == "lists":
+        return [_numbers(name, text) for text in said]
+    return said
+
+
+def _numbers(name: str, text: str) -> list[float]:
+    try:
+        return [float(part) for part in text.split(",") if part.strip()]
+    except ValueError:
+        raise OptionError(f"{name}: found {text!r}, expected numbers with commas between them") from None

@@ -1,0 +1,107 @@
+"""Options of a blend: one value through the library, files and the command line."""
+
+from dataclasses import fields, replace
+
+import numpy as np
+import pytest
+import typer
+from typer.testing import CliRunner
+
+from semispline import Base, BlendOptions, BSplineSurface, OptionError, blend
+from semispline.solver.option_flags import takes_blend_options
+
+KNOTS = [0, 0, 1, 1]
+FLOOR = Base(BSplineSurface(1, 1, KNOTS, KNOTS, [[[0, 0, 0], [0, 1, 0]], [[1, 0, 0], [1, 1, 0]]]), "u1")
+WALL = Base(BSplineSurface(1, 1, KNOTS, KNOTS, [[[2, 0, 1], [2, 1, 1]], [[2, 0, 2], [2, 1, 2]]]), "u0")
+# Of every option another value than the default, and the words that say it on the command line.
+OTHER = {
+    "continuity": (("G1", "C2"), ["--continuity", "g1", "--continuity-b", "C2"]),
+    "middle_curves": (2, ["--middle-curves", "2"]),
+    "degree_u": (4, ["--degree-u", "4"]),
+    "method": ("bfgs", ["--method", "bfgs"]),
+    "flip": ("yes", ["--flip", "yes"]),
+    "alpha": (("natural", 0.5), ["--alpha", "natural", "--alpha-b", "0.5"]),
+    "box": ((0.5, 2.0), ["--box", "0.5", "2"]),
+    "v_scale": ("unit", ["--v-scale", "unit"]),
+    "u_knots": ((0.25, 0.5), ["--u-knots", "0.25,0.5"]),
+    "middle_knots": (((0.5,), ()), ["--middle-knots", "0.5", "--middle-knots", ","]),
+    "strict": (True, ["--strict"]),
+}
+
+
+def options_of(words):
+    """What a command with the flags of a blend is given for these words."""
+    given = []
+    app = typer.Typer()
+
+    @app.command()
+    @takes_blend_options
+    def command(options: BlendOptions) -> None:
+        given.append(options)
+
+    done = CliRunner().invoke(app, words, catch_exceptions=False)
+    assert done.exit_code == 0, done.output
+    return given[0]
+
+
+def test_every_option_is_tried_here():
+    assert set(OTHER) == {f.name for f in fields(BlendOptions)}
+    assert all(value != getattr(BlendOptions(), name) for name, (value, _) in OTHER.items())
+
+
+def test_nothing_said_leaves_the_defaults():
+    assert options_of([]) == BlendOptions()
+
+
+@pytest.mark.parametrize("name", OTHER)
+def test_a_flag_sets_its_option_and_no_other(name):
+    value, words = OTHER[name]
+    assert options_of(words) == replace(BlendOptions(), **{name: value})
+
+
+@pytest.mark.parametrize(("flag", "pair"), [("--continuity-b", ("G2", "G1")), ("--alpha-b", ("energy", 0.5))])
+def test_what_is_said_of_b_alone_leaves_a_at_its_default(flag, pair):
+    name = flag.removeprefix("--").removesuffix("-b")
+    assert getattr(options_of([flag, str(pair[1])]), name) == pair
+
+
+def test_one_value_and_names_say_the_same():
+    options = BlendOptions(continuity="G1", middle_curves=0)
+    by_value, by_name = blend(FLOOR, WALL, options), blend(FLOOR, WALL, continuity="G1", middle_curves=0)
+    assert by_value.alpha2 == by_name.alpha2
+    for one, two in zip(by_value.surface.control_curves, by_name.surface.control_curves, strict=True):
+        np.testing.assert_array_equal(one.control_points, two.control_points)
+    assert by_value.continuity == ("G1", "G1")
+
+
+@pytest.mark.parametrize("written", ["g1", "G1", ("g1", "G1")])
+def test_lower_case_names_are_understood_and_kept_in_upper_case(written):
+    assert blend(FLOOR, WALL, continuity=written, middle_curves=0).continuity == ("G1", "G1")
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda: blend(FLOOR, WALL, tension=1), "tension: no such option, expected one of continuity, middle_curves"),
+        (lambda: blend(FLOOR, WALL, "G2"), "options: found a str, expected a BlendOptions"),
+        (lambda: blend(FLOOR, WALL, BlendOptions(), strict=True), "options: found strict beside it"),
+        (lambda: BlendOptions(continuity="g 2"), "continuity: found 'g 2', expected one of C0"),
+        (lambda: BlendOptions(alpha="free"), "alpha: found 'free', expected energy, natural or a positive number"),
+        (lambda: BlendOptions(u_knots=[0.5, float("nan")]), r"u_knots\[1\]: found nan, expected a finite number"),
+        (lambda: BlendOptions(middle_knots=[0.5]), r"middle_knots\[0\]: found 0.5, expected numbers"),
+        (lambda: BlendOptions(middle_knots="0.5"), "middle_knots: found '0.5', expected sequences of numbers"),
+    ],
+)
+def test_what_no_option_can_be_is_refused(call, message):
+    with pytest.raises(OptionError, match=message):
+        call()
+
+
+def test_said_holds_what_a_file_needs():
+    assert BlendOptions().said() == {}
+    assert BlendOptions(**BlendOptions(alpha=0.5, strict=True).said()) == BlendOptions(alpha=0.5, strict=True)
+
+
+def test_options_are_values():
+    assert hash(BlendOptions(alpha=[0.5, 0.5])) == hash(BlendOptions(alpha=0.5))
+    assert BlendOptions(middle_knots=np.array([[0.5]])) == BlendOptions(middle_knots=[[0.5]])
