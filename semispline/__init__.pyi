@@ -34,8 +34,6 @@ from .solver.splines.bezier import BezierFunction as BezierFunction
 from .solver.splines.bezier import bezier_patch as bezier_patch
 from .solver.splines.bezier import divide_bezier as divide_bezier
 from .solver.splines.bezier import trim_bezier as trim_bezier
-from .solver.splines.compatible import Conversion as Conversion
-from .solver.splines.compatible import convert_to_bspline as convert_to_bspline
 from .solver.splines.construction import Approximation as Approximation
 from .solver.splines.construction import extrude as extrude
 from .solver.splines.construction import interpolate_curve as interpolate_curve
@@ -51,6 +49,7 @@ from .solver.splines.curves import reverse_curve as reverse_curve
 from .solver.splines.curves import set_curve_continuity as set_curve_continuity
 from .solver.splines.curves import split_curve as split_curve
 from .solver.splines.derivatives import derivative_curve as derivative_curve
+from .solver.splines.derivatives import derivative_surface as derivative_surface
 from .solver.splines.operations import bounding_box as bounding_box
 from .solver.splines.operations import clamped_surface as clamped_surface
 from .solver.splines.operations import elevate_degree as elevate_degree
@@ -63,6 +62,10 @@ from .solver.splines.operations import split_v as split_v
 from .solver.splines.operations import swap_directions as swap_directions
 from .solver.splines.operations import transform as transform
 from .solver.splines.refinement import clamp_knots as clamp_knots
+from .solver.splines.rows import MergedKnots as MergedKnots
+from .solver.splines.rows import insert_row_knot as insert_row_knot
+from .solver.splines.rows import merge_knots as merge_knots
+from .solver.splines.rows import set_row_continuity as set_row_continuity
 from .solver.splines.surfaces import BSplineCurve as BSplineCurve
 from .solver.splines.surfaces import BSplineSurface as BSplineSurface
 from .solver.splines.surfaces import SemiStructuredSurface as SemiStructuredSurface

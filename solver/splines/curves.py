@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from semispline.solver.arrays import FloatArray, finite_array, require
+from semispline.solver.arrays import FloatArray, SparseMatrix, finite_array, require
 from semispline.solver.errors import KnotError, OptionError
 from semispline.solver.scalars import is_whole, real_number
+from semispline.solver.splines.compatible import compatible_curves
 from semispline.solver.splines.knots import reversed_knots
 from semispline.solver.splines.refinement import (
     elevated_knots,
@@ -86,6 +88,30 @@ def split_curve(curve: BSplineCurve, v: float) -> tuple[BSplineCurve, BSplineCur
     require(curve, "curve", BSplineCurve)
     at = snapped(real_number(v, "v", KnotError), curve.knots)
     return restrict_curve(curve, float(curve.knots[0]), at), restrict_curve(curve, at, float(curve.knots[-1]))
+
+
+def combined_curves(curves: Sequence[BSplineCurve], matrix: SparseMatrix) -> tuple[BSplineCurve, ...]:
+    """Return one curve for each row of a sparse matrix: the linear combination of the curves with its weights.
+
+    Each result has the knots of the curves that take part in it, and no others; those of different curves within 1e-12
+    of the domain are one.
+    """
+    result = []
+    for i in range(matrix.shape[0]):
+        part = slice(matrix.indptr[i], matrix.indptr[i + 1])
+        used = [curves[j] for j in matrix.indices[part]]
+        weights = np.asarray(matrix.data[part])
+        if not used:
+            first = curves[0].knots
+            result.append(BSplineCurve(1, np.repeat(first[[0, -1]], 2), np.zeros((2, 3))))
+        elif len(used) == 1:
+            points = used[0].control_points * weights[0]
+            result.append(used[0] if weights[0] == 1.0 else BSplineCurve(used[0].degree, used[0].knots, points))
+        else:
+            same = compatible_curves(used)
+            points = np.einsum("i,ijd->jd", weights, same.control_points)
+            result.append(BSplineCurve(same.degree, same.knots, points))
+    return tuple(result)
 
 
 def set_curve_continuity(curve: BSplineCurve, v: float, continuity: int, tolerance: float = 1e-12) -> BSplineCurve:

@@ -2,7 +2,7 @@
 
 A u-derivative of a semi-structured surface takes differences of neighbouring rows, so it is semi-structured again:
 row i of the du-th derivative combines the rows i .. i + du and needs the union of their knots, no others. Knots of
-different rows that are closer than 1e-12 of the v-domain become one there (`convert_to_bspline` reports such a change).
+different rows that are closer than 1e-12 of the v-domain become one there (`merge_knots` reports such a change).
 
 Orders are taken one by one, and each must be continuous: where the first derivative jumps there is no second one, even
 if its two sides agree. A mixed derivative may be taken v first or u first; it is refused if neither way exists.
@@ -17,9 +17,10 @@ from typing import Generic, TypeVar
 
 import numpy as np
 
-from semispline.solver.arrays import FloatArray
+from semispline.solver.arrays import FloatArray, require
 from semispline.solver.errors import InputError
-from semispline.solver.splines.compatible import combined_curves, compatible_curves
+from semispline.solver.splines.compatible import compatible_curves
+from semispline.solver.splines.curves import combined_curves
 from semispline.solver.splines.evaluation import check_orders
 from semispline.solver.splines.knots import derivative_matrix, derivative_points
 from semispline.solver.splines.operations import swap_directions
@@ -31,6 +32,7 @@ JUMP_TOLERANCE = 1e-10
 # Eight roundings of the largest coordinate: what a control point may carry.
 ROUNDING = 8 * float(np.finfo(float).eps)
 
+S = TypeVar("S", BSplineSurface, SemiStructuredSurface)
 Row = TypeVar("Row")
 Spline = TypeVar("Spline")
 Rounding = TypeVar("Rounding")
@@ -60,41 +62,40 @@ def derivative_curve(curve: BSplineCurve, order: int = 1) -> BSplineCurve:
     return _repeated(curve, slack, [step] * order)
 
 
-def surface_derivative(surface: BSplineSurface, du: int, dv: int) -> BSplineSurface:
-    """Return a mixed derivative of a polynomial surface as a surface; degrees fall to 1 at the least.
+def derivative_surface(surface: S, du: int = 0, dv: int = 0) -> S:
+    """Return a mixed derivative of a polynomial surface as a surface of its kind, exactly, over the fewest knots.
+
+    Degrees fall to 1 at the least. Row i of the derivative of a semi-structured surface has the knots of the rows
+    i .. i + du of the surface, and the highest of their degrees less dv; a v-derivative alone leaves every curve with
+    its own knots.
 
     Raises
     ------
     InputError
         A rational surface (its derivative has other weights and twice the degree), or a derivative that jumps at a
         knot.
+
+    Examples
+    --------
+    >>> low = BSplineCurve(1, [0, 0, 1, 1], [[0, 0, 0], [0, 1, 0]])
+    >>> high = BSplineCurve(1, [0, 0, 0.5, 1, 1], [[1, 0, 0], [1, 0.5, 1], [1, 1, 0]])
+    >>> surface = SemiStructuredSurface(1, [0, 0, 1, 1], (low, high))
+    >>> derivative_surface(surface, du=1).evaluate([0.5], [0.5])
+    array([[1., 0., 1.]])
     """
+    require(surface, "surface", BSplineSurface, SemiStructuredSurface)
     check_orders(du=du, dv=dv)
+    name = f"derivative ({du}, {dv})"
+    if isinstance(surface, SemiStructuredSurface):
+        rounding = ROUNDING * max(_largest(c.control_points) for c in surface.control_curves)
+        rows = [np.full(len(c.control_points), rounding) for c in surface.control_curves]
+        return _mixed(surface, rows, [partial(_rows_step_u, name=name)] * du, [partial(_rows_step_v, name=name)] * dv)
     if surface.weights is not None:
         raise InputError(
             "surface: rational; its derivative is not a spline of lower degree, use evaluate(u, v, du, dv)"
         )
-    name = f"derivative ({du}, {dv})"
     slack = np.full(surface.control_points.shape[:2], ROUNDING * _largest(surface.control_points))
     return _mixed(surface, slack, [partial(_net_step_u, name=name)] * du, [partial(_net_step_v, name=name)] * dv)
-
-
-def semistructured_derivative(surface: SemiStructuredSurface, du: int, dv: int) -> SemiStructuredSurface:
-    """Return a mixed derivative of a semi-structured surface as a semi-structured surface.
-
-    Row i has the knots of the rows i .. i + du of the surface, and the highest of their degrees less dv (but at least
-    1), so a v-derivative alone leaves every curve with its own knots.
-
-    Raises
-    ------
-    InputError
-        A derivative that jumps at a knot of u, or of a row.
-    """
-    check_orders(du=du, dv=dv)
-    name = f"derivative ({du}, {dv})"
-    rounding = ROUNDING * max(_largest(c.control_points) for c in surface.control_curves)
-    slack = [np.full(len(c.control_points), rounding) for c in surface.control_curves]
-    return _mixed(surface, slack, [partial(_rows_step_u, name=name)] * du, [partial(_rows_step_v, name=name)] * dv)
 
 
 def _mixed(

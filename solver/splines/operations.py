@@ -3,7 +3,7 @@
 Every result is the same surface (or its image) in another form; nothing is approximated beyond rounding. Where rows of
 a semi-structured surface are combined (elevation in u, knots in u, split_u), those knots of different rows that are
 closer than 1e-12 of the v-domain become one: points move by no more than 1e-12 of the v-domain times the largest
-v-derivative, and `convert_to_bspline` reports such a change.
+v-derivative, and `merge_knots` reports such a change.
 """
 
 from __future__ import annotations
@@ -19,8 +19,7 @@ from numpy.typing import ArrayLike
 from semispline.solver.arrays import FloatArray, SparseMatrix, finite_array, real_array, require
 from semispline.solver.errors import ControlPointError, InputError, KnotError
 from semispline.solver.scalars import real_number
-from semispline.solver.splines.compatible import combined_curves
-from semispline.solver.splines.curves import elevate_curve, insert_named, restrict_curve, reverse_curve
+from semispline.solver.splines.curves import combined_curves, elevate_curve, insert_named, restrict_curve, reverse_curve
 from semispline.solver.splines.knots import affine_knots, reversed_knots
 from semispline.solver.splines.refinement import (
     clamp_knots,

@@ -2,13 +2,15 @@
 
 Values are frozen dataclasses over read-only arrays, checked when they are made. Evaluation is sparse basis matrices
 times (derivative) control points; it is right-continuous at inner knots and left-continuous at the end of the domain.
+The classes evaluate themselves and turn into each other; whatever makes another curve or surface is a function of a
+module above.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, TypeAlias, final
 
@@ -16,8 +18,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from semispline.solver.arrays import FloatArray, SparseMatrix, finite_array, rebuilt
-from semispline.solver.errors import ControlPointError, InputError, KnotError, OptionError
-from semispline.solver.scalars import is_whole, real_number, whole_number
+from semispline.solver.errors import ControlPointError, InputError
+from semispline.solver.splines.compatible import compatible_curves
 from semispline.solver.splines.evaluation import (
     check_orders,
     checked_parameters,
@@ -27,7 +29,6 @@ from semispline.solver.splines.evaluation import (
     quotient,
 )
 from semispline.solver.splines.knots import (
-    MERGE_TOLERANCE,
     basis_matrix,
     breakpoints,
     checked_knots,
@@ -201,12 +202,6 @@ class BSplineSurface:
 
         return quotient(net, du, dv) if self.weights is not None else net(du, dv)
 
-    def derivative(self, du: int = 0, dv: int = 0) -> BSplineSurface:
-        """Return a mixed derivative as a surface of lower degree; refused where it jumps, and for rational surfaces."""
-        from semispline.solver.splines.derivatives import surface_derivative
-
-        return surface_derivative(self, du, dv)
-
     def to_semistructured(self) -> SemiStructuredSurface:
         """Return the same surface with its rows as v-control curves; refused for rational surfaces."""
         if self.weights is not None:
@@ -313,58 +308,21 @@ class SemiStructuredSurface:
         basis = basis_matrix(self.degree_u - du, self.knots_u[du : len(self.knots_u) - du], uu)
         return np.asarray((basis @ rows.reshape(len(rows), -1)).reshape(len(uu), len(vv), 3))
 
-    def derivative(self, du: int = 0, dv: int = 0) -> SemiStructuredSurface:
-        """Return a mixed derivative, exactly, in the form with the fewest knots; refused where it jumps.
+    def to_bspline(self) -> BSplineSurface:
+        """Return the same surface with one v-knot vector, by exact degree elevation and knot insertion.
 
-        Row i of the result has the knots of the rows i .. i + du of this surface.
+        Knots of different curves within 1e-12 of the v-domain are one; `merge_knots` makes more of them equal first,
+        and says what that changes.
 
         Examples
         --------
         >>> low = BSplineCurve(1, [0, 0, 1, 1], [[0, 0, 0], [0, 1, 0]])
         >>> high = BSplineCurve(1, [0, 0, 0.5, 1, 1], [[1, 0, 0], [1, 0.5, 1], [1, 1, 0]])
-        >>> surface = SemiStructuredSurface(1, [0, 0, 1, 1], (low, high))
-        >>> surface.derivative(du=1).evaluate([0.5], [0.5])
-        array([[1., 0., 1.]])
+        >>> SemiStructuredSurface(1, [0, 0, 1, 1], (low, high)).to_bspline().knots_v
+        array([0. , 0. , 0.5, 1. , 1. ])
         """
-        from semispline.solver.splines.derivatives import semistructured_derivative
-
-        return semistructured_derivative(self, du, dv)
-
-    def insert_knot(self, i: int, v: float, times: int = 1) -> SemiStructuredSurface:
-        """Return the same surface with a knot inserted in v-control curve i alone."""
-        from semispline.solver.splines.curves import insert_curve_knots
-
-        at = [real_number(v, "v", KnotError)] * whole_number(times, "times", 0, OptionError)
-        return self._with_curve(i, lambda curve: insert_curve_knots(curve, at))
-
-    def set_continuity(self, i: int, v: float, continuity: int, tolerance: float = 1e-12) -> SemiStructuredSurface:
-        """Return the surface with v-control curve i in a form that is C^continuity at v, and no more.
-
-        Less continuity inserts knots, which is exact; more takes knots away, and is refused unless the curve is that
-        smooth already, within `tolerance` of its extent (see `set_curve_continuity`).
-        """
-        from semispline.solver.splines.curves import set_curve_continuity
-
-        return self._with_curve(i, lambda curve: set_curve_continuity(curve, v, continuity, tolerance))
-
-    def _with_curve(self, i: int, change: Callable[[BSplineCurve], BSplineCurve]) -> SemiStructuredSurface:
-        n = len(self.control_curves)
-        if not is_whole(i) or not 0 <= i < n:
-            raise InputError(f"i: found {i!r}, expected the index of a v-control curve, 0 to {n - 1}")
-        curves = list(self.control_curves)
-        with named_row(i):
-            curves[i] = change(curves[i])
-        return replace(self, control_curves=tuple(curves))
-
-    def to_bspline(self, tolerance: float = MERGE_TOLERANCE) -> BSplineSurface:
-        """Return the same surface with one v-knot vector, by exact degree elevation and knot insertion.
-
-        Knots of different curves closer than `tolerance` times the v-domain become one; `convert_to_bspline` says what
-        that changed and how many control points the conversion added.
-        """
-        from semispline.solver.splines.compatible import convert_to_bspline
-
-        return convert_to_bspline(self, tolerance).surface
+        same = compatible_curves(self.control_curves)
+        return BSplineSurface(self.degree_u, same.degree, self.knots_u, same.knots, same.control_points)
 
     def _rows(self, v: FloatArray, dv: int, du: int) -> FloatArray:
         """Rows of the du-th u-derivative at each v, shape (m + 1 - du, len(v), 3)."""

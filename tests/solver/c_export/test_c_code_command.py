@@ -21,7 +21,9 @@ FILES = ["README.md", "blend.c", "blend.h"]
 def stored(folder, a=None, b=None, **options):
     one, other = facing_pair(np.random.default_rng(0), edges=("u0", "u0"))
     path = folder / "problem.json"
-    write_problem(path, StoredProblem(a or one.surface, one.edge, b or other.surface, other.edge, options))
+    write_problem(path, StoredProblem(a or one.surface, one.edge, b or other.surface, other.edge))
+    record = json.loads(path.read_text())
+    path.write_text(json.dumps(record | {"options": options}))
     return path
 
 

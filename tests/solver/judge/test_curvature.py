@@ -6,6 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from helpers.splines import semistructured_surfaces
+from semispline import insert_row_knot
 from semispline.solver.errors import InputError
 from semispline.solver.judge.curvature import (
     gaussian_curvature,
@@ -122,7 +123,7 @@ def test_a_bilinear_saddle():
     u, v = points()
     s = 1 + u**2 + v**2
     classical = elevate_degree(saddle(), 2, 3)
-    semi = classical.to_semistructured().insert_knot(0, 0.4).insert_knot(2, 0.6, 3)
+    semi = insert_row_knot(insert_row_knot(classical.to_semistructured(), 0, 0.4), 2, 0.6, 3)
     for surface in (saddle(), classical, semi):
         geometry = local_geometry(surface, u, v)
         close(geometry.gaussian, -1 / s**2)

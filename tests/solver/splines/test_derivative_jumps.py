@@ -6,6 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from helpers.splines import knot_vectors, scale
+from semispline import derivative_surface
 from semispline.solver.errors import InputError
 from semispline.solver.judge.de_boor import curve_points
 from semispline.solver.splines.curves import elevate_curve, insert_curve_knots
@@ -35,10 +36,10 @@ def forms(curve):
     )
     return [
         lambda order: derivative_curve(curve, order),
-        lambda order: surface.derivative(0, order),
-        lambda order: swap_directions(surface).derivative(order, 0),
-        lambda order: surface.to_semistructured().derivative(0, order),
-        lambda order: across.derivative(order, 0),
+        lambda order: derivative_surface(surface, 0, order),
+        lambda order: derivative_surface(swap_directions(surface), order, 0),
+        lambda order: derivative_surface(surface.to_semistructured(), 0, order),
+        lambda order: derivative_surface(across, order, 0),
     ]
 
 
@@ -111,5 +112,5 @@ def test_knots_that_can_be_removed_never_stop_a_derivative(given, seed, offset, 
         narrow = np.diff(np.unique(finer.knots)).min()
         limit += 100 * EPS * (1 + offset) * (2 * finer.degree / narrow) ** order
         assert np.abs(derivative_curve(finer, order).evaluate(x) - expected).max() <= limit
-        assert surface.derivative(0, order).degree_v == max(finer.degree - order, 1)
-        insert_knots(surface, [at, at]).derivative(1, order)
+        assert derivative_surface(surface, 0, order).degree_v == max(finer.degree - order, 1)
+        derivative_surface(insert_knots(surface, [at, at]), 1, order)

@@ -8,6 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from helpers.splines import basis, knot_vectors
+from semispline import insert_row_knot
 from semispline.solver.errors import InputError, KnotError
 from semispline.solver.splines.curves import elevate_curve, insert_curve_knots, reverse_curve, split_curve
 from semispline.solver.splines.knots import basis_matrix, derivative_matrix, greville, reversed_knots
@@ -133,13 +134,13 @@ def test_rational_surfaces_stay_rational_and_reverse_with_their_weights():
 
 
 def test_bounds_and_control_points():
-    semi = SQUARE.to_semistructured().insert_knot(0, 0.5)
+    semi = insert_row_knot(SQUARE.to_semistructured(), 0, 0.5)
     assert all_control_points(semi).shape == (5, 3)
     assert bounding_box(semi).tolist() == bounding_box(SQUARE).tolist() == [[0, 0, 0], [1, 1, 0]]
 
 
 def test_pieces_of_a_semistructured_surface_keep_the_knots_of_each_curve():
-    semi = elevate_degree(SQUARE, 1, 2).to_semistructured().insert_knot(0, 0.3).insert_knot(1, 0.7, 2)
+    semi = insert_row_knot(insert_row_knot(elevate_degree(SQUARE, 1, 2).to_semistructured(), 0, 0.3), 1, 0.7, 2)
     low, high = split_v(semi, 0.5)
     assert [c.knots.tolist() for c in low.control_curves] == [[0, 0, 0, 0.3, 0.5, 0.5, 0.5], [0, 0, 0, 0.5, 0.5, 0.5]]
     assert [len(c.control_points) for c in high.control_curves] == [3, 5]

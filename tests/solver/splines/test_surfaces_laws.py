@@ -13,6 +13,7 @@ from helpers.splines import (
     semistructured_surfaces,
     surfaces,
 )
+from semispline import insert_row_knot
 from semispline.solver.judge.de_boor import curve_points, surface_points
 from semispline.solver.splines.curves import insert_curve_knots, reverse_curve, split_curve
 from semispline.solver.splines.operations import (
@@ -260,7 +261,7 @@ def test_operations_on_one_curve_leave_the_others_alone():
     surface = BSplineSurface(1, 1, [0, 0, 1, 1], [0, 0, 1, 1], [[[0, 0, 0], [0, 1, 0]], [[1, 0, 0], [1, 1, 0]]])
     semi = surface.to_semistructured()
     first, second = semi.control_curves
-    changed = semi.insert_knot(1, 0.25)
+    changed = insert_row_knot(semi, 1, 0.25)
     assert changed.control_curves[0] is first
     assert changed.control_curves[1].knots.tolist() == insert_curve_knots(second, [0.25]).knots.tolist()
     assert reverse_curve(reverse_curve(first)).control_points.tolist() == first.control_points.tolist()

@@ -6,10 +6,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from helpers.splines import surfaces
+from semispline import merge_knots
 from semispline.solver.errors import KnotError
 from semispline.solver.judge.curvature import mean_curvature
 from semispline.solver.judge.de_boor import surface_points
-from semispline.solver.splines.compatible import convert_to_bspline
 from semispline.solver.splines.curves import insert_curve_knots, restrict_curve, set_curve_continuity, split_curve
 from semispline.solver.splines.operations import insert_knots, split_u, split_v
 from semispline.solver.splines.refinement import snapped
@@ -108,18 +108,18 @@ def test_continuity_next_to_a_knot_is_that_at_the_knot():
 @pytest.mark.parametrize("near", [1e-13, 1 - 1e-13])
 def test_a_knot_next_to_an_end_becomes_the_end_on_conversion(near):
     surface = between([near], [0.5])
-    conversion = convert_to_bspline(surface)
-    assert conversion.surface.knots_v[4:-4].tolist() == [0.5]
-    assert conversion.knot_shift == pytest.approx(1e-13, rel=1e-2)
+    merged = merge_knots(surface)
+    assert surface.to_bspline().knots_v[4:-4].tolist() == [0.5]
+    assert merged.knot_shift == pytest.approx(1e-13, rel=1e-2)
     v = np.array([0.0, near, 0.4, 1.0])
-    moved = np.abs(surface_points(conversion.surface, [0.0], v) - surface_points(surface, [0.0], v)).max()
-    assert 1e-15 < moved <= conversion.change
+    moved = np.abs(surface_points(surface.to_bspline(), [0.0], v) - surface_points(surface, [0.0], v)).max()
+    assert 1e-15 < moved <= merged.change
     # The slope there is at most 3 * 2 / 1e-13 over 1e-13: the net moves by its own size, the curve by as much.
-    assert conversion.change <= 4
+    assert merged.change <= 4
     for tolerance in (0.0, 1e-14):
-        assert near in convert_to_bspline(surface, tolerance).surface.knots_v
-    wide = convert_to_bspline(between([1e-3], [0.5]), 0.01)
-    assert wide.surface.knots_v[4:-4].tolist() == [1e-3, 0.5]
+        assert near in merge_knots(surface, tolerance).surface.control_curves[0].knots
+    wide = merge_knots(between([1e-3], [0.5]), 0.01).surface
+    assert wide.to_bspline().knots_v[4:-4].tolist() == [1e-3, 0.5]
 
 
 @pytest.mark.parametrize("tolerance", [1e-4, 1e-7])
@@ -153,7 +153,7 @@ def test_removal_is_decided_within_a_factor_of_three_of_the_tolerance(tolerance)
 def test_the_bound_of_a_merged_knot_is_met_within_a_factor_of_ten(degree):
     rows = [curve_over([0.3], degree, 0), curve_over([0.31], degree, 1)]
     surface = SemiStructuredSurface(1, UNIT, rows)
-    conversion = convert_to_bspline(surface, 0.02)
+    merged = merge_knots(surface, 0.02)
     u, v = np.ones(4000), np.linspace(0, 1, 4000)
-    moved = np.linalg.norm(surface_points(conversion.surface, u, v) - surface_points(surface, u, v), axis=1).max()
-    assert moved <= conversion.change <= 10 * moved
+    moved = np.linalg.norm(surface_points(merged.surface, u, v) - surface_points(surface, u, v), axis=1).max()
+    assert moved <= merged.change <= 10 * moved
