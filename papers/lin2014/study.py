@@ -7,7 +7,7 @@ from importlib.util import find_spec
 from pathlib import Path
 
 from semispline.papers.baselines import BlendTask
-from semispline.papers.lin2014.checks.consequences import made_pair
+from semispline.papers.lin2014.examples.made_pair import made_pair
 from semispline.papers.lin2014.examples.section5 import DEPARTURES, FIGURES, PRINTED, example
 from semispline.papers.lin2014.figures import blends as figures_blends
 from semispline.papers.lin2014.figures.bezier import draw_figure_1, draw_figure_2, draw_trimmed_patch

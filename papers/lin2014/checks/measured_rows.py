@@ -8,7 +8,6 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import cache
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -16,24 +15,14 @@ import sympy as sp
 
 from semispline.papers.ledger import Consequence, Formula
 from semispline.papers.lin2014 import printed as pr
-from semispline.papers.lin2014.checks.contact import Side, t_ks1, u_before, u_last, w_kr1
+from semispline.papers.lin2014.checks.contact_rows import Side, t_ks1, u_before, u_last, w_kr1
+from semispline.papers.lin2014.examples.made_pair import made_pair
 from semispline.papers.reproduction import cad_verdict
 from semispline.solver.blending import BlendResult, Continuity, blend, make_side
-from semispline.solver.io import read_problem
 from semispline.solver.judge import Base, measure_contact
-from semispline.solver.splines import BSplineCurve, BSplineSurface, SemiStructuredSurface
+from semispline.solver.splines import BSplineCurve, SemiStructuredSurface
 
-EXAMPLES = Path(__file__).parents[1] / "examples"
 ROWS_BY_SIDE = {"start": (pr.P_0, pr.P_1, pr.P_2), "end": (pr.P_m, pr.P_m1, pr.P_m2)}
-
-
-@cache
-def made_pair() -> tuple[Base, Base]:
-    """Return the two bases of the made pair."""
-    problem = read_problem(EXAMPLES / "made-pair.json")
-    if not (isinstance(problem.a, BSplineSurface) and isinstance(problem.b, BSplineSurface)):
-        raise TypeError("made-pair.json: expected two B-spline surfaces")
-    return Base(problem.a, problem.edge_a), Base(problem.b, problem.edge_b)  # type: ignore[arg-type]
 
 
 @cache
