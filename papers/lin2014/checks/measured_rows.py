@@ -17,7 +17,7 @@ from semispline.papers.ledger import Consequence, Formula
 from semispline.papers.lin2014 import printed as pr
 from semispline.papers.lin2014.checks.contact_rows import Side, t_ks1, u_before, u_last, w_kr1
 from semispline.papers.lin2014.examples.made_pair import made_pair
-from semispline.papers.reproduction import cad_verdict
+from semispline.papers.reproduction import cad_verdict, turn_between
 from semispline.solver.blending import BlendResult, Continuity, blend, make_side
 from semispline.solver.judge import Base, measure_contact
 from semispline.solver.splines import BSplineCurve, SemiStructuredSurface
@@ -105,7 +105,7 @@ def measured_rows(
     measured = {
         "gap": contact.gap,
         "angle between tangent planes [degrees]": contact.angle_degrees,
-        "turn of the normal across the contact [degrees]": _oriented_turn(*ends, flipped=flipped),
+        "turn of the normal across the contact [degrees]": turn_between(*ends, flipped=flipped),
         "curvature jump [1/length]": contact.curvature_jump,
         "relative curvature jump": contact.curvature_jump_relative,
         "relative curvature jump with the corrected formula": kept.curvature_jump_relative,
@@ -115,23 +115,3 @@ def measured_rows(
         measured["relative C2 residual"] = contact.c2_residual
         measured["relative C2 residual with the corrected formula"] = kept.c2_residual
     return Consequence(what, measured, {"Open CASCADE": cad_verdict(*ends, flipped=flipped)})
-
-
-def _oriented_turn(a: Base, b: Base, *, flipped: bool) -> float:
-    """Return by how much the surface turns back on itself at the contact: 0 for a smooth join, 180 for a fold.
-
-    Both cross derivatives are taken in the direction from a into b; a fold shows as opposite normals.
-    """
-    s = np.linspace(0.03, 0.97, 17)
-    vectors = []
-    for base, leaving in ((a, True), (b, False)):
-        start, end = base.range_along
-        x = start + (1 - s if flipped and not leaving else s) * (end - start)
-        cross, along = base.derivative(x, 1, 0), base.derivative(x, 0, 1)
-        outward = 1.0 if base.edge[1] == "1" else -1.0
-        cross = cross * (outward if leaving else -outward)
-        along = along * (-1.0 if flipped and not leaving else 1.0)
-        vectors.append(np.cross(cross, along))
-    n1, n2 = vectors
-    sine, cosine = np.linalg.norm(np.cross(n1, n2), axis=1), np.sum(n1 * n2, axis=1)
-    return float(np.degrees(np.arctan2(sine, cosine)).max())
