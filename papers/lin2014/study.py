@@ -16,6 +16,7 @@ from semispline.papers.lin2014.paper_as_printed import METHODS as PRINTED_METHOD
 from semispline.papers.report import cell
 from semispline.papers.reproduction import Comparison, Comparisons, Drawing, Example, Study, Table
 from semispline.solver.blending import Continuity, blend
+from semispline.solver.io import read_surfaces
 from semispline.solver.judge import Base
 from semispline.solver.pictures import BASE_COLOR, BLEND_COLOR, render
 
@@ -89,8 +90,6 @@ def impeller_path() -> Path | None:
 
 
 def _impeller() -> tuple[Base, Base]:
-    from semispline.solver.io import read_surfaces
-
     loaded = read_surfaces([f"{impeller_path()}#{face}" for face in IMPELLER_FACES])
     first, second = (Base(surface.surface, "u0") for surface in loaded)
     return first, second

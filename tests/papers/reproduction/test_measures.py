@@ -51,7 +51,7 @@ def test_formulas_are_measured_as_the_referee_measures_splines(curved, end):
 @pytest.mark.parametrize(("end", "turn"), [(2.0, 0.0), (0.0, 180.0), ((1.0, 1.0), 90.0)])
 @pytest.mark.parametrize("flipped", [False, True])
 def test_a_strip_that_goes_on_turns_off_or_runs_back(end, turn, flipped):
-    """From (0, y, 0) to (1, y, 0), then on to x = 2, back to 0, or straight up; v of the second one may run backwards."""
+    """From (0, y, 0) to (1, y, 0), then on to x = 2, back to 0, or straight up; v of the second may run backwards."""
     x, z = end if isinstance(end, tuple) else (end, 0.0)
     ys = (1.0, 0.0) if flipped else (0.0, 1.0)
     knots = [0, 0, 1, 1]
