@@ -13,13 +13,7 @@ from typing import Any, TypeAlias
 
 from semispline.papers.baselines import Method, methods
 from semispline.papers.ledger import Ledger
-from semispline.papers.report import (
-    Results,
-    blends_table,
-    environment,
-    text_lines,
-    write_report,
-)
+from semispline.papers.report import Results, blends_table, environment, text_lines, write_report
 from semispline.papers.reproduction import Comparison, Comparisons, Drawing, Example, Study, Table, run
 from semispline.solver.errors import FileError
 from semispline.solver.io import check_output, pyvista_module

@@ -1,4 +1,4 @@
-"""Deciding definitions and counts of sections 2 and 3: printed sums against de Boor's triangle, counts by counting.
+"""Deciding the printed sums of sections 2 and 3, surfaces, curves and bases, against de Boor's triangle.
 
 The triangle knows no basis functions, so that it judges sums over them; basis functions come from Cox-de Boor. Each
 check decides its formula for every order, knot vector and count first, and then runs it at instances.

@@ -1,4 +1,4 @@
-"""What the errors of sections 3 and 4 do to a surface, measured on blends of the made pair."""
+"""What the errors of sections 3 and 4, in energy and system, do to a surface, measured on blends of the made pair."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
 """What a printed formula does to a surface: a checked blend whose rows are set anew by the formula, then measured.
 
-The pair is `examples/made-pair.json`: two bicubic bases with mismatched, non-uniform knots and a curved contact each.
+The pair is the made one of `examples`, unless another is given.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""What the misprints of section 2 do to a surface, measured in exact arithmetic on the patch that stands for Fig. 3."""
+"""What the misprints of section 2 do to a surface: exactly on a patch that stands for Fig. 3, and on the made pair."""
 
 from __future__ import annotations
 
