@@ -61,6 +61,11 @@ def blossom(points: Sequence[Exact], arguments: Sequence[Exact]) -> Exact:
     return level[0]
 
 
+def de_casteljau(points: Sequence[Exact], x: Exact) -> Exact:
+    """Return a Bezier polynomial at x: its blossom with equal arguments."""
+    return blossom(points, [x] * (len(points) - 1))
+
+
 def division_curve(points: Sequence[Sequence[Exact]], function: Sequence[Exact], j: int, s: int) -> tuple[Exact, ...]:
     """Return the m + s k + 1 Bezier control points of Q_j^s(u), for s = 0 those of the row j itself.
 

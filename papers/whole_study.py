@@ -7,29 +7,16 @@ import os
 from collections.abc import Callable, Iterable
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from contextlib import AbstractContextManager
-from dataclasses import asdict
 from multiprocessing import get_context
 from pathlib import Path
 from typing import Any, TypeAlias
 
 from semispline.papers.baselines import Method, methods
 from semispline.papers.ledger import Ledger
-from semispline.papers.report import (
-    METHODS_NOTE,
-    STUDY_HEADING,
-    Results,
-    blends_table,
-    environment,
-    ledger_markdown,
-    ledger_record,
-    markdown_lines,
-    methods_table,
-    page,
-    text_lines,
-)
+from semispline.papers.report import Results, blends_table, environment, text_lines, write_report
 from semispline.papers.reproduction import Comparison, Comparisons, Drawing, Example, Study, Table, run
 from semispline.solver.errors import FileError
-from semispline.solver.io import check_output, pyvista_module, to_text, write_text
+from semispline.solver.io import check_output, pyvista_module
 
 # (what is done, how many steps) -> a context that gives a function to be told of each step
 Progress: TypeAlias = Callable[[str, int], AbstractContextManager[Callable[[str], None]]]
@@ -111,56 +98,6 @@ def draw(drawings: Iterable[Drawing], folder: Path, progress: Progress) -> dict[
             done.result()
             advance(waiting[done])
     return paths
-
-
-def write_report(results: Results, folder: Path) -> None:
-    """Write `numbers.json`, `REPORT.md` for a reader of the paper, `report.md` with every table, and `index.html`."""
-    write_text(folder / "numbers.json", to_text(numbers(results)))
-    write_text(folder / "REPORT.md", report_document(results))
-    write_text(folder / "report.md", "\n".join(markdown(results)))
-    write_text(folder / "index.html", page(results))
-
-
-def numbers(results: Results) -> dict[str, Any]:
-    """Return every number as the file has it."""
-    return {
-        "format": "semispline/1",
-        "kind": "reproduction",
-        "paper": results.ledger.paper.name,
-        "findings": [asdict(finding) for finding in results.study.findings(results.comparisons)],
-        "comparisons": [c.record() for found in results.comparisons.values() for c in found],
-        "tables": [asdict(table) for table in results.study.tables(results.comparisons)],
-        "ledger": ledger_record(results.ledger),
-        "environment": dict(results.environment),
-        "command": results.command,
-    }
-
-
-def markdown(results: Results) -> list[str]:
-    """Return the report in Markdown: findings, tables, ledger, machine."""
-    lines = [f"# {results.ledger.paper.title.rstrip('.')}", "", results.study.preface, "", "## What was found", ""]
-    lines += [f"- **{f.short}.** {f.detail}" for f in results.study.findings(results.comparisons)]
-    for table in results.study.tables(results.comparisons):
-        lines += ["", *markdown_lines(table)]
-    lines += ["## Examples and rivals", "", METHODS_NOTE, ""]
-    for example in results.study.examples:
-        lines += [*markdown_lines(methods_table(results.comparisons[example.task.name]))]
-        lines += [*(f"- {note}" for note in example.notes), ""]
-    lines += [*markdown_lines(results.blends), "## How this was made", "", f"`{results.command}`", ""]
-    lines += [f"- {name}: {text}" for name, text in results.environment.items()]
-    return [*lines, "", ledger_markdown(results.ledger)]
-
-
-def report_document(results: Results) -> str:
-    """Return what a reader of the paper wants to know: every claim decided, then what the study finds, and prior art.
-
-    Its copy in the paper's folder is what the last study said; numbers that depend on the machine are left out.
-    """
-    lines = [f"{STUDY_HEADING}: {results.ledger.paper.title.rstrip('.')}", "", results.study.preface, ""]
-    lines += [f"Every statement here was computed by `{results.command}`.", ""]
-    lines += [f"- **{f.short}.** {f.detail}" for f in results.study.findings(results.comparisons)]
-    lines += ["", "Prior art:", "", *(f"- {work}" for work in results.study.prior_art), ""]
-    return "\n".join([ledger_markdown(results.ledger), *lines])
 
 
 def _edge_by_edge(examples: Iterable[Example], comparisons: Comparisons) -> list[tuple[str, Comparison]]:

@@ -5,11 +5,11 @@ from .interface import BlendTask as BlendTask
 from .interface import Method as Method
 from .interface import NotApplicableError as NotApplicableError
 from .interface import Outcome as Outcome
-from .layout import semistructured as semistructured
-from .least_energy import RowRule as RowRule
-from .least_energy import least_energy as least_energy
 from .quadratic_forms import THIN_PLATE as THIN_PLATE
 from .quadratic_forms import energy_matrix as energy_matrix
 from .registry import method as method
 from .registry import methods as methods
+from .rows_of_least_energy import RowRule as RowRule
+from .rows_of_least_energy import least_energy as least_energy
 from .splines import as_spline as as_spline
+from .surfaces_from_rows import semistructured_surface as semistructured_surface

@@ -17,6 +17,7 @@ from semispline.papers.baselines.contacts import ContactSide, contact_sides
 from semispline.papers.baselines.interface import BlendTask, FormulaSurface, Method, NotApplicableError, Outcome
 from semispline.solver.arrays import FloatArray
 from semispline.solver.errors import FileError
+from semispline.solver.io import occ_surface, require_kernel
 from semispline.solver.splines import BSplineSurface, interpolate_grid
 
 _ALONG, _ACROSS = 97, 33
@@ -35,8 +36,6 @@ def blend_filling(task: BlendTask) -> Outcome:
         raise NotApplicableError("contact curves: closed, but a filling has one outer boundary")
     a, b = contact_sides(task)
     try:
-        from semispline.solver.io import require_kernel
-
         require_kernel("MakeFilling")
     except FileError as error:
         raise NotApplicableError(str(error)) from None
@@ -55,6 +54,7 @@ def side_curves(a: ContactSide, b: ContactSide) -> FloatArray:
 
 def _plate(a: ContactSide, b: ContactSide) -> tuple[BSplineSurface, float]:
     """Return the plate, larger than the blend, and the time that it took, imports aside."""
+    # An extra, which need not be installed, and takes a second to load.
     from OCP.BRep import BRep_Tool
     from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge, BRepBuilderAPI_MakeFace
     from OCP.BRepLib import BRepLib
@@ -67,8 +67,6 @@ def _plate(a: ContactSide, b: ContactSide) -> tuple[BSplineSurface, float]:
     from OCP.TopAbs import TopAbs_FACE
     from OCP.TopExp import TopExp_Explorer
     from OCP.TopoDS import TopoDS
-
-    from semispline.solver.io import occ_surface
 
     started = time.perf_counter()
     filling = BRepOffsetAPI_MakeFilling()

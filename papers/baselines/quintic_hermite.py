@@ -8,8 +8,8 @@ import numpy as np
 
 from semispline.papers.baselines.contacts import contact_sides
 from semispline.papers.baselines.interface import BlendTask, Method, Outcome
-from semispline.papers.baselines.layout import semistructured, u_basis
 from semispline.papers.baselines.semistructured import outcome_of
+from semispline.papers.baselines.surfaces_from_rows import semistructured_surface, u_basis
 from semispline.solver.arrays import FloatArray
 from semispline.solver.blending import blend
 
@@ -25,7 +25,7 @@ def blend_natural(task: BlendTask) -> Outcome:
     a, b = contact_sides(task)
     started = time.perf_counter()
     rows = [*hermite_rows(a.outwards, a.natural), *hermite_rows(b.outwards, b.natural)[::-1]]
-    surface = semistructured(u_basis(6, 5), (a.along,) * 3 + (b.along,) * 3, rows)
+    surface = semistructured_surface(u_basis(6, 5), (a.along,) * 3 + (b.along,) * 3, rows)
     return Outcome(surface, surface.n_control_points, None, time.perf_counter() - started, a.natural, b.natural)
 
 

@@ -21,6 +21,7 @@ def blend_smlibpy(task: BlendTask) -> Outcome:
         smlibpy is not installed, or it refuses the pair.
     """
     try:
+        # An extra, which need not be installed.
         import smlibpy
     except ImportError:
         raise NotApplicableError("smlibpy is not installed; try: pip install 'semispline[bench]'") from None

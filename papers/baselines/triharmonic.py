@@ -13,9 +13,9 @@ from functools import partial
 
 from semispline.papers.baselines.contacts import contact_sides, on_common_knots
 from semispline.papers.baselines.interface import BlendTask, Method, Outcome
-from semispline.papers.baselines.layout import tensor_product, u_basis
-from semispline.papers.baselines.least_energy import contact_rule, least_energy
 from semispline.papers.baselines.quadratic_forms import THIN_PLATE, TRIHARMONIC, energy_matrix
+from semispline.papers.baselines.rows_of_least_energy import contact_rule, least_energy
+from semispline.papers.baselines.surfaces_from_rows import tensor_product, u_basis
 
 ROWS = 11
 

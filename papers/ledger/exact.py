@@ -67,7 +67,7 @@ def interpret(expression: Any, meaning: Meaning) -> Any:
 
 def _value(e: Any, numbers: dict[Any, Any], functions: Mapping[str, Callable[..., Any]]) -> Any:
     if e.is_Rational:
-        return Fraction(int(e.p), int(e.q))
+        return as_fraction(e)
     if e.is_Symbol:
         if e not in numbers:
             raise UndefinedError(f"{e} is not defined")
@@ -131,6 +131,17 @@ def as_expression(value: Any) -> Any:
     return value.as_expr() if hasattr(value, "as_expr") else sp.sympify(value)
 
 
+def as_fraction(number: Any) -> Fraction:
+    """Return a SymPy rational as a fraction.
+
+    Examples
+    --------
+    >>> as_fraction(sp.Rational(2, 6))
+    Fraction(1, 3)
+    """
+    return Fraction(int(number.p), int(number.q))
+
+
 def indexed(name: str, values: Mapping[Any, Any]) -> Callable[..., Any]:
     """Return a lookup by integer indices that refuses what is not there."""
 
@@ -164,7 +175,7 @@ def spline_basis(knots: Mapping[Any, Sequence[Any]]) -> Callable[..., Any]:
 
 @cache
 def _spans(order: int, vector: tuple[Any, ...]) -> tuple[Span, ...]:
-    return basis_pieces(order - 1, [sp.Rational(Fraction(t).numerator, Fraction(t).denominator) for t in vector])
+    return basis_pieces(order - 1, [as_expression(t) for t in vector])
 
 
 @cache
@@ -176,7 +187,7 @@ def _basis_value(i: int, order: int, x: Fraction, vector: tuple[Any, ...], deriv
         return Fraction(0)
     piece = span.pieces[i - span.first]
     value = (piece.diff((X, derivative)) if derivative else piece).eval(point)
-    return Fraction(int(value.p), int(value.q))
+    return as_fraction(value)
 
 
 def bernstein(i: Any, degree: Any, x: Any) -> Any:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cache
 from itertools import pairwise, zip_longest
 from typing import Any
@@ -17,8 +17,8 @@ from typing import Any
 import sympy as sp
 from sympy.core.function import AppliedUndef
 
+from semispline.papers.ledger.printed_data import Knots, Numbers, exchanges, knot_changes, near, number_changes
 from semispline.papers.ledger.records import Case, Check, Formula, Part, decided_cases
-from semispline.papers.ledger.vectors import Knots, Numbers, exchanges, knot_changes, near, number_changes
 
 
 @dataclass(frozen=True)
@@ -106,6 +106,30 @@ def mutants(formula: Formula) -> list[Mutant]:
             if changed != expression and mutant not in found:
                 found[mutant] = Mutant(kind, mutant)
     return list(found.values())
+
+
+def explained(formula: Formula, same: Mapping[Any, Any], reason: str) -> Formula:
+    """Return the formula with those mutants explained that say the same where some letters are put in.
+
+    Parameters
+    ----------
+    formula : Formula
+    same : mapping
+        Letter -> what stands for it wherever the formula is meant.
+    reason : str
+        Why these mutants are equivalent.
+
+    Examples
+    --------
+    >>> x, y, z = sp.symbols("x y z")
+    >>> list(explained(Formula(sp.Eq(z, x - y), (x, y, z)), {x: y}, "x is y").equivalent)
+    ['Eq(z, -x + y)', 'Eq(z, 2*x - 2*y)']
+    """
+    wanted = formula.relation.rhs.xreplace(same)
+    found = {m.text: m.relation.rhs.xreplace(same) for m in mutants(formula)}
+    return replace(
+        formula, equivalent={text: reason for text, right in found.items() if sp.cancel(right - wanted) == 0}
+    )
 
 
 def try_mutants(part: Part) -> MutationResult:

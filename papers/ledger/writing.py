@@ -1,8 +1,11 @@
-"""Short ways to write a record."""
+"""Short ways to write a record, and printed data as a formula."""
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Any
+
+import sympy as sp
 
 from semispline.papers.ledger.records import Check, Claim, Formula, Part, Reading, Verdict
 
@@ -40,3 +43,10 @@ def ambiguous(
 def not_checkable(identifier: str, where: str, statement: str, reason: str) -> Claim:
     """Return a record without machine-checkable content."""
     return Claim(identifier, where, statement, Verdict.NOT_CHECKABLE, reason=reason)
+
+
+def data_formula(name: str, data: Any, reason: str = "", changes: Iterable[Any] = ()) -> Formula:
+    """Return printed data as a formula `name` = data; `reason` is why nothing printed tells some changes from it."""
+    symbol = sp.Symbol(name)
+    undecidable = {str(sp.Eq(symbol, changed, evaluate=False)): reason for changed in changes}
+    return Formula(sp.Eq(symbol, data, evaluate=False), (symbol,), undecidable=undecidable)

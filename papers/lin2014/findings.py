@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 
-from semispline.papers.report import LIMIT, c2_residual, reached
-from semispline.papers.reproduction import Comparison, Comparisons, Finding, Measures
+from semispline.papers.reproduction import ROUNDING, Comparison, Comparisons, Finding, Measures, reached
 
 AS_PRINTED, CORRECTED, LEAST = "paper-as-printed", "paper-corrected", "semistructured-reduced"
 # Second derivatives across a contact agree up to rounding: a fraction of the larger of both.
@@ -28,7 +27,7 @@ def meets_demand(comparison: Comparison) -> bool:
     m = comparison.measures
     if m is None or reached(comparison.task, m) != "G2":
         return False
-    residual = c2_residual(m)
+    residual = m.c2_residual
     return comparison.task.continuity == "G2" or (residual is not None and residual <= C2_LIMIT)
 
 
@@ -63,7 +62,7 @@ def _as_printed(comparisons: Comparisons) -> Iterator[Finding]:
     missed = [example for example, (c, _) in found.items() if not meets_demand(c)]
     jump = {example: m.curvature_jump_relative for example, (_, m) in found.items()}
     worst = max(jump, key=lambda example: jump[example])
-    straight = [e for e in found if jump[e] <= LIMIT]
+    straight = [e for e in found if jump[e] <= ROUNDING]
     ratio = {e: found[e][1].energy / true[e][1].energy for e in found if e in true}
     kept = f" The bases of {_names(straight)} are straight across the contact, where the error shows in C2 alone."
     yield Finding(

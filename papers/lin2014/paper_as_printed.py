@@ -25,7 +25,7 @@ from semispline.papers.baselines import (
     contact_sides,
     energy_matrix,
     least_energy,
-    semistructured,
+    semistructured_surface,
 )
 from semispline.papers.lin2014 import printed as pr
 from semispline.solver.arrays import FloatArray
@@ -79,7 +79,7 @@ def blend_as_printed(task: BlendTask) -> Outcome:
     matrix = energy_matrix(u, bases, THIN_PLATE)
     parametric = least_energy(matrix, bases, rules, ((1.0, 1.0), (1.0, 1.0)), task.closed)
     if task.continuity == "C2":
-        surface = semistructured(u, bases, parametric.rows)
+        surface = semistructured_surface(u, bases, parametric.rows)
         return Outcome(surface, surface.n_control_points, None, time.perf_counter() - started, 1.0, 1.0)
     assemble, start = _unknowns(parametric.rows, rules)
     first = assemble(start)
@@ -94,7 +94,7 @@ def blend_as_printed(task: BlendTask) -> Outcome:
     found = minimize(energy, start / scale, method="BFGS")
     x = found.x * scale
     rows = np.split(assemble(x), np.cumsum([basis.size for basis in bases])[:-1])
-    surface = semistructured(u, bases, rows)
+    surface = semistructured_surface(u, bases, rows)
     seconds = time.perf_counter() - started
     a2, b2 = float(x[-2] ** 2), float(x[-1] ** 2)
     return Outcome(surface, surface.n_control_points, int(found.nit), seconds, a2, b2)

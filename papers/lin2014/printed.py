@@ -12,6 +12,8 @@ from sympy import Eq, Function, Ge, IndexedBase, Integral, Le, Rational, Sum, Sy
 
 from semispline.papers.ledger import Formula
 
+# The order in all of its own examples.
+CUBIC = 4
 k = Symbol("k", integer=True, positive=True)
 k_r = Symbol("k_r", integer=True, positive=True)
 k_s = Symbol("k_s", integer=True, positive=True)

@@ -8,20 +8,13 @@ from __future__ import annotations
 
 from typing import Any
 
-from sympy import Add, Eq, Integer, Mul, Pow, Rational, Symbol, symbols
+from sympy import Add, Eq, Integer, Mul, Pow, Rational, symbols
 
-from semispline.papers.ledger import Formula, Knots, Numbers, inner_moves, near, number_changes
+from semispline.papers.ledger import Formula, Knots, Numbers, data_formula, inner_moves, near, number_changes
 from semispline.papers.lin2014.printed import KNOTS, SIZES, B, u, v
 
 # Fig. 11: control points of the contact curves on the cone and on the free-form surface, as the text has them.
 CONE_COUNTS = (10, 64)
-
-
-def _printed(name: str, data: Any, reason: str = "", changes: Any = ()) -> Formula:
-    """Return printed data as a formula; `reason` is why nothing printed tells some of its changes from it."""
-    symbol = Symbol(name)
-    undecidable = {str(Eq(symbol, changed, evaluate=False)): reason for changed in changes}
-    return Formula(Eq(symbol, data, evaluate=False), (symbol,), undecidable=undecidable)
 
 
 _ONCE = "the position of this inner knot is printed once, and no printed number depends on it: "
@@ -39,15 +32,15 @@ _DEPENDS = {
 def _vector(key: str, knots: Knots) -> Formula:
     name = "V^r" if key in ("fig-5.first", "fig-6.planar", "fig-8.larger", "fig-10.first") else "V^s"
     if key not in _DEPENDS:
-        return _printed(name, knots)
-    return _printed(name, knots, _ONCE + _DEPENDS[key], inner_moves(knots))
+        return data_formula(name, knots)
+    return data_formula(name, knots, _ONCE + _DEPENDS[key], inner_moves(knots))
 
 
 VECTORS = {key: _vector(key, Knots(*knots)) for key, knots in KNOTS.items()}
-BICUBIC = _printed("k", Integer(4))
+BICUBIC = data_formula("k", Integer(4))
 # Printed once more, in the comparison with [13].
-COMMON_VECTOR_5 = _printed("V", Knots(0, 0, 0, 0, Rational(1, 2), 1, 1, 1, 1))
-SEVENTHS = _printed("V_inner", Knots(*KNOTS["fig-10.first"][3:-4]))
+COMMON_VECTOR_5 = data_formula("V", Knots(0, 0, 0, 0, Rational(1, 2), 1, 1, 1, 1))
+SEVENTHS = data_formula("V_inner", Knots(*KNOTS["fig-10.first"][3:-4]))
 
 _ROWS = (
     "how many rows of control points a base has across the contact is printed in Table 1 alone; (3.1) and cubics "
@@ -59,18 +52,18 @@ def _size(figure: str, name: str, rows: int, columns: int) -> Formula:
     size = Numbers(rows, columns)
     # Figs. 8 and 9 share their bases, so that each size is printed twice.
     free = () if figure in ("fig-8", "fig-9") else [x for x in number_changes(size) if x[1] == columns and x[0] >= 4]
-    return _printed(name, size, _ROWS, free)
+    return data_formula(name, size, _ROWS, free)
 
 
 SIZE = {
     figure: tuple(_size(figure, name, *size) for name, size in zip(("N_r", "N_s"), pair, strict=True))
     for figure, pair in SIZES.items()
 }
-CONE_COUNTS_11 = _printed("N", Numbers(*CONE_COUNTS))
+CONE_COUNTS_11 = data_formula("N", Numbers(*CONE_COUNTS))
 # Middle curves of Figs. 5, 6, 8 to 11, as section 5 begins; for Figs. 10 and 11 their own paragraphs say it again.
 _COUNTS = Numbers(1, 1, 1, 1, 0, 0)
 NO_MIDDLE_CURVE_AGAIN = ("fig-10", "fig-11")
-MIDDLE_CURVES = _printed(
+MIDDLE_CURVES = data_formula(
     "N",
     _COUNTS,
     "that this figure has a middle curve is said once, and no printed number depends on it",
@@ -113,8 +106,8 @@ SIDE_PARAMETERS = {
     name: Formula(Eq(symbols("x"), _argument(*s[1:4]), evaluate=False), (symbols("x"), s[1]))
     for name, s in _SIDES.items()
 }
-SIDE_INTERVALS = {name: _printed(str(s[1]), Knots(*map(Rational, s[4]))) for name, s in _SIDES.items()}
+SIDE_INTERVALS = {name: data_formula(str(s[1]), Knots(*map(Rational, s[4]))) for name, s in _SIDES.items()}
 # Semi-structured and ordinary pieces of the trimmed patch.
-PIECES = _printed("N", Numbers(4, 4))
+PIECES = data_formula("N", Numbers(4, 4))
 # The patch is first divided at these values of v.
-FIRST_SPLIT = _printed("v", Knots(Rational("0.4"), Rational("0.6")))
+FIRST_SPLIT = data_formula("v", Knots(Rational("0.4"), Rational("0.6")))

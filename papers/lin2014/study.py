@@ -7,15 +7,16 @@ from importlib.util import find_spec
 from pathlib import Path
 
 from semispline.papers.baselines import BlendTask
-from semispline.papers.lin2014.checks.consequences import made_pair
+from semispline.papers.lin2014.examples.made_pair import made_pair
 from semispline.papers.lin2014.examples.section5 import DEPARTURES, FIGURES, PRINTED, example
 from semispline.papers.lin2014.figures import blends as figures_blends
 from semispline.papers.lin2014.figures.bezier import draw_figure_1, draw_figure_2, draw_trimmed_patch
 from semispline.papers.lin2014.findings import AS_PRINTED, CORRECTED, findings, meets_demand
 from semispline.papers.lin2014.paper_as_printed import METHODS as PRINTED_METHODS
-from semispline.papers.report import c2_residual, cell
+from semispline.papers.report import cell
 from semispline.papers.reproduction import Comparison, Comparisons, Drawing, Example, Study, Table
 from semispline.solver.blending import blend
+from semispline.solver.io import read_surfaces
 from semispline.solver.judge import Base
 from semispline.solver.options import Continuity
 from semispline.solver.pictures import BASE_COLOR, BLEND_COLOR, render
@@ -90,8 +91,6 @@ def impeller_path() -> Path | None:
 
 
 def _impeller() -> tuple[Base, Base]:
-    from semispline.solver.io import read_surfaces
-
     loaded = read_surfaces([f"{impeller_path()}#{face}" for face in IMPELLER_FACES])
     first, second = (Base(surface.surface, "u0") for surface in loaded)
     return first, second
@@ -170,7 +169,7 @@ def _table_1_row(comparison: Comparison) -> tuple[str, ...]:
         return (*sizes, *("–",) * 7)
     met = f"{task.continuity}: {'yes' if meets_demand(comparison) else 'no'}"
     values = (
-        m.curvature_jump_relative, c2_residual(m), outcome.iterations, m.seconds, m.energy,
+        m.curvature_jump_relative, m.c2_residual, outcome.iterations, m.seconds, m.energy,
         m.mean_curvature_with_bases,
     )  # fmt: skip
     return (*sizes, met, *map(cell, values))

@@ -7,8 +7,7 @@ from dataclasses import dataclass
 from html import escape
 from math import ceil, floor, log10
 
-from semispline.papers.report.tables import reached
-from semispline.papers.reproduction import Comparison
+from semispline.papers.reproduction import Comparison, reached
 
 _WIDTH, _HEIGHT = 640, 300
 _LEFT, _RIGHT, _TOP, _BOTTOM = 70, 20, 14, 44

@@ -1,7 +1,10 @@
 from .cad_judge import cad_verdict as cad_verdict
 from .comparison import Comparison as Comparison
 from .comparison import run as run
+from .contact_measures import turn_between as turn_between
+from .measures import ROUNDING as ROUNDING
 from .measures import Measures as Measures
+from .measures import reached as reached
 from .study import Comparisons as Comparisons
 from .study import Drawing as Drawing
 from .study import Example as Example

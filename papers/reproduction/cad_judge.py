@@ -6,8 +6,9 @@ from importlib.util import find_spec
 
 import numpy as np
 
+from semispline.solver.io import occ_surface
 from semispline.solver.judge import Base
-from semispline.solver.splines import BSplineSurface
+from semispline.solver.splines import BSplineSurface, reverse_v
 
 # Limits of the kernel's own analysis: a length, and an angle in radians.
 _GAP, _ANGLE = 1e-9, 1e-9
@@ -40,11 +41,9 @@ def cad_verdict(a: Base, b: Base, *, flipped: bool = False) -> str:
 
 
 def _analyse(a: Base, s: float, b: Base, t: float) -> tuple[bool, bool, bool]:
+    # An extra, which need not be installed, and takes a second to load.
     from OCP.GeomAbs import GeomAbs_G2
     from OCP.LocalAnalysis import LocalAnalysis_SurfaceContinuity
-
-    from semispline.solver.io import occ_surface
-    from semispline.solver.splines import reverse_v
 
     surface_a, surface_b = (_plain(side) for side in (a, b))
     uv_a, uv_b = _point(surface_a, a.edge, s), _point(surface_b, b.edge, t)

@@ -18,15 +18,14 @@ from sympy.polys.matrices import DomainMatrix
 from semispline.derivations.energy import Basis, ExactSurface, energy_matrix, gram_matrix, thin_plate_density
 from semispline.derivations.problem import ExactBase, blend_problem, exact_minimum
 from semispline.derivations.splines import X, end_derivatives
-from semispline.papers.ledger import Case, Formula, Meaning, clamped, difference_case, given
+from semispline.papers.ledger import Case, Formula, Meaning, as_expression, as_fraction, clamped, difference_case, given
 from semispline.papers.lin2014 import printed as pr
-
-CUBIC = 4
+from semispline.papers.lin2014.printed import CUBIC
 
 
 def basis(order: int, *inner: Any) -> Basis:
     """Return a basis over clamped knots on [0, 1]."""
-    return Basis(order - 1, tuple(sp.Rational(*Fraction(t).as_integer_ratio()) for t in clamped(order, *inner)))
+    return Basis(order - 1, tuple(map(as_expression, clamped(order, *inner))))
 
 
 def u_basis(k: int, m: int) -> Basis:
@@ -114,7 +113,7 @@ def _entry_values(i: int, j: int, other: int, at: int, true: Any) -> dict[Any, A
     values = {pr.K: true, pr.a_1: a_1, pr.a_2: a_2, pr.b_1: b_1, pr.b_2: b_2, pr.c_1: c_1, pr.c_2: c_2}
     values |= dict(zip((pr.A_0, pr.A_1, pr.A_2, pr.A_10), across, strict=True))
     values |= dict(zip((pr.G_0, pr.G_1, pr.G_2, pr.G_12), (g[j, at] for g in along), strict=True))
-    return {letter: Fraction(int(x.p), int(x.q)) for letter, x in values.items()}
+    return {letter: as_fraction(x) for letter, x in values.items()}
 
 
 def printed_system(third_term: str = "printed") -> tuple[sp.Matrix, sp.Matrix]:
@@ -126,7 +125,7 @@ def printed_system(third_term: str = "printed") -> tuple[sp.Matrix, sp.Matrix]:
 
     def entry(one: tuple[int, int], other: tuple[int, int]) -> Any:
         values = _entry_values(*one, *other, sp.Integer(0))
-        return formula.relation.rhs.subs({s: sp.Rational(x.numerator, x.denominator) for s, x in values.items()})
+        return formula.relation.rhs.subs({s: as_expression(x) for s, x in values.items()})
 
     def block(places: list[tuple[int, int]]) -> sp.Matrix:
         return sp.Matrix([[entry(x, y) for y in places] for x in free])
@@ -278,7 +277,7 @@ def middle_knot_energies() -> tuple[Any, Any]:
             for x, dx, heights in ((0, -1, (0, 1, 0)), (2, 1, (0, 0, 0)))
         ]
         least, _ = exact_minimum(blend_problem(2, surface, *sides), 1, 1)
-        found.append(sp.Rational(least.numerator, least.denominator))
+        found.append(as_expression(least))
     return found[0], found[1]
 
 

@@ -1,7 +1,7 @@
 """Deciding what sections 3 and 4 say of the objective for every order, knot vector and count.
 
 The degree after substitution, whether there is one minimum, what each entry of the system is, and contact in terms of
-tangent vectors. `energy_checks` runs the same at exact instances.
+tangent vectors. `energy` runs the same at exact instances.
 """
 
 from __future__ import annotations
@@ -16,10 +16,20 @@ from semispline.derivations.contact import A, contact_rows
 from semispline.derivations.energy import SECOND_DERIVATIVES, stationarity_condition, thin_plate_density
 from semispline.derivations.shape import total_degrees
 from semispline.derivations.splines import end_derivative_step, end_derivatives, span_symbols
-from semispline.papers.ledger import Case, Check, Formula, Meaning, Strength, coefficient, difference_case, given
+from semispline.papers.ledger import (
+    Case,
+    Check,
+    Formula,
+    Meaning,
+    Strength,
+    coefficient,
+    difference_case,
+    given,
+    identity_cases,
+    premises,
+)
 from semispline.papers.lin2014 import printed as pr
-from semispline.papers.lin2014.checks import energy, geometry
-from semispline.papers.lin2014.checks.property import identity_cases, premises
+from semispline.papers.lin2014.checks import energy, geometric_continuity
 
 # One row of (14): blocks A and B, unknown X and known N control points.
 A_BLOCK, B_BLOCK, X_FREE, N_KNOWN = (sp.IndexedBase(name) for name in "ABXN")
@@ -228,7 +238,7 @@ def single_minimum_of_shape_cases() -> Iterator[Case]:
     Plates that face each other have positive a and b over every gap, by which the whole figure is scaled. That a least
     energy exists for any two bases is not shown.
     """
-    yield from premises(geometry.special_contact_cases(1))
+    yield from premises(geometric_continuity.special_contact_cases(1))
     a, b, gap = sp.symbols("a b d", positive=True)
     strip = energy.end_energy(4, 6, (0, a, 0, gap, b, 0))
     best = sp.solve([sp.diff(strip, a), sp.diff(strip, b)], [a, b], dict=True)[0]

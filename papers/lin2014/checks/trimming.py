@@ -24,17 +24,13 @@ from semispline.derivations.trimming import (
     inside_square,
     trimmed_rows,
 )
-from semispline.papers.ledger import Case, Formula, given
+from semispline.papers.ledger import Case, Formula, as_fraction, given
 from semispline.papers.lin2014 import printed_figures as printed
 
 
 def _interval(name: str) -> tuple[Any, Any]:
     start, end = printed.SIDE_INTERVALS[name].relation.rhs
     return start, end
-
-
-def _fraction(number: Any) -> Fraction:
-    return Fraction(int(number.p), int(number.q))
 
 
 def bezier_terms(formula: Formula) -> dict[int, Any] | None:
@@ -72,8 +68,8 @@ def side_of(name: str, formula: Formula) -> Side | None:
     arguments = {f.args[2] for f in formula.relation.rhs.atoms(sp.core.function.AppliedUndef)}
     if any(_local_ends(argument, interval) != [0, 1] for argument in arguments):
         return None
-    start, end = map(_fraction, interval)
-    return Side(start, end, tuple(_fraction(sp.Rational(terms[r])) for r in range(len(terms))))
+    start, end = map(as_fraction, interval)
+    return Side(start, end, tuple(as_fraction(sp.Rational(terms[r])) for r in range(len(terms))))
 
 
 @cache

@@ -21,15 +21,9 @@ from semispline.papers.ledger import (
     part,
 )
 from semispline.papers.lin2014 import printed as pr
-from semispline.papers.lin2014.checks.consequences import measured_rows
-from semispline.papers.lin2014.checks.contact import (
-    derivative_check,
-    derivative_counterexample,
-    mirror_check,
-    row_counterexample,
-    w_kr1,
-)
-from semispline.papers.lin2014.checks.geometry import (
+from semispline.papers.lin2014.checks.contact_counterexamples import derivative_counterexample, row_counterexample
+from semispline.papers.lin2014.checks.contact_rows import derivative_check, mirror_check, w_kr1
+from semispline.papers.lin2014.checks.geometric_continuity import (
     derived_row_cases,
     derived_row_probe,
     general_check,
@@ -37,6 +31,7 @@ from semispline.papers.lin2014.checks.geometry import (
     special_counterexample,
     substitution_cases,
 )
+from semispline.papers.lin2014.checks.measured_rows import measured_rows
 
 _CHAINS = (*pr.COND_3_1.neighbours, (pr.w_kr, w_kr1))
 

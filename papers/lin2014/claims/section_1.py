@@ -11,18 +11,19 @@ from semispline.papers.ledger import (
     Reading,
     Strength,
     ambiguous,
+    count_check,
     holds,
     holds_if,
     not_checkable,
     part,
+    proved,
 )
 from semispline.papers.lin2014 import printed as pr
-from semispline.papers.lin2014.checks import blending, hartmann, related
-from semispline.papers.lin2014.checks import figure as figures
-from semispline.papers.lin2014.checks.contact import row_check
-from semispline.papers.lin2014.checks.normal import along_normal
-from semispline.papers.lin2014.checks.property import proved
-from semispline.papers.lin2014.checks.spline import count_check, knot_count_instances
+from semispline.papers.lin2014.checks import construction, hartmann, other_methods
+from semispline.papers.lin2014.checks import printed_numbers as numbers
+from semispline.papers.lin2014.checks.contact_rows import row_check
+from semispline.papers.lin2014.checks.counts import knot_count_instances
+from semispline.papers.lin2014.checks.rows_along_normal import along_normal
 from semispline.papers.lin2014.claims.section_3_conditions import TRUE_3_1
 
 _RELATED = "Section 1.1"
@@ -32,15 +33,15 @@ _OTHERS = "a statement on other publications, which are not here"
 def _different_counts() -> Iterator[Case]:
     """Yield layouts of the paper whose curves have different numbers of knots."""
     yield Case("Fig. 1", len(set(pr.FIGURE_1_COUNTS)) > 1)
-    for figure, pair in figures.CONTACTS.items():
+    for figure, pair in numbers.CONTACTS.items():
         yield Case(figure, len({len(pr.KNOTS[name]) for name in pair}) == 2)
 
 
 CLAIMS: tuple[Claim, ...] = (
     holds("sec-0.undisturbed", "Abstract", "Both bases are met exactly without changing them.",
-          part(proved(blending.contact_curve_cases,
+          part(proved(construction.contact_curve_cases,
                       "the contact curve of a base and its first row, every order and knots; at instances")),
-          part(proved(blending.three_row_cases, "the derived rows, over the base's own knots, every order"))),
+          part(proved(construction.three_row_cases, "the derived rows, over the base's own knots, every order"))),
     ambiguous("sec-0.reaches", "Abstract and section 6", "The continuity between bases and blend reaches G2 and C2.",
               Reading((part(row_check("start", 2), TRUE_3_1),),
                       label="what the representation can do, with the right conditions"),
@@ -55,39 +56,39 @@ CLAIMS: tuple[Claim, ...] = (
                   "do on bases of our own is in the study's findings"),
     holds("sec-1.superfluous-knots", "Section 1",
           "Giving contact curves with different knots the same ones by knot insertion adds control points.",
-          part(proved(figures.added_cases, "multiplicities of any knot in both vectors and in their union")),
-          part(proved(figures.superfluous_cases, "rows on their own knots and on the union, all printed pairs",
+          part(proved(numbers.added_cases, "multiplicities of any knot in both vectors and in their union")),
+          part(proved(numbers.superfluous_cases, "rows on their own knots and on the union, all printed pairs",
                       Strength.RATIONAL)),
           remark="To each curve as many as the other one has knots that it lacks: none to a curve whose knots contain "
           "the other's. How many are lots is not said."),
     holds("sec-1.knot-insertion", "Section 1", "Knot insertion makes the knots of both contact curves identical.",
-          part(proved(blending.nested_space_cases,
+          part(proved(construction.nested_space_cases,
                       "knot insertion by induction on the order, every order and knots; spline spaces over the "
                       "printed pairs, by exact rank"))),
     holds_if("sec-1.rolling-ball", _RELATED, "A rolling-ball blend meets its bases with G1 at the most.",
              "the curvature of the base across the contact is not that of the ball",
-             part(Check(related.jump_cases, Strength.SYMBOLIC_ORDER, "the curvature of a circle, every radius",
-                        proof=True), related.JUMP),
-             part(proved(related.g2_cases, "zeros of the jump, every radius and curvature of the base"))),
+             part(Check(other_methods.jump_cases, Strength.SYMBOLIC_ORDER, "the curvature of a circle, every radius",
+                        proof=True), other_methods.JUMP),
+             part(proved(other_methods.g2_cases, "zeros of the jump, every radius and curvature of the base"))),
     ambiguous("sec-1.quintic", _RELATED, "For G2, a Bezier curve across must be quintic.",
-              Reading((part(Check(related.hermite_cases, Strength.SYMBOLIC_ORDER,
+              Reading((part(Check(other_methods.hermite_cases, Strength.SYMBOLIC_ORDER,
                                   "rank of the six end conditions, every degree", proof=True), pr.QUINTIC),),
                       label="for a method that prescribes two derivatives at both ends, as for C2"),
-              Reading((part(proved(related.quartic_cases, "points, tangents and curvatures at both ends, exactly",
+              Reading((part(proved(other_methods.quartic_cases, "points, tangents and curvatures at both ends, exactly",
                                    Strength.RATIONAL)),),
                       label="for G2 as such, which prescribes points, tangents and curvatures"),
               remark="G2 leaves the lengths of the end derivatives free: the quartic with the control points (0,0), "
               "(1/2,0), (5/3,1/3), (2,1/2), (2,1) has horizontal and vertical end tangents and curvature 1 at both "
               "ends."),
     holds("sec-1.cubic", _RELATED, "A cubic blend with inner knots does the same.",
-          part(proved(related.cubic_cases, "determinant of the end derivatives of a cubic, any inner knots"))),
+          part(proved(other_methods.cubic_cases, "determinant of the end derivatives of a cubic, any inner knots"))),
     holds("sec-1.hartmann-contact", _RELATED, "Hartmann's combination of two bases is G^n.",
           part(proved(hartmann.hartmann_contact_cases,
                       "derivatives of X up to order n at both contacts, every n and mu")),
           remark="For f = mu (1-t)^(n+1) / (mu (1-t)^(n+1) + (1-mu) t^(n+1)), well known; [17] itself is not here. "
           "X is even C^n with its pieces, hence G^n where these are regular and join the bases so."),
     ambiguous("sec-1.hartmann-nurbs", _RELATED, "Such a blend can be written as NURBS only approximately.",
-              Reading((part(proved(related.sine_base_cases,
+              Reading((part(proved(other_methods.sine_base_cases,
                                    "solving for a base with a sine, which is no quotient of polynomials")),),
                       label="for parametric bases in general"),
               Reading((part(proved(hartmann.hartmann_rational_cases, "numerator and denominator, every n and mu")),),
@@ -106,11 +107,12 @@ CLAIMS: tuple[Claim, ...] = (
     not_checkable("sec-1.hayes", _RELATED, "Hayes' splines need equal numbers of knots in each vector.", _OTHERS),
     ambiguous("sec-1.ref-11", _RELATED,
               "Hermite blends with a Bezier curve or a C-curve [11] are hard to write as B-splines.",
-              Reading((part(proved(related.bezier_conversion_cases,
+              Reading((part(proved(other_methods.bezier_conversion_cases,
                                    "the six rows by the end conditions; spline spaces over the printed pairs, exact "
                                    "rank", Strength.RATIONAL)),),
                       label="with a Bezier curve across, between spline bases with C2 contact"),
-              Reading((part(proved(related.c_curve_cases, "y'' = -y among polynomials and quotients, every degree")),),
+              Reading((part(proved(other_methods.c_curve_cases,
+                                   "y'' = -y among polynomials and quotients, every degree")),),
                       label="with a C-curve, whose functions are 1, t, cos t and sin t"),
               remark="The first has an exact form and it takes no effort: Bezier of degree 5 across is a B-spline, and "
               "along the contacts the rows need the knots of both bases, as those of the semi-structured surface do. "
@@ -121,9 +123,9 @@ CLAIMS: tuple[Claim, ...] = (
                   "Bezier curves, impossible with C-curves (sec-1.ref-11), exact and rational for Hartmann's between "
                   "spline bases (sec-1.hartmann-nurbs)"),
     holds("sec-1.ball-circular", _RELATED, "A rolling ball leaves a circular surface: its sections are circles.",
-          part(Check(related.canal_cases, Strength.SYMBOLIC_ORDER,
+          part(Check(other_methods.canal_cases, Strength.SYMBOLIC_ORDER,
                      "the envelope of balls of radius r(t) around a spine, both conditions solved", proof=True),
-               related.SECTION_SQUARED),
+               other_methods.SECTION_SQUARED),
           remark="For a ball of variable radius too, in the plane across the spine at -r r'/s along it, s the speed of "
           "the spine; for constant radius in the plane through the centre."),
     not_checkable("sec-1.knot-lines-end", _RELATED, "Knot lines of T-splines and semi-regular splines may end inside.",

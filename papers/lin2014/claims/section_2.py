@@ -17,26 +17,25 @@ from semispline.papers.ledger import (
     Numbers,
     Part,
     Reading,
+    Sample,
     Strength,
     Verdict,
     clamped,
+    count_check,
+    data_formula,
     given,
+    identity_cases,
     number_changes,
+    premises,
+    proof_check,
+    proved,
 )
 from semispline.papers.lin2014 import printed as pr
-from semispline.papers.lin2014.checks import property as properties
-from semispline.papers.lin2014.checks.consequences_2 import one_function_for_all
-from semispline.papers.lin2014.checks.figure import CONTACTS
-from semispline.papers.lin2014.checks.property import identity_cases, premises, proof_check, proved
-from semispline.papers.lin2014.checks.spline import (
-    CUBIC,
-    CURVE_CHECK,
-    SURFACE_CHECK,
-    Sample,
-    count_check,
-    curve_instances,
-    knot_count_instances,
-)
+from semispline.papers.lin2014.checks import representation
+from semispline.papers.lin2014.checks.counts import knot_count_instances
+from semispline.papers.lin2014.checks.definitions import CURVE_CHECK, SURFACE_CHECK, curve_instances
+from semispline.papers.lin2014.checks.measured_section_2 import one_function_for_all
+from semispline.papers.lin2014.checks.printed_numbers import CONTACTS
 from semispline.papers.lin2014.printed_figures import MIDDLE_CURVES
 
 _WHERE = "Section 2, definition"
@@ -58,11 +57,10 @@ def _figure_1_cases(formula: Formula | None) -> Iterator[Case]:
 
 def _figure_1() -> Formula:
     """Return the counts of Fig. 1 as a formula."""
-    letter, counts = sp.Symbol("N"), Numbers(*pr.FIGURE_1_COUNTS)
+    counts = Numbers(*pr.FIGURE_1_COUNTS)
     middle = [changed for changed in number_changes(counts) if changed[3] != counts[3]]
     reason = "the middle curve has a count of its own, which only the caption gives: its knots are not printed"
-    free = {str(sp.Eq(letter, changed, evaluate=False)): reason for changed in middle}
-    return Formula(sp.Eq(letter, counts, evaluate=False), (letter,), undecidable=free)
+    return data_formula("N", counts, reason, middle)
 
 
 def _wrong_basis_counterexample() -> Counterexample:
@@ -94,14 +92,14 @@ def _vectors_may_differ_cases() -> Iterator[Case]:
     for order in (2, 3, 4):
         vectors = [clamped(order, sp.Rational(i, 7)) for i in range(1, 6)]
         sample = Sample(4, order, clamped(4, sp.Rational(1, 2)), tuple(vectors))
-        factors = properties.weights(sample, Fraction(2, 7), Fraction(3, 7))
+        factors = sample.weights(Fraction(2, 7), Fraction(3, 7))
         different = len(set(vectors)) == sample.m + 1
-        yield Case(f"order {order}, {sample.m + 1} vectors", different and sum(factors) == 1, own=order == CUBIC)
+        yield Case(f"order {order}, {sample.m + 1} vectors", different and sum(factors) == 1, own=order == pr.CUBIC)
 
 
 def _domain_cases() -> Iterator[Case]:
     yield from premises(identity_cases("partition of unity"))
-    yield from properties.common_domain_cases()
+    yield from representation.common_domain_cases()
 
 
 CLAIMS = (
@@ -240,7 +238,7 @@ CLAIMS = (
         "Section 1.1",
         "The semi-structured surface generalises the classical one: with equal knot vectors it is that.",
         Verdict.HOLDS,
-        (Reading((Part(proved(properties.same_knots_cases, _EITHER_ORDER)),)),),
+        (Reading((Part(proved(representation.same_knots_cases, _EITHER_ORDER)),)),),
     ),
     Claim(
         "sec-2.evaluation",
@@ -254,21 +252,25 @@ CLAIMS = (
         "Section 2, evaluation",
         "A classical surface may be evaluated in either order.",
         Verdict.HOLDS,
-        (Reading((Part(proved(properties.same_knots_cases, _EITHER_ORDER)),)),),
+        (Reading((Part(proved(representation.same_knots_cases, _EITHER_ORDER)),)),),
     ),
     Claim(
         "sec-2.convex-hull",
         _PROPERTIES,
         "The surface lies in the convex hull of its control points.",
         Verdict.HOLDS,
-        (Reading((Part(proof_check("convex hull", instances=properties.weight_cases)),)),),
+        (Reading((Part(proof_check("convex hull", instances=representation.weight_cases)),)),),
     ),
     Claim(
         "sec-2.affine-invariance",
         _PROPERTIES,
         "An affine map of the control points maps the surface.",
         Verdict.HOLDS,
-        (Reading((Part(proof_check("affine invariance", "partition of unity", instances=properties.affine_cases)),)),),
+        (
+            Reading(
+                (Part(proof_check("affine invariance", "partition of unity", instances=representation.affine_cases)),)
+            ),
+        ),
     ),
     Claim(
         "sec-2.localness",
@@ -280,7 +282,7 @@ CLAIMS = (
                 (
                     Part(
                         proved(
-                            properties.locality_cases,
+                            representation.locality_cases,
                             "where the two functions of lower order in the recurrence vanish, by induction on the "
                             "order, every order and knots; the spans on which the functions of orders 2 to 8 live",
                         )
@@ -300,14 +302,14 @@ CLAIMS = (
                 (
                     Part(
                         proved(
-                            properties.continuity_control_cases,
+                            representation.continuity_control_cases,
                             "smoothness at a knot of each multiplicity by induction on the degree, every degree and "
                             "knots; at a symbolic knot for orders 2 to 5",
                         )
                     ),
                     Part(
                         proved(
-                            properties.independent_control_cases,
+                            representation.independent_control_cases,
                             "what multiplies the jump of one curve; the reach of its u-function by an example",
                         )
                     ),
@@ -327,7 +329,7 @@ CLAIMS = (
                 (
                     Part(
                         proved(
-                            properties.conversion_cases,
+                            representation.conversion_cases,
                             "knot insertion by induction on the order, for every order, knots and place of the new "
                             "knot; spaces over the union of knots by rank",
                         )
@@ -341,7 +343,11 @@ CLAIMS = (
         _PROPERTIES,
         "Partial derivatives of a classical surface are spline surfaces of lower degree.",
         Verdict.HOLDS,
-        (Reading((Part(proof_check("derivative", "u-derivative", instances=properties.classical_derivative_cases)),)),),
+        (
+            Reading(
+                (Part(proof_check("derivative", "u-derivative", instances=representation.classical_derivative_cases)),)
+            ),
+        ),
         remark="The text points at (1) for the classical surface; (1) is the semi-structured one.",
     ),
     Claim(
@@ -354,7 +360,7 @@ CLAIMS = (
                 (
                     Part(
                         proved(
-                            properties.row_difference_cases,
+                            representation.row_difference_cases,
                             "smoothness at a knot that one row alone has, by induction on the degree, every degree "
                             "and knots; spline spaces by rank",
                         )
@@ -366,7 +372,7 @@ CLAIMS = (
                 (
                     Part(
                         proved(
-                            properties.no_spline_form_cases,
+                            representation.no_spline_form_cases,
                             "differenced rows over merged knots, for every order and knots; exactly at instances",
                         )
                     ),

@@ -18,18 +18,21 @@ from semispline.papers.ledger import (
     Reading,
     Strength,
     ambiguous,
+    casteljau_cases,
+    elevation_cases,
     fails,
     given,
     holds,
     not_checkable,
     part,
+    proved,
 )
 from semispline.papers.lin2014 import printed as pr
 from semispline.papers.lin2014 import printed_figures as figures
-from semispline.papers.lin2014.checks import bezier, trimming
-from semispline.papers.lin2014.checks.bezier import check
-from semispline.papers.lin2014.checks.consequences_2 import missing_first_row, top_last_row
-from semispline.papers.lin2014.checks.property import proved
+from semispline.papers.lin2014.checks import bezier_division as division
+from semispline.papers.lin2014.checks import bezier_patch as bezier
+from semispline.papers.lin2014.checks import trimming
+from semispline.papers.lin2014.checks.measured_section_2 import missing_first_row, top_last_row
 
 _WHERE = "Section 2, Bezier example"
 _TRIANGLE = "what multiplies one control point in de Casteljau's triangle, every degree; run for degrees 1 to 5 as well"
@@ -45,25 +48,25 @@ _COUNTING = "degrees of the rows, every m, n, k; rows found by substitution up t
 
 def _identity(cases: Any, method: str) -> Check:
     """Return a check that decides an identity for all degrees, parameters and control points, then at some degrees."""
-    return check(cases, method, proof=True, strength=Strength.SYMBOLIC_ORDER)
+    return Check(cases, Strength.SYMBOLIC_ORDER, method, proof=True)
 
 
 def _data(cases: Any, method: str) -> Check:
     """Return a check that decides printed numbers, all of them."""
-    return check(cases, method, proof=True)
+    return Check(cases, Strength.RATIONAL, method, proof=True)
 
 
 _DECIMALS = "the printed decimals, exactly"
 TRUE_TOP_LAST = Formula(Eq(pr.F(pr.n, 0), pr.m + 1), (pr.m, pr.n))
-_LEMMA_PART = part(_identity(bezier.lemma_cases, _LEMMAS))
-_TRIANGLE_PART = part(proved(bezier.triangle_cases, "a step of de Casteljau's triangle on Bernstein polynomials, "
+_LEMMA_PART = part(_identity(division.lemma_cases, _LEMMAS))
+_TRIANGLE_PART = part(proved(casteljau_cases, "a step of de Casteljau's triangle on Bernstein polynomials, "
                              "by induction over the degree"))  # fmt: skip
-_STEP_PART = part(proved(bezier.row_step_cases, "one more argument, by induction over s"))
+_STEP_PART = part(proved(division.row_step_cases, "one more argument, by induction over s"))
 
 
 def _top_last_counterexample() -> Counterexample:
     m, n, k = min(bezier.DEGREES, key=sum)
-    case = next(c for c in bezier.last_row_cases(pr.COUNT_TOP_LAST) if not c.true and c.residual.is_Integer)
+    case = next(c for c in division.last_row_cases(pr.COUNT_TOP_LAST) if not c.true and c.residual.is_Integer)
     values = (("m", str(m)), ("n", str(n)), ("k", str(k)))
     return Counterexample(values, f"{m + 1} control points for Q_0^{n}", f"{m + 1 - int(case.residual)}")
 
@@ -111,13 +114,13 @@ CLAIMS: tuple[Claim, ...] = (
           remark="v(t) is a mean of the v_i: the weights are not negative and sum to 1, by the steps of the triangle."),
     holds("eq-6", _WHERE,
           "The sub-patches below and above v(u) are P_1 = sum of Q_0^s B_s^n and P_2 = sum of Q_s^{n-s} B_s^n.",
-          part(_identity(bezier.division_cases("bottom"), _EXPANSION), pr.EQ_6_BOTTOM),
-          part(_identity(bezier.division_cases("top"), _EXPANSION), pr.EQ_6_TOP), _LEMMA_PART,
+          part(_identity(division.division_cases("bottom"), _EXPANSION), pr.EQ_6_BOTTOM),
+          part(_identity(division.division_cases("top"), _EXPANSION), pr.EQ_6_TOP), _LEMMA_PART,
           remark="v runs over [0, 1] across each sub-patch: P_1(u, v) = P(u, v v(u)), P_2(u, v) = P(u, v(u) + (1 - "
           "v(u)) v); the text does not say so. The letters k and l stand for an order elsewhere."),
     holds("sec-2.q-formula", _WHERE,
           "Q_j^s has the Bezier points that the formula under (6) gives: products of binomials and blossoms.",
-          *(part(_identity(bezier.row_formula_cases(depth), _ROWS), formula)
+          *(part(_identity(division.row_formula_cases(depth), _ROWS), formula)
             for depth, formula in enumerate(pr.Q_ROWS, start=1)), _STEP_PART, _LEMMA_PART,
           remark="The formula itself is run for s = 1, 2, 3; each further argument multiplies its terms by one more "
           "Bernstein polynomial, as it does in the product. Several (i, j_1, .., j_s) share one Bernstein polynomial; "
@@ -127,7 +130,7 @@ CLAIMS: tuple[Claim, ...] = (
           part(_RANGE, pr.Q_RANGE),
           correction=Correction("s = 0, .., n with P_ij^0 = P_ij.",
                                 (Part(_RANGE, Q_RANGE_FROM_0),
-                                 Part(_identity(bezier.row_formula_cases(0), "the row of the patch itself"), ROW_0))),
+                                 Part(_identity(division.row_formula_cases(0), "the row of the patch itself"), ROW_0))),
           counterexample=_range_counterexample, consequence=missing_first_row,
           remark="The counts in the text do include Q_0^0 with its m + 1 points."),
     holds("sec-2.blossom-1", _WHERE, "First step of the blossom recursion.",
@@ -137,26 +140,26 @@ CLAIMS: tuple[Claim, ...] = (
           remark="The order of the arguments does not matter, so that the order of the printed steps does not either."),
     holds("sec-2.bottom-counts", _WHERE,
           "The rows of the bottom sub-patch have m+1, m+k+1, .., m+nk+1 control points; there are n+1 of them.",
-          part(_identity(bezier.count_cases("bottom"), _COUNTING), pr.COUNT_BOTTOM)),
+          part(_identity(division.count_cases("bottom"), _COUNTING), pr.COUNT_BOTTOM)),
     holds("sec-2.top-counts", _WHERE,
           "The rows of the top sub-patch have m+nk+1, m+(n-1)k+1, .., m+1 control points; there are n+1 of them.",
-          part(_identity(bezier.count_cases("top"), _COUNTING), pr.COUNT_TOP)),
+          part(_identity(division.count_cases("top"), _COUNTING), pr.COUNT_TOP)),
     fails("sec-2.top-last-row", _WHERE, "The last row of the top sub-patch, with m+1 control points, is Q_0^n.",
-          part(_identity(bezier.last_row_cases, _COUNTING), pr.COUNT_TOP_LAST),
+          part(_identity(division.last_row_cases, _COUNTING), pr.COUNT_TOP_LAST),
           correction=Correction("The last row is Q_n^0, the edge v = 1 of the patch.",
-                                (Part(_identity(bezier.last_row_cases, _COUNTING), TRUE_TOP_LAST),)),
+                                (Part(_identity(division.last_row_cases, _COUNTING), TRUE_TOP_LAST),)),
           counterexample=_top_last_counterexample, consequence=top_last_row,
           remark="Indices exchanged, or misread by the scan: with Q_n^0 it is right. Q_0^n is the row on the dividing "
           "curve, which the same sentence names first, with m+nk+1 points."),
     ambiguous("sec-2.subpatch-kind", _WHERE, "Therefore both sub-patches are semi-structured patches.",
-              Reading((part(check(bezier.same_order_cases, "orders of the rows, every m, n, k")),),
+              Reading((part(Check(division.same_order_cases, Strength.RATIONAL, "orders of the rows, every m, n, k")),),
                       label="(6) with its counts is of the form (1), whose control curves all have one order"),
-              Reading((part(proved(bezier.elevation_cases, "raising a row by one degree, every degree")), _LEMMA_PART),
+              Reading((part(proved(elevation_cases, "raising a row by one degree, every degree")), _LEMMA_PART),
                       label="they can be written in the form (1)"),
-              Reading((part(_identity(bezier.division_cases("bottom"), _EXPANSION), pr.EQ_6_BOTTOM),
-                       part(_identity(bezier.division_cases("top"), _EXPANSION), pr.EQ_6_TOP),
-                       part(_identity(bezier.count_cases("bottom"), _COUNTING), pr.COUNT_BOTTOM),
-                       part(_identity(bezier.count_cases("top"), _COUNTING), pr.COUNT_TOP)),
+              Reading((part(_identity(division.division_cases("bottom"), _EXPANSION), pr.EQ_6_BOTTOM),
+                       part(_identity(division.division_cases("top"), _EXPANSION), pr.EQ_6_TOP),
+                       part(_identity(division.count_cases("bottom"), _COUNTING), pr.COUNT_BOTTOM),
+                       part(_identity(division.count_cases("top"), _COUNTING), pr.COUNT_TOP)),
                       label="skins of curves, each of an order of its own"),
               remark="Definition 1 gives all curves one order and lets knots differ; here there are no inner knots and "
               "the orders differ. With all rows raised to the highest degree a sub-patch is an ordinary Bezier patch, "

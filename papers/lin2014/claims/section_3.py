@@ -18,26 +18,23 @@ from semispline.papers.ledger import (
     Reading,
     Strength,
     ambiguous,
+    count_check,
     fails,
     holds,
     holds_if,
     not_checkable,
     part,
+    proved,
+    question,
     smallest_assignment,
 )
 from semispline.papers.lin2014 import printed as pr
-from semispline.papers.lin2014.checks import blending, energy, objective, quality
-from semispline.papers.lin2014.checks.consequences_3 import more_curves, parameter_dependence, union_knots
-from semispline.papers.lin2014.checks.contact import row_check
-from semispline.papers.lin2014.checks.property import proved, question
-from semispline.papers.lin2014.checks.spline import (
-    SURFACE_CHECK,
-    base_check,
-    count_check,
-    domain_instances,
-    inner_knots_count,
-    knot_count_instances,
-)
+from semispline.papers.lin2014.checks import construction, energy, objective
+from semispline.papers.lin2014.checks import fewer_control_points as fewer
+from semispline.papers.lin2014.checks.contact_rows import row_check
+from semispline.papers.lin2014.checks.counts import domain_instances, inner_knots_count, knot_count_instances
+from semispline.papers.lin2014.checks.definitions import SURFACE_CHECK, base_check
+from semispline.papers.lin2014.checks.measured_energy import more_curves, parameter_dependence, union_knots
 
 _BASES = "Section 3, base surfaces"
 _ENERGY = "Section 3, energy"
@@ -124,13 +121,13 @@ CLAIMS: tuple[Claim, ...] = (
           part(count_check(domain_instances(pr.n_r, pr.ell), _DOMAIN), pr.RUN_STARTS[1]),
           part(count_check(domain_instances(pr.n_s, pr.ell), _DOMAIN), pr.RUN_STARTS[3])),
     holds("sec-3.contact-knots", _BASES, "The knot vector of R(w_s, v) is V^r, that of S(t_s, v) is V^s.",
-          part(proved(blending.contact_curve_cases,
+          part(proved(construction.contact_curve_cases,
                       "values at a clamped end for every order and knots, by induction; the surface there and its "
                       "first row at instances"))),
     holds_if("sec-3.not-classical", _BASES,
              "Knot vectors that differ cannot both be carried by one classical surface, without inserting knots.",
              "neither knot vector contains the other",
-             part(proved(blending.mismatch_cases,
+             part(proved(construction.mismatch_cases,
                          "smoothness at a knot that one vector has more often, by induction on the order, every order "
                          "and knots; spline spaces over the printed pairs by exact rank; for nested vectors an example "
                          "is enough")),
@@ -175,44 +172,44 @@ CLAIMS: tuple[Claim, ...] = (
     holds("eq-13", _BLEND, "The blend is the surface (1) over [0, 1] x [v_s, v_e].",
           part(SURFACE_CHECK, pr.EQ_13)),
     holds("sec-3.u-vector", _BLEND, "U has k zeros, m - k + 1 inner knots and k ones.",
-          part(count_check(blending.u_length(), _COUNT), pr.U_LENGTH)),
+          part(count_check(construction.u_length(), _COUNT), pr.U_LENGTH)),
     ambiguous("sec-3.u-numbering", _BLEND, "u_1 in (2.1) and (3.1) is a knot of U.",
               Reading((part(row_check("start", 1), pr.COND_2_1),), label="the first inner knot, as (13) numbers them"),
               Reading((part(row_check("start", 1), ROW_1_AT_ZERO),),
                       label="the second knot, as Definition 1 numbers them, which is 0"),
               remark="One letter, two numberings: Definition 1 counts all knots from u_0, (13) only the inner ones."),
     holds_if("sec-3.m-bound", _BLEND, "With m >= k + 1 the layout of (13) is possible.", "k >= 4",
-             part(Check(blending.layout_cases, Strength.SYMBOLIC_ORDER,
+             part(Check(construction.layout_cases, Strength.SYMBOLIC_ORDER,
                         "rows of the first and last curves for every k >= 4 and every m admitted, and for k = 2 to 7; "
                         "for smaller k an example is enough", proof=True), pr.M_BOUND),
              remark="Six different rows need m >= 5, whatever k is. For k = 3 the bound admits m = 4, where curve 2 "
              "would need both knot vectors; for k > 4 it asks for more than is needed."),
     holds("sec-3.uniform-knots", _BLEND, "u_i = i / (m - k + 2) spaces the inner knots uniformly.",
-          part(Check(blending.uniform_knot_cases, Strength.SYMBOLIC_ORDER,
+          part(Check(construction.uniform_knot_cases, Strength.SYMBOLIC_ORDER,
                      "equal spans from 0 to 1 by as many knots as there are, for every m and k; instances", proof=True),
                pr.UNIFORM_KNOT)),
     holds("sec-3.three-curves", _BLEND, "The first three curves have the knots of R's contact curve, the last of S.",
-          part(proved(blending.three_row_cases, "the derived rows: combinations of R_0 .. R_2, with R_2 in row 2")),
-          part(blending.row_check_of(lambda at_start, _: at_start), FIRST_THREE),
-          part(blending.row_check_of(lambda _, at_end: at_end), LAST_THREE)),
+          part(proved(construction.three_row_cases, "the derived rows: combinations of R_0 .. R_2, with R_2 in row 2")),
+          part(construction.row_check_of(lambda at_start, _: at_start), FIRST_THREE),
+          part(construction.row_check_of(lambda _, at_end: at_end), LAST_THREE)),
     fails("sec-3.fewer-better", _BLEND, "In general, the fewer control points the blend has, the better its quality.",
-          part(Check(quality.fewer_cases, Strength.RATIONAL, _STRIPS), pr.FEWER_IS_BETTER),
+          part(Check(fewer.fewer_cases, Strength.RATIONAL, _STRIPS), pr.FEWER_IS_BETTER),
           correction=Correction(
               "For strips, whose rows do not vary along v, a blend without middle curve costs more than one with it by "
               "a sum of two squares in the contact data, so that it is never the better one; and wherever one space of "
               "surfaces contains another, each control point more can only lower (11).",
-              (Part(Check(quality.difference_cases, Strength.SYMBOLIC_ORDER, _STRIPS + ", all contact data",
-                          proof=True), quality.FEWER_COSTS_MORE),
-               Part(Check(quality.nested_cases, Strength.SYMBOLIC_ORDER, "the minimum of a quadratic energy over one "
-                          "more control point", proof=True), quality.NESTED))),
-          counterexample=quality.fewer_counterexample, consequence=more_curves,
+              (Part(Check(fewer.difference_cases, Strength.SYMBOLIC_ORDER, _STRIPS + ", all contact data",
+                          proof=True), fewer.FEWER_COSTS_MORE),
+               Part(Check(fewer.nested_cases, Strength.SYMBOLIC_ORDER, "the minimum of a quadratic energy over one "
+                          "more control point", proof=True), fewer.NESTED))),
+          counterexample=fewer.fewer_counterexample, consequence=more_curves,
           remark="By the measure of the paper itself, a surface without a middle curve is the worse one."),
     ambiguous("sec-1.fairness", "Section 1",
               "Inserting knots until both contact curves share theirs worsens the fairness.",
-              Reading((part(question(blending.knot_line_cases, "knot lines counted in the printed pairs")),),
+              Reading((part(question(construction.knot_line_cases, "knot lines counted in the printed pairs")),),
                       label="if fairness means few knot lines, across which a cubic is C2 only, then by definition"),
               Reading((part(question(_fairness_cases, "least energy (11), exactly; one counterexample is enough")),
-                       part(proved(blending.nested_space_cases,
+                       part(proved(construction.nested_space_cases,
                                    "knot insertion by induction on the order, every order and knots: the larger space "
                                    "holds the smaller one; spline spaces over the printed pairs"))),
                       label="fairness as the least energy (11), the paper's measure of quality"),
@@ -220,29 +217,29 @@ CLAIMS: tuple[Claim, ...] = (
               remark="No measure of fairness is named. Inserting a knot alone changes no surface; by (11) the best "
               "surface over more knots is never worse."),
     holds("sec-3.two-kinds", _BLEND, "With k = 4 the blend has no middle curve (m = 5), or just P_3 (m = 6).",
-          part(blending.middle_count_check(0), NO_MIDDLE), part(blending.middle_count_check(1), ONE_MIDDLE),
-          part(blending.row_check_of(lambda at_start, _: at_start + 1), MIDDLE_ROW)),
+          part(construction.middle_count_check(0), NO_MIDDLE), part(construction.middle_count_check(1), ONE_MIDDLE),
+          part(construction.row_check_of(lambda at_start, _: at_start + 1), MIDDLE_ROW)),
     holds("sec-3.inner-knots", _MIDDLE, "The inner knots of V^r are v_l, .., v_{n_r}.",
           part(count_check(inner_knots_count(), _INSIDE), pr.INNER_FIRST),
           part(count_check(inner_knots_count(), _INSIDE), pr.INNER_LAST)),
     ambiguous("sec-3.averaging", _MIDDLE,
               "The inner knots of P_3 are the averages (v_{2i-1} + v_{2i})/2 of adjacent knots of V_n.",
-              Reading((part(Check(blending.paired_cases(lambda n: (n + 1) // 2), Strength.SYMBOLIC_ORDER, _AVERAGED,
+              Reading((part(Check(construction.paired_cases(lambda n: (n + 1) // 2), Strength.SYMBOLIC_ORDER, _AVERAGED,
                                   proof=True),
                             pr.AVERAGED_KNOT),), label="pairs until V_n is used up, as printed"),
-              Reading((part(Check(blending.paired_cases(lambda n: n // 2), Strength.SYMBOLIC_ORDER, _AVERAGED,
+              Reading((part(Check(construction.paired_cases(lambda n: n // 2), Strength.SYMBOLIC_ORDER, _AVERAGED,
                                   proof=True),
                             pr.AVERAGED_KNOT),), label="complete pairs, the last knot dropped where n is odd"),
-              Reading((part(Check(blending.sliding_cases, Strength.SYMBOLIC_ORDER, _AVERAGED, proof=True)),),
+              Reading((part(Check(construction.sliding_cases, Strength.SYMBOLIC_ORDER, _AVERAGED, proof=True)),),
                       label="each knot with the next one"),
               remark="No range of i is printed. For Figs. 5, 8 and 9 n = 3: v_4 does not exist. Dropping the last knot "
               "makes the blend depend on the direction of v."),
     holds("sec-3.middle-ends", _MIDDLE, "l-fold v_s and v_e complete the averages to a clamped knot vector.",
-          part(Check(blending.bezier_end_cases, Strength.SYMBOLIC_ORDER,
+          part(Check(construction.bezier_end_cases, Strength.SYMBOLIC_ORDER,
                      "where the domain starts and ends and values there, every order and count; end points by de "
                      "Boor's triangle", proof=True), CLAMP)),
     holds("sec-3.sides", "Section 3, continuity conditions",
           "(1.1), (2.1), (3.1) concern R and P, (1.2), (2.2), (3.2) concern S and P.",
-          part(proved(blending.side_cases,
+          part(proved(construction.side_cases,
                       "letters of the six printed formulas, which are all that the claim is on", Strength.RATIONAL))),
 )  # fmt: skip

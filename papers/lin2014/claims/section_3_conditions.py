@@ -20,23 +20,25 @@ from semispline.papers.ledger import (
     ambiguous,
     holds_if,
     part,
+    proved,
+    unconditional,
 )
 from semispline.papers.lin2014 import printed as pr
-from semispline.papers.lin2014.checks.consequences import measured_rows
-from semispline.papers.lin2014.checks.contact import (
+from semispline.papers.lin2014.checks.contact_counterexamples import row_counterexample
+from semispline.papers.lin2014.checks.contact_rows import (
     ROWS,
     Side,
     row_check,
-    row_counterexample,
     t_ks1,
     tangent_check,
     u_before,
     u_last,
-    unconditional,
     w_kr1,
 )
-from semispline.papers.lin2014.checks.geometry import shape_parameter_cases, special_contact_cases
-from semispline.papers.lin2014.checks.normal import (
+from semispline.papers.lin2014.checks.geometric_continuity import shape_parameter_cases, special_contact_cases
+from semispline.papers.lin2014.checks.measured_rows import measured_rows
+from semispline.papers.lin2014.checks.objective import direction_check
+from semispline.papers.lin2014.checks.rows_along_normal import (
     EXCESS_3_1,
     EXCESS_3_1_SQUARES,
     EXCESS_3_2,
@@ -45,8 +47,6 @@ from semispline.papers.lin2014.checks.normal import (
     excess_check,
     normal_counterexample,
 )
-from semispline.papers.lin2014.checks.objective import direction_check
-from semispline.papers.lin2014.checks.property import proved
 
 _START_CHAINS = (*pr.COND_3_1.neighbours, (pr.w_kr, w_kr1))
 _END_CHAINS = (*pr.COND_3_2.neighbours, (pr.t_ks, t_ks1), (u_last, u_before))

@@ -26,12 +26,12 @@ from semispline.papers.ledger import (
     indexed,
     not_checkable,
     part,
+    proved,
 )
 from semispline.papers.lin2014 import printed as pr
-from semispline.papers.lin2014.checks import blending, energy, objective
-from semispline.papers.lin2014.checks.consequences_3 import single_integrals, third_term, vector_lengths, zero_system
-from semispline.papers.lin2014.checks.contact import BASE_ROWS, ROWS, Side, knots_as_spans
-from semispline.papers.lin2014.checks.property import proved
+from semispline.papers.lin2014.checks import construction, energy, objective
+from semispline.papers.lin2014.checks.contact_rows import BASE_ROWS, ROWS, Side, knots_as_spans
+from semispline.papers.lin2014.checks.measured_energy import single_integrals, third_term, vector_lengths, zero_system
 from semispline.papers.lin2014.claims.section_3_conditions import TRUE_2_2, TRUE_3_1, TRUE_3_2
 
 _WHERE = "Section 4"
@@ -72,10 +72,10 @@ def _true_entry(label: str) -> Iterator[sp.Rational]:
 
 def _no_middle_cases() -> Iterator[Case]:
     """Yield m = 5: contact of order 2 at both ends sets all six rows; the end derivatives determine each of them."""
-    at_start, at_end = blending.set_rows(2)
+    at_start, at_end = construction.set_rows(2)
     between = (at_end - at_start - 1).subs(pr.m, 5)
     yield Case("no row between those that R and S set, for every order and knots", between == 0)
-    matrix = blending.contact_matrix(4, 5, 2)
+    matrix = construction.contact_matrix(4, 5, 2)
     yield Case("k = 4: the six conditions have one solution", matrix.rows == matrix.cols == matrix.rank())
 
 
@@ -159,8 +159,8 @@ CLAIMS: tuple[Claim, ...] = (
           part(objective.NORMAL_EQUATION_CHECK, NORMAL_EQUATION), part(objective.minimum_check(1)),
           remark="Rows 2 and m-2 are unknown too."),
     holds("sec-4.unknowns", _WHERE, "X holds the rows 3, .., m-3, N the rows 0, 1, 2, m-2, m-1, m.",
-          part(blending.row_check_of(lambda at_start, _: at_start + 1), FIRST_UNKNOWN),
-          part(blending.row_check_of(lambda _, at_end: at_end - 1), LAST_UNKNOWN)),
+          part(construction.row_check_of(lambda at_start, _: at_start + 1), FIRST_UNKNOWN),
+          part(construction.row_check_of(lambda _, at_end: at_end - 1), LAST_UNKNOWN)),
     fails("eq-14", _WHERE, "A X^T = -B N^T, with A, B and a, b, c as printed, gives the least energy.",
           part(_GRAM, pr.EQ_14),
           part(proved(objective.zero_system_cases, "entries of A as printed where a_ij = c_ij = 0; its rank")),

@@ -11,11 +11,11 @@ from semispline import Base, BSplineSurface, SemiStructuredSurface, blend, measu
 from semispline.papers.baselines import open_cascade_filling
 from semispline.papers.baselines.contacts import contact_sides, on_common_knots, oriented_bases
 from semispline.papers.baselines.interface import BlendTask, NotApplicableError
-from semispline.papers.baselines.layout import semistructured, u_basis
-from semispline.papers.baselines.least_energy import contact_rule, least_energy
 from semispline.papers.baselines.quadratic_forms import THIN_PLATE, TRIHARMONIC, energy_matrix
 from semispline.papers.baselines.quintic_hermite import hermite_rows
 from semispline.papers.baselines.registry import method, methods
+from semispline.papers.baselines.rows_of_least_energy import contact_rule, least_energy
+from semispline.papers.baselines.surfaces_from_rows import semistructured_surface, u_basis
 from semispline.papers.lin2014 import paper_as_printed
 from semispline.papers.lin2014.examples.section5 import example
 from semispline.solver.judge.de_boor import surface_points
@@ -89,7 +89,7 @@ def test_printed_rows_scale_the_second_derivative_along_the_normal():
     b = contact_sides(example(6))[1]
     alpha2, rows = 1.3, [np.zeros((8, 3))] * 4
     rule = paper_as_printed.printed_rule(b, u_basis(7), at_end=True)
-    surface = semistructured(u_basis(7), (b.along,) * 7, [*rows, *rule(alpha2)[::-1]])
+    surface = semistructured_surface(u_basis(7), (b.along,) * 7, [*rows, *rule(alpha2)[::-1]])
     v = np.linspace(0, 1, 11)
     normal = np.cross(b.derivatives(v, 1), b.derivatives(v, 0, 1))
     found = np.sum(surface_points(surface, np.ones_like(v), v, 2, 0) * normal, axis=1)
@@ -103,7 +103,7 @@ def test_printed_rows_scale_the_second_derivative_along_the_normal():
 
 def random_rows(seed, u, bases):
     rng = np.random.default_rng(seed)
-    return semistructured(u, bases, [rng.uniform(-1, 1, (b.size, 3)) for b in bases])
+    return semistructured_surface(u, bases, [rng.uniform(-1, 1, (b.size, 3)) for b in bases])
 
 
 def integral(surface, squares):

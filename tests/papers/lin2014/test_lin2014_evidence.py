@@ -14,19 +14,29 @@ from semispline.papers.ledger.exact import Meaning, UndefinedError, clamped, de_
 from semispline.papers.ledger.loading import load_paper
 from semispline.papers.ledger.search import smallest_assignment
 from semispline.papers.lin2014 import printed as pr
-from semispline.papers.lin2014.checks.consequences import made_blend, made_pair, measured_rows, with_printed_rows
-from semispline.papers.lin2014.checks.consequences_3 import COMMON_TERMS, with_normal_equation
-from semispline.papers.lin2014.checks.contact import row_check, row_counterexample, t_ks1, u_before, u_last, w_kr1
-from semispline.papers.lin2014.checks.figure_conditions import (
+from semispline.papers.lin2014.checks.conditions_in_figures import (
+    _base_derivatives,
+    _printed_derivatives,
+    _rows_across,
     at_figure,
     equal_spans_check,
     row_2_check,
     straight_counterexample,
 )
-from semispline.papers.lin2014.checks.figure_conditions import row_counterexample as figure_counterexample
-from semispline.papers.lin2014.checks.normal import EXCESS_3_1, EXCESS_3_1_SQUARES, excess_check, normal_counterexample
-from semispline.papers.lin2014.checks.related import quartic_cases
+from semispline.papers.lin2014.checks.conditions_in_figures import row_counterexample as figure_counterexample
+from semispline.papers.lin2014.checks.contact_counterexamples import row_counterexample
+from semispline.papers.lin2014.checks.contact_rows import row_check, t_ks1, u_before, u_last, w_kr1
+from semispline.papers.lin2014.checks.measured_energy import COMMON_TERMS, with_normal_equation
+from semispline.papers.lin2014.checks.measured_rows import made_blend, measured_rows, with_printed_rows
+from semispline.papers.lin2014.checks.other_methods import quartic_cases
+from semispline.papers.lin2014.checks.rows_along_normal import (
+    EXCESS_3_1,
+    EXCESS_3_1_SQUARES,
+    excess_check,
+    normal_counterexample,
+)
 from semispline.papers.lin2014.claims.section_3_conditions import TRUE_2_2, TRUE_3_1, TRUE_3_2
+from semispline.papers.lin2014.examples.made_pair import made_pair
 
 ROOT = Path(__file__).parents[3]
 
@@ -305,8 +315,6 @@ def test_every_letter_of_corrected_end_formulas_matters():
 def test_the_curvature_that_the_printed_row_gives():
     """Along the normal: the base's second derivative times (w_{k_r+1} - w_s) / u_2, the remark of cond-3.1."""
     assert "times (w_{k_r+1} - w_s) / u_2" in load_paper("lin2014").claim("cond-3.1").remark
-    from semispline.papers.lin2014.checks.figure_conditions import _base_derivatives, _printed_derivatives, _rows_across
-
     H = sp.symbols("H1 H2", positive=True)
     alpha = sp.Symbol("alpha", positive=True)
     rows, along = _rows_across("curved")

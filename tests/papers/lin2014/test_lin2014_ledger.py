@@ -7,8 +7,9 @@ from xml.etree import ElementTree
 
 from semispline.papers.ledger.records import Strength, Verdict
 from semispline.papers.ledger.verification import verify
-from semispline.papers.report.erratum import STUDY_HEADING, ledger_markdown
-from semispline.papers.report.ledger_text import ledger_html, ledger_record
+from semispline.papers.report.ledger_as_html import ledger_html
+from semispline.papers.report.ledger_as_json import ledger_record
+from semispline.papers.report.ledger_as_markdown import STUDY_HEADING, ledger_markdown
 from semispline.solver.io.json_text import to_text
 
 REPORT = Path(__file__).parents[3] / "papers" / "lin2014" / "REPORT.md"

@@ -5,18 +5,26 @@ from fractions import Fraction
 import pytest
 import sympy as sp
 
+from semispline.derivations import counts as derivations_counts
+from semispline.papers.ledger import exact, spline_facts, spline_samples, spline_spaces
+from semispline.papers.ledger.counts import count_check
 from semispline.papers.ledger.exact import spline_basis
+from semispline.papers.ledger.spline_samples import Sample
 from semispline.papers.ledger.verification import decide
 from semispline.papers.lin2014 import printed as pr
-from semispline.papers.lin2014.checks import blending as blending_checks
-from semispline.papers.lin2014.checks import contact as contact_checks
-from semispline.papers.lin2014.checks import energy as energy_checks
-from semispline.papers.lin2014.checks import geometry as geometry_checks
-from semispline.papers.lin2014.checks import normal as normal_checks
-from semispline.papers.lin2014.checks import objective as objective_checks
-from semispline.papers.lin2014.checks import property as property_checks
-from semispline.papers.lin2014.checks import quality as quality_checks
-from semispline.papers.lin2014.checks import spline as spline_checks
+from semispline.papers.lin2014.checks import (
+    construction,
+    contact_rows,
+    counts,
+    definitions,
+    energy,
+    fewer_control_points,
+    geometric_continuity,
+    objective,
+    printed_pairs,
+    representation,
+    rows_along_normal,
+)
 from semispline.papers.lin2014.claims import appendix as claims_appendix
 from semispline.papers.lin2014.claims import section_2 as claims_2_definition
 from semispline.papers.lin2014.claims import section_3 as claims_3_blending
@@ -24,9 +32,10 @@ from semispline.papers.lin2014.claims import section_3_conditions as claims_3_co
 from semispline.papers.lin2014.claims import section_4 as claims_4_implementation
 
 RECORDS = (claims_2_definition, claims_3_blending, claims_3_conditions, claims_4_implementation, claims_appendix)
+# Whatever remembers what it has computed.
 MODULES = (
-    *(blending_checks, contact_checks, energy_checks, geometry_checks, normal_checks),
-    *(objective_checks, property_checks, quality_checks, spline_checks),
+    *(derivations_counts, exact, spline_facts, spline_spaces, construction, contact_rows, counts, definitions, energy),
+    *(fewer_control_points, geometric_continuity, objective, printed_pairs, representation, rows_along_normal),
 )
 CLAIMS = {claim.id: claim for module in RECORDS for claim in module.CLAIMS}
 
@@ -61,73 +70,71 @@ def first_of(order, *vectors):
     return vectors[0]
 
 
-SADDLE = (objective_checks, "thin_plate_density", saddle)
+SADDLE = (objective, "thin_plate_density", saddle)
 # Least at a = gap - 3/2, so that plates that are close do not join.
 PLATES = (
-    energy_checks,
+    energy,
     "end_energy",
     lambda k, m, data: (data[1] - data[3] + Fraction(3, 2)) ** 2 + (data[4] - 1) ** 2,
 )
-BENT = (property_checks, "de_boor", bent)
+BENT = (representation, "de_boor", bent)
 # Record, which of its questions -> what is replaced where, by what.
 PERTURBED = {
-    ("def-1", 0): [(property_checks, "spline_basis", doubled_basis)],
-    ("sec-2.different-vectors", 0): [(property_checks, "weights", lambda *_: [Fraction(2)])],
+    ("def-1", 0): [(representation, "spline_basis", doubled_basis)],
+    ("sec-2.different-vectors", 0): [(Sample, "weights", lambda *_: [Fraction(2)])],
     ("sec-1.generalisation", 0): [BENT],
     ("sec-2.evaluation-classical", 0): [BENT],
     ("sec-2.convex-hull", 0): [
-        (property_checks, "spline_basis", doubled_basis),
-        (property_checks, "partition_residuals", lambda *_: [sp.Poly(1, sp.Symbol("x"))]),
-        (property_checks, "least_bernstein_coefficient", lambda *_: -1),
+        (spline_samples, "spline_basis", doubled_basis),
+        (representation, "partition_residuals", lambda *_: [sp.Poly(1, sp.Symbol("x"))]),
+        (representation, "least_bernstein_coefficient", lambda *_: -1),
     ],
-    ("sec-2.affine-invariance", 0): [(spline_checks, "de_boor", bent)],
+    ("sec-2.affine-invariance", 0): [(spline_samples, "de_boor", bent)],
     ("sec-2.localness", 0): [
-        (property_checks, "supports", lambda degree, knots: [tuple(range(degree, 9))] * (len(knots) - degree - 1)),
-        (property_checks, "_lower_function", lambda j, order, span: sp.Symbol(f"N_{j}")),
-        (property_checks, "weights", lambda sample, u, v: [Fraction(1)] * sum(sample.sizes)),
+        (representation, "supports", lambda degree, knots: [tuple(range(degree, 9))] * (len(knots) - degree - 1)),
+        (spline_facts, "_lower_function", lambda j, order, span: sp.Symbol(f"N_{j}")),
+        (Sample, "weights", lambda sample, u, v: [Fraction(1)] * sum(sample.sizes)),
     ],
-    ("sec-2.continuity-control", 0): [(property_checks, "contact_orders", lambda *_: [7])],
-    ("sec-2.continuity-control", 1): [(property_checks, "_jump", lambda vector: sp.Integer(0))],
-    ("sec-2.transformation", 0): [(property_checks, "union", first_of)],
-    ("sec-2.derivatives-classical", 0): [(property_checks, "spline_basis", basis_without_slope)],
-    ("sec-2.derivatives-hard", 0): [(property_checks, "contained", lambda *_: True)],
-    ("sec-2.derivatives-hard", 1): [(property_checks, "union", first_of)],
+    ("sec-2.continuity-control", 0): [(spline_spaces, "contact_orders", lambda *_: [7])],
+    ("sec-2.continuity-control", 1): [(representation, "_jump", lambda vector: sp.Integer(0))],
+    ("sec-2.transformation", 0): [(representation, "union", first_of)],
+    ("sec-2.derivatives-classical", 0): [(representation, "spline_basis", basis_without_slope)],
+    ("sec-2.derivatives-hard", 0): [(representation, "contained", lambda *_: True)],
+    ("sec-2.derivatives-hard", 1): [(representation, "union", first_of)],
     ("sec-3.contact-knots", 0): [
-        (blending_checks, "de_boor", bent),
-        (blending_checks, "end_derivatives", lambda *_: sp.ones(3)),
+        (construction, "de_boor", bent),
+        (construction, "end_derivatives", lambda *_: sp.ones(3)),
     ],
-    ("sec-3.not-classical", 0): [(blending_checks, "contained", lambda *_: True)],
-    ("sec-3.thin-plate", 0): [(objective_checks, "thin_plate_density", lambda: sp.Integer(0))],
-    ("eq-11", 0): [(energy_checks, "gram_matrix", lambda derivative, one, other: sp.eye(one.size))],
+    ("sec-3.not-classical", 0): [(construction, "contained", lambda *_: True)],
+    ("sec-3.thin-plate", 0): [(objective, "thin_plate_density", lambda: sp.Integer(0))],
+    ("eq-11", 0): [(energy, "gram_matrix", lambda derivative, one, other: sp.eye(one.size))],
     ("eq-12", 0): [SADDLE],
     ("eq-12", 1): [PLATES],
-    ("sec-3.three-curves", 0): [(blending_checks, "contact_rows", lambda *_: sp.eye(3))],
-    ("sec-1.fairness", 0): [(blending_checks, "PRINTED_PAIRS", {"one": ("fig-5.first", "fig-5.first")})],
-    ("sec-1.fairness", 1): [(energy_checks, "middle_knot_energies", lambda: (sp.Integer(1), sp.Integer(2)))],
-    ("sec-1.fairness", 2): [(blending_checks, "union", first_of)],
-    ("sec-3.averaging", 0): [
-        (blending_checks, "merged", lambda name: (Fraction(3, 4), Fraction(1, 2), Fraction(1, 4)))
-    ],
+    ("sec-3.three-curves", 0): [(construction, "contact_rows", lambda *_: sp.eye(3))],
+    ("sec-1.fairness", 0): [(construction, "PRINTED_PAIRS", {"one": ("fig-5.first", "fig-5.first")})],
+    ("sec-1.fairness", 1): [(energy, "middle_knot_energies", lambda: (sp.Integer(1), sp.Integer(2)))],
+    ("sec-1.fairness", 2): [(construction, "union", first_of)],
+    ("sec-3.averaging", 0): [(construction, "merged", lambda name: (Fraction(3, 4), Fraction(1, 2), Fraction(1, 4)))],
     ("sec-3.sides", 0): [(pr, "COND_2_1", pr.COND_2_2)],
     ("sec-3.sufficient-g1", 0): [
-        (geometry_checks, "tangent_coordinates", lambda vector: (1, 1)),
-        (geometry_checks, "_regular", lambda patch: True),
+        (geometric_continuity, "tangent_coordinates", lambda vector: (1, 1)),
+        (geometric_continuity, "_regular", lambda patch: True),
     ],
     ("sec-3.sufficient-g2", 1): [
-        (geometry_checks, "tangent_coordinates", lambda vector: (1, 1)),
-        (geometry_checks, "_slope_and_mixed", lambda: (sp.zeros(3, 1), sp.zeros(3, 1))),
-        (geometry_checks, "special_conditions", lambda order: (0, *[sp.Symbol("R_w")] * order)),
+        (geometric_continuity, "tangent_coordinates", lambda vector: (1, 1)),
+        (geometric_continuity, "_slope_and_mixed", lambda: (sp.zeros(3, 1), sp.zeros(3, 1))),
+        (geometric_continuity, "special_conditions", lambda order: (0, *[sp.Symbol("R_w")] * order)),
     ],
     ("sec-4.no-middle-curve", 0): [
-        (blending_checks, "contact_matrix", lambda *_: sp.ones(6)),
-        (blending_checks, "set_rows", lambda order: (1, pr.m - 1)),
+        (construction, "contact_matrix", lambda *_: sp.ones(6)),
+        (construction, "set_rows", lambda order: (1, pr.m - 1)),
     ],
     ("sec-4.normal-equation", 0): [SADDLE],
     ("sec-4.c1-similarly", 0): [SADDLE],
-    ("eq-14", 0): [(energy_checks, "printed_system", lambda: (sp.eye(5), sp.eye(5)))],
+    ("eq-14", 0): [(energy, "printed_system", lambda: (sp.eye(5), sp.eye(5)))],
     ("eq-14", 1): [
-        (energy_checks, "_integral", lambda *_: sp.Integer(1)),
-        (objective_checks, "end_derivatives", lambda *_: sp.ones(3)),
+        (energy, "_integral", lambda *_: sp.Integer(1)),
+        (objective, "end_derivatives", lambda *_: sp.ones(3)),
     ],
     ("sec-4.unconstrained", 0): [PLATES],
 }
@@ -192,22 +199,22 @@ def test_a_missing_part_of_the_corrected_g2_conditions_is_noticed():
 @pytest.mark.parametrize(("order", "formula"), [(1, pr.EQ_15), (2, pr.EQ_16)])
 def test_necessity_is_proved_for_any_surfaces(order, formula, monkeypatch):
     """Without the part on necessity, or with wrong coordinates in the tangent plane, this is red."""
-    check = geometry_checks.general_check(order)
+    check = geometric_continuity.general_check(order)
     name = f"necessity, any R and P: some p_{order}, q_{order}"
 
     def found():
         return next(case.true for case in check.cases(formula) if case.label.startswith(name))
 
     assert found()
-    right = geometry_checks.tangent_coordinates
-    monkeypatch.setattr(geometry_checks, "tangent_coordinates", lambda vector: right(vector)[::-1])
+    right = geometric_continuity.tangent_coordinates
+    monkeypatch.setattr(geometric_continuity, "tangent_coordinates", lambda vector: right(vector)[::-1])
     assert not found()
 
 
 @pytest.mark.parametrize(("order", "formula", "name"), [(1, pr.EQ_15, "P_u x P_v"), (2, pr.EQ_16, "the forms agree")])
 def test_sufficiency_is_proved_for_any_surfaces(order, formula, name):
     """A condition that asks for something else does not suffice."""
-    check = geometry_checks.general_check(order)
+    check = geometric_continuity.general_check(order)
 
     def found(given):
         return next(c.true for c in check.cases(given) if c.label.startswith("sufficiency") and name in c.label)
@@ -223,7 +230,7 @@ def test_tangent_coordinates_at_numbers():
     at = {}
     for letter, value in ((pr.R_w, r_w), (pr.R_v, r_v)):
         at |= dict(zip(sp.symbols(f"{letter}_x:z"), value, strict=True))
-    assert [x.subs(at) for x in geometry_checks.tangent_coordinates(vector)] == [3, -2]
+    assert [x.subs(at) for x in geometric_continuity.tangent_coordinates(vector)] == [3, -2]
 
 
 @pytest.mark.parametrize("name", ["eq-12", "sec-4.unconstrained", "sec-1.fairness"])
@@ -235,19 +242,19 @@ def test_what_is_only_checked_is_not_called_proved(name):
 
 def test_a_layout_with_other_rows_would_be_counted():
     """Rows that enter the contact are counted, not set: for first-order contact they are 0, 1 and m - 1, m."""
-    assert {(m, ends) for _, m, ends, _ in blending_checks.counted_rows(1)} >= {(5, (1, 4)), (6, (1, 5))}
-    assert blending_checks.set_rows(1) == (1, pr.m - 1)
-    assert blending_checks.set_rows(3) == (3, pr.m - 3)
+    assert {(m, ends) for _, m, ends, _ in construction.counted_rows(1)} >= {(5, (1, 4)), (6, (1, 5))}
+    assert construction.set_rows(1) == (1, pr.m - 1)
+    assert construction.set_rows(3) == (3, pr.m - 3)
 
 
 def test_the_end_of_the_domain_follows_from_the_number_of_functions(monkeypatch, fresh_caches):
     """Where each step of the recurrence lost two functions the domain would end elsewhere."""
 
     def first_case():
-        counting = spline_checks.domain_instances(pr.m_r, pr.k_r)
-        return next(iter(spline_checks.count_check(counting, "-").cases(pr.RUN_STARTS[0])))
+        counting = counts.domain_instances(pr.m_r, pr.k_r)
+        return next(iter(count_check(counting, "-").cases(pr.RUN_STARTS[0])))
 
     assert first_case().true
     clear_caches()
-    monkeypatch.setattr(spline_checks, "functions_of_order", lambda last, order: last - 2 * order)
+    monkeypatch.setattr(derivations_counts, "functions_of_order", lambda last, order: last - 2 * order)
     assert not first_case().true

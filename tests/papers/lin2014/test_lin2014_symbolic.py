@@ -1,19 +1,16 @@
 """Proofs for every order, knot vector and count: each kind turns red when its formula or its premise is wrong."""
 
-from fractions import Fraction
-
 import pytest
 import sympy as sp
 
-from semispline.papers.ledger.exact import clamped, de_boor
+from semispline.papers.ledger import spline_spaces
+from semispline.papers.ledger.counts import count_check
 from semispline.papers.ledger.records import Formula, Strength
-from semispline.papers.ledger.symbolic_sums import SAME, WITHIN, coefficient
+from semispline.papers.ledger.spline_spaces import contact_at_knot
 from semispline.papers.ledger.verification import decide
 from semispline.papers.lin2014 import printed as pr
-from semispline.papers.lin2014.checks import blending, objective
-from semispline.papers.lin2014.checks import property as properties
-from semispline.papers.lin2014.checks import spline as splines
-from semispline.papers.lin2014.checks.contact import mirror_check, row_check
+from semispline.papers.lin2014.checks import construction, counts, definitions, objective, representation
+from semispline.papers.lin2014.checks.contact_rows import mirror_check, row_check
 from semispline.papers.lin2014.claims import appendix as claims_appendix
 from semispline.papers.lin2014.claims import section_2 as claims_2_definition
 from semispline.papers.lin2014.claims import section_3 as claims_3_blending
@@ -96,31 +93,19 @@ def test_each_reading_of_a_claim(name, holds):
     assert [reading_holds(reading) for reading in CLAIMS[name].readings] == holds
 
 
-def test_what_multiplies_a_control_point():
-    i, j, a, b, n = sp.symbols("i j a b n", integer=True)
-    P, f = sp.IndexedBase("P"), sp.Function("f")
-    assert coefficient(sp.Sum(2 * P[i + 1] * f(i), (i, 1, n)), P[a]) == 2 * f(a - 1) * WITHIN(1, a - 1, n)
-    double = sp.Sum(sp.Sum(P[i, j] * f(i, j), (j, 0, i)), (i, 0, n))
-    assert coefficient(double, P[a, b]) == f(a, b) * WITHIN(0, b, a) * WITHIN(0, a, n)
-    assert coefficient(sp.Sum(P[i, i], (i, 0, n)), P[a, b]) == SAME(a, b) * WITHIN(0, a, n)
-    for wrong in (f(i), P[i] ** 2, P[i] * P[j]):
-        with pytest.raises(ValueError, match="expected sums and products linear"):
-            coefficient(wrong, P[a])
-
-
 @pytest.mark.parametrize(
     ("check", "formula", "old", "new"),
     [
-        (splines.SURFACE_CHECK, pr.EQ_1, pr.m, pr.m - 1),
-        (splines.SURFACE_CHECK, pr.EQ_3, pr.k, pr.k + 1),
-        (splines.CURVE_CHECK, pr.EQ_2, pr.B(pr.j, pr.ell, pr.v, pr.V(pr.i)), pr.B(pr.i, pr.ell, pr.v, pr.V(pr.j))),
-        (splines.base_check("R"), pr.EQ_7, pr.n_r, pr.m_r),
-        (splines.count_check(splines.knot_count_instances(pr.m, pr.k), "-"), pr.U_LAST, pr.k, pr.k - 1),
-        (splines.count_check(splines.domain_instances(pr.m_r, pr.k_r), "-"), pr.RUN_ENDS[0], pr.k_r, pr.k_r + 1),
-        (splines.count_check(splines.domain_instances(pr.m_r, pr.k_r), "-"), pr.RUN_STARTS[0], pr.m_r, pr.m_r + 1),
-        (splines.count_check(splines.inner_knots_count(), "-"), pr.INNER_LAST, pr.n_r, pr.n_r + 1),
-        (splines.count_check(blending.u_length(), "-"), pr.U_LENGTH, pr.m, pr.m + 1),
-        (blending.middle_count_check(1), claims_3_blending.ONE_MIDDLE, sp.Integer(6), sp.Integer(7)),
+        (definitions.SURFACE_CHECK, pr.EQ_1, pr.m, pr.m - 1),
+        (definitions.SURFACE_CHECK, pr.EQ_3, pr.k, pr.k + 1),
+        (definitions.CURVE_CHECK, pr.EQ_2, pr.B(pr.j, pr.ell, pr.v, pr.V(pr.i)), pr.B(pr.i, pr.ell, pr.v, pr.V(pr.j))),
+        (definitions.base_check("R"), pr.EQ_7, pr.n_r, pr.m_r),
+        (count_check(counts.knot_count_instances(pr.m, pr.k), "-"), pr.U_LAST, pr.k, pr.k - 1),
+        (count_check(counts.domain_instances(pr.m_r, pr.k_r), "-"), pr.RUN_ENDS[0], pr.k_r, pr.k_r + 1),
+        (count_check(counts.domain_instances(pr.m_r, pr.k_r), "-"), pr.RUN_STARTS[0], pr.m_r, pr.m_r + 1),
+        (count_check(counts.inner_knots_count(), "-"), pr.INNER_LAST, pr.n_r, pr.n_r + 1),
+        (count_check(construction.u_length(), "-"), pr.U_LENGTH, pr.m, pr.m + 1),
+        (construction.middle_count_check(1), claims_3_blending.ONE_MIDDLE, sp.Integer(6), sp.Integer(7)),
         (objective.GRAM_CHECK, TRUE_14, pr.A_1, pr.A_2),
         (objective.NORMAL_EQUATION_CHECK, NORMAL_EQUATION, objective.LAST_FREE, objective.LAST_KNOWN),
         (objective.degree_check(2, geometric=True), pr.DEGREE_G2, sp.Integer(8), sp.Integer(6)),
@@ -138,36 +123,10 @@ def test_the_first_case_alone_tells_a_wrong_formula(check, formula, old, new):
     assert wrong.residual != 0
 
 
-def test_counts_at_known_numbers():
-    """Cubic with one inner knot: 5 points, knots 0 .. 8, domain from knot 3 to knot 5, inner knot 4."""
-    assert splines.last_knot(sp.Integer(4), sp.Integer(4)) == 8
-    assert splines.domain_ends(sp.Integer(4), sp.Integer(4)) == (3, 5)
-    counting = splines.inner_knots_count()
+def test_the_inner_knot_of_a_cubic_with_five_points_is_knot_4():
+    counting = counts.inner_knots_count()
     at = {pr.n_r: 4, pr.ell: 4}
     assert [sp.sympify(counting.exact[letter]).subs(at) for letter in (pr.first, pr.last)] == [4, 4]
-
-
-@pytest.mark.parametrize("order", [2, 3, 4])
-@pytest.mark.parametrize("z", [Fraction(1, 10), Fraction(1, 2), Fraction(9, 10)])
-def test_the_insertion_formula_at_numbers(order, z):
-    """B = (z - s_0)/(s_k - s_0) B' + (s_(k+1) - z)/(s_(k+1) - s_1) B'', by de Boor's triangle on both sides."""
-    old = clamped(order, Fraction(1, 5), Fraction(2, 5), Fraction(4, 5))
-    new = tuple(sorted((*old, z)))
-    for i in range(len(old) - order):
-        s = sorted((*old[i : i + order + 1], z))
-        if not old[i] <= z < old[i + order] or s[order] == s[0] or s[-1] == s[1]:
-            continue
-        weights = (z - s[0]) / (s[order] - s[0]), (s[-1] - z) / (s[-1] - s[1])
-        unit = [Fraction(j == i) for j in range(len(old) - order)]
-        both = [Fraction(0)] * (len(new) - order)
-        both[i], both[i + 1] = weights
-        for x in (Fraction(1, 7), Fraction(3, 7), Fraction(6, 7)):
-            assert de_boor(order, old, unit, x) == de_boor(order, new, both, x)
-
-
-def test_smoothness_at_a_symbolic_knot():
-    assert [properties.contact_at_knot(4, r) for r in (1, 2, 3)] == [2, 1, 0]
-    assert [properties.contact_at_knot(7, r) for r in (1, 6)] == [5, 0]
 
 
 def test_the_gram_integrand_against_integrals_of_two_bumps():
@@ -196,12 +155,12 @@ def test_a_premise_that_fails_makes_the_proof_red(monkeypatch):
     monkeypatch.setattr(objective, "end_derivatives", lambda *_: sp.ones(3))
     assert truths(objective.integrals_vanish_cases())[0] is False
     monkeypatch.undo()
-    monkeypatch.setattr(properties, "contact_orders", lambda *_: [7])
-    properties.contact_at_knot.cache_clear()
-    found = [case.true for case in properties.continuity_control_cases() if "multiplicity" in case.label]
+    monkeypatch.setattr(spline_spaces, "contact_orders", lambda *_: [7])
+    contact_at_knot.cache_clear()
+    found = [case.true for case in representation.continuity_control_cases() if "multiplicity" in case.label]
     assert found
     assert not any(found)
-    properties.contact_at_knot.cache_clear()
+    contact_at_knot.cache_clear()
 
 
 @pytest.mark.parametrize("name", ["eq-12", "sec-4.normal-equation", "sec-4.c1-similarly"])

@@ -7,13 +7,17 @@ import sympy as sp
 
 from semispline.papers.ledger.loading import load_paper
 from semispline.papers.ledger.mutation import mutants, try_mutants
+from semispline.papers.ledger.printed_data import Knots, Numbers, inner_moves, knot_changes, number_changes
 from semispline.papers.ledger.records import Case, Check, Formula, Part, Strength
-from semispline.papers.ledger.vectors import Knots, Numbers, inner_moves, knot_changes, number_changes
 from semispline.papers.lin2014 import printed as pr
 from semispline.papers.lin2014 import printed_figures as printed
-from semispline.papers.lin2014.checks import figure as figures
-from semispline.papers.lin2014.checks import related, trimming
-from semispline.papers.lin2014.checks.quality import FEWER_COSTS_MORE, difference_cases, fewer_cases, least_energies
+from semispline.papers.lin2014.checks import other_methods, printed_numbers, trimming
+from semispline.papers.lin2014.checks.fewer_control_points import (
+    FEWER_COSTS_MORE,
+    difference_cases,
+    fewer_cases,
+    least_energies,
+)
 
 V = sp.Symbol("V")
 
@@ -61,9 +65,9 @@ def test_a_reason_is_counted_apart_and_only_for_its_own_mutant():
 
 @pytest.mark.parametrize("key", sorted(pr.KNOTS))
 def test_of_a_printed_vector_only_moved_inner_knots_go_unnoticed(key):
-    cases = {"fig-5.first": figures.first_vector_5_cases, "fig-10.first": figures.first_vector_10_cases}
+    cases = {"fig-5.first": printed_numbers.first_vector_5_cases, "fig-10.first": printed_numbers.first_vector_10_cases}
     formula = printed.VECTORS[key]
-    check = Check(cases.get(key, figures.knot_cases(key)), Strength.RATIONAL, "x")
+    check = Check(cases.get(key, printed_numbers.knot_cases(key)), Strength.RATIONAL, "x")
     assert all(case.true for case in check.cases(formula)) == (key != "fig-10.first")
     result = try_mutants(Part(check, formula))
     assert result.survivors == ()
@@ -81,7 +85,7 @@ def test_every_reason_belongs_to_a_mutant_that_is_made():
 
 
 def test_a_size_of_table_1_is_tied_to_the_knots():
-    check = Check(figures.size_cases("fig-6", 1), Strength.RATIONAL, "x")
+    check = Check(printed_numbers.size_cases("fig-6", 1), Strength.RATIONAL, "x")
     assert all(case.true for case in check.cases(printed.SIZE["fig-6"][1]))
     for wrong in (Numbers(5, 9), Numbers(5, 7), Numbers(3, 8), Numbers(8, 5)):
         assert not all(case.true for case in check.cases(of(wrong))), wrong
@@ -119,16 +123,16 @@ def test_fewer_control_points_cost_more_by_a_sum_of_two_squares():
 
 
 def test_a_quintic_is_needed_and_enough():
-    cases = list(related.hermite_cases(pr.QUINTIC))
+    cases = list(other_methods.hermite_cases(pr.QUINTIC))
     assert [case.label for case in cases if case.true] == [case.label for case in cases]
     weaker = Formula(sp.Ge(pr.degree, 4), (pr.degree,))
-    assert [case.label for case in related.hermite_cases(weaker) if not case.true] == ["degree 4"]
+    assert [case.label for case in other_methods.hermite_cases(weaker) if not case.true] == ["degree 4"]
 
 
 def test_the_section_of_a_canal_surface_at_numbers():
     """r = 5, r' = 3, s = 5: the section has radius 4, three back along the spine."""
-    values = {related.RADIUS: 5, related.RADIUS_SLOPE: 3, related.SPEED: 5}
-    assert related.SECTION_SQUARED.relation.rhs.subs(values) == 16
-    assert all(case.true for case in related.canal_cases(related.SECTION_SQUARED))
-    wrong = Formula(sp.Eq(related.SECTION, related.RADIUS), (related.SECTION, related.RADIUS))
-    assert not all(case.true for case in related.canal_cases(wrong))
+    values = {other_methods.RADIUS: 5, other_methods.RADIUS_SLOPE: 3, other_methods.SPEED: 5}
+    assert other_methods.SECTION_SQUARED.relation.rhs.subs(values) == 16
+    assert all(case.true for case in other_methods.canal_cases(other_methods.SECTION_SQUARED))
+    wrong = Formula(sp.Eq(other_methods.SECTION, other_methods.RADIUS), (other_methods.SECTION, other_methods.RADIUS))
+    assert not all(case.true for case in other_methods.canal_cases(wrong))

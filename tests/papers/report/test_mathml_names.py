@@ -5,8 +5,8 @@ from xml.etree import ElementTree
 import pytest
 import sympy as sp
 
-from semispline.papers.ledger.vectors import Knots
-from semispline.papers.report.mathml import latex, mathml, text_html
+from semispline.papers.ledger.printed_data import Knots
+from semispline.papers.report.formulas import latex, mathml, text_html
 
 
 @pytest.mark.parametrize(

@@ -11,8 +11,10 @@ from PIL import Image
 
 from helpers.small_report import METHODS
 from semispline.papers.report.chart import energy_chart
-from semispline.papers.report.page import page
-from semispline.papers.report.tables import cell, methods_table, reached
+from semispline.papers.report.html_page import page
+from semispline.papers.report.measured_tables import methods_table
+from semispline.papers.report.table_text import cell
+from semispline.papers.reproduction.measures import reached
 
 
 class Elements(HTMLParser):

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from helpers.chromium import Browser
-from semispline.papers.report.page import page
+from semispline.papers.report.html_page import page
 
 pytestmark = pytest.mark.browser
 

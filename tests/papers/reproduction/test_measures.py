@@ -9,17 +9,15 @@ from semispline import Base, BSplineCurve, BSplineSurface, blend
 from semispline.papers.baselines.contacts import contact_sides
 from semispline.papers.baselines.interface import BlendTask, FormulaSurface, Outcome
 from semispline.papers.lin2014.examples.section5 import example
-from semispline.papers.reproduction.measures import (
-    bending_and_area,
+from semispline.papers.reproduction.contact_measures import (
     contact_measure,
     corresponding,
-    mean_curvature_range,
-    measure,
     measured_by_formula,
     oriented_turn,
-    plate_energy,
     seam_measure,
+    turn_between,
 )
+from semispline.papers.reproduction.measures import bending_and_area, mean_curvature_range, measure, plate_energy
 from semispline.solver.splines.construction import plane, revolve
 from semispline.solver.splines.operations import reverse_u
 
@@ -48,6 +46,21 @@ def test_formulas_are_measured_as_the_referee_measures_splines(curved, end):
     np.testing.assert_allclose(found.curvature_jump_relative, judged.curvature_jump_relative, rtol=1e-9)
     assert found.gap < 1e-12
     assert found.angle_degrees < 1e-9
+
+
+@pytest.mark.parametrize(("end", "turn"), [(2.0, 0.0), (0.0, 180.0), ((1.0, 1.0), 90.0)])
+@pytest.mark.parametrize("flipped", [False, True])
+def test_a_strip_that_goes_on_turns_off_or_runs_back(end, turn, flipped):
+    """From (0, y, 0) to (1, y, 0), then on to x = 2, back to 0, or straight up; v of the second may run backwards."""
+    x, z = end if isinstance(end, tuple) else (end, 0.0)
+    ys = (1.0, 0.0) if flipped else (0.0, 1.0)
+    knots = [0, 0, 1, 1]
+    first = BSplineSurface(1, 1, knots, knots, [[[i, y, 0.0] for y in (0.0, 1.0)] for i in (0.0, 1.0)])
+    second = BSplineSurface(
+        1, 1, knots, knots, [[[*p, q] for p, q in (((a, y), c) for y in ys)] for a, c in ((1.0, 0.0), (x, z))]
+    )
+    found = turn_between(Base(first, "u1"), Base(second, "u0"), flipped=flipped)
+    np.testing.assert_allclose(found, turn, atol=1e-12)
 
 
 def test_energy_of_formulas_is_that_of_splines(curved):

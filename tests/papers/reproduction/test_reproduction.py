@@ -11,10 +11,10 @@ from helpers.small_report import METHODS, fails, small_results, small_study
 from semispline.papers.cli import app
 from semispline.papers.lin2014.findings import findings, meets_demand
 from semispline.papers.lin2014.study import study
-from semispline.papers.report.environment import environment
-from semispline.papers.report.erratum import STUDY_HEADING, ledger_markdown, with_study_kept
+from semispline.papers.report.documents import markdown, numbers, write_report
+from semispline.papers.report.ledger_as_markdown import STUDY_HEADING, ledger_markdown, with_study_kept
+from semispline.papers.report.versions import environment
 from semispline.papers.reproduction.study import Drawing
-from semispline.papers.whole_study import markdown, numbers, write_report
 from semispline.solver.io.json_text import load_json
 
 

@@ -21,7 +21,7 @@ def u_basis(rows: int, degree: int = 3) -> Basis:
     return Basis(degree, uniform_knots(degree, rows - degree))
 
 
-def semistructured(u: Basis, bases: Sequence[Basis], rows: Sequence[FloatArray]) -> SemiStructuredSurface:
+def semistructured_surface(u: Basis, bases: Sequence[Basis], rows: Sequence[FloatArray]) -> SemiStructuredSurface:
     """Return the surface with these rows, each over its own knots."""
     curves = [BSplineCurve(basis.degree, basis.knots, row) for basis, row in zip(bases, rows, strict=True)]
     return SemiStructuredSurface(u.degree, u.knots, tuple(curves))

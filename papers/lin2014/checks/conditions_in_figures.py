@@ -31,11 +31,11 @@ from semispline.papers.ledger import (
     UndefinedError,
     given,
     interpret,
-    mutants,
     smallest_assignment,
 )
 from semispline.papers.lin2014 import printed as pr
-from semispline.papers.lin2014.checks.contact import CUBIC, Side, difference_form, t_ks1, u_before, u_last, w_kr1
+from semispline.papers.lin2014.checks.contact_rows import Side, difference_form, t_ks1, u_before, u_last, w_kr1
+from semispline.papers.lin2014.printed import CUBIC
 
 # What a base is like across the contact; "any" decides all coordinates, the others the one along the normal.
 Kind = Literal["any", "curved", "straight"]
@@ -167,28 +167,6 @@ def _letters(side: Side, kind: Kind, parametric: bool, equal: bool) -> tuple[dic
     ends = end_derivatives(2, CUBIC - 1, spans)
     second = sum((field.from_sympy(ends[2, i]) * of[base[i]] for i in range(3)), field.zero)
     return of, of[shape] ** 4 * second
-
-
-_TANGENT = "differs from the formula within the tangent plane alone, where (16) leaves P_uu free"
-_UNSEEN = (
-    "with R_2 in the tangent plane too, as on a base that is straight across, every such row is in it: this record "
-    "does not see the formula; fig-6.g2, with a curved base, and cond-3.1 do"
-)
-
-
-def along_normal(formula: Formula, side: Side, kind: Kind) -> Formula:
-    """Return the formula with the mutants explained that change P_uu within the tangent plane only.
-
-    These are the ones that give the same where R_0 and R_1, so that P_0 and P_1 as well, have one coordinate x along
-    the normal, and R_2 too if the base is straight across.
-    """
-    x = sp.Symbol("x")
-    base = _BASE[side][: 3 if kind == "straight" else 2]
-    flat = dict.fromkeys((*base, *_BLEND[side][:2]), x)
-    wanted = formula.relation.rhs.subs(flat)
-    same = [m for m in mutants(formula) if sp.cancel(m.relation.rhs.subs(flat) - wanted) == 0]
-    reason = _UNSEEN if kind == "straight" else _TANGENT
-    return replace(formula, equivalent={mutant.text: reason for mutant in same})
 
 
 # As printed, and with the squares that the scan may have lost.

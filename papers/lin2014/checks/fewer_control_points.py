@@ -15,8 +15,8 @@ from sympy import Eq
 from semispline.papers.ledger import Case, Counterexample, Formula, given, smallest_assignment
 from semispline.papers.lin2014 import printed as pr
 from semispline.papers.lin2014.checks import energy
+from semispline.papers.lin2014.printed import CUBIC
 
-CUBIC = 4
 # Value and derivatives of the strip at u = 0 and u = 1.
 DATA = sp.symbols("f_0 f'_0 f''_0 f_1 f'_1 f''_1", real=True)
 _F0, _D0, _DD0, _F1, _D1, _DD1 = DATA

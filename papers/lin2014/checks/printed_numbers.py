@@ -12,13 +12,12 @@ from typing import Any
 
 import sympy as sp
 
-from semispline.papers.ledger import Case, Consequence, Counterexample, Formula, clamped, given
+from semispline.papers.ledger import Case, Consequence, Counterexample, Formula, as_fraction, clamped, contained, given
 from semispline.papers.lin2014 import printed as pr
 from semispline.papers.lin2014 import printed_figures as printed
-from semispline.papers.lin2014.checks.blending import WITH_MIDDLE_CURVE, inner_knots, merged
-from semispline.papers.lin2014.checks.property import contained
+from semispline.papers.lin2014.checks.printed_pairs import WITH_MIDDLE_CURVE, inner_knots, merged
+from semispline.papers.lin2014.printed import CUBIC
 
-CUBIC = 4
 # Table 1, second numbers of each model, against the contact curves whose knots the text prints.
 CONTACTS = {
     "fig-5": ("fig-5.first", "fig-5.second"),
@@ -59,13 +58,13 @@ def first_vector_5_cases(formula: Formula | None) -> Iterator[Case]:
 def first_vector_10_cases(formula: Formula | None) -> Iterator[Case]:
     """Yield what `knot_cases` does for the first vector of Fig. 10, and that its inner knots are those printed."""
     yield from knot_cases("fig-10.first")(formula)
-    inner = [_fraction(x) for x in given(formula).relation.rhs if 0 < x < 1]
+    inner = [as_fraction(x) for x in given(formula).relation.rhs if 0 < x < 1]
     yield Case("the printed inner knots", inner == inner_knots("fig-10.first"))
 
 
 def seventh_cases(formula: Formula | None) -> Iterator[Case]:
     """Yield the inner knots of Fig. 10: the six sevenths, rounded to six places."""
-    knots = list(map(_fraction, given(formula).relation.rhs))
+    knots = list(map(as_fraction, given(formula).relation.rhs))
     yield Case(f"{len(knots)} inner knots", len(knots) == 6)
     for i, knot in enumerate(knots, start=1):
         yield Case(f"{float(knot)}", knot == Fraction(round(Fraction(i, 7) * 10**6), 10**6))
@@ -207,13 +206,9 @@ def cone_patch_cases(patch: Callable[[Any, Any], Any] | None = None) -> Iterator
 
 def removable_cases(formula: Formula | None) -> Iterator[Case]:
     """Yield coordinate functions over {1/3, 2/3}: can they be written over {1/2}? A spline space decides for all."""
-    knots = tuple(map(_fraction, given(formula).relation.rhs))
+    knots = tuple(map(as_fraction, given(formula).relation.rhs))
     yield Case("the vector of the first patch", knots == tuple(map(Fraction, map(str, pr.KNOTS["fig-5.first"]))))
     third = Fraction(1, 3)
     polynomial, own, wanted = clamped(CUBIC), clamped(CUBIC, third, 2 * third), clamped(CUBIC, Fraction(1, 2))
     yield Case("a plane with coordinates polynomial in v", contained(CUBIC, polynomial, wanted))
     yield Case("any plane patch over {1/3, 2/3}", contained(CUBIC, own, wanted), own=False, meets=False)
-
-
-def _fraction(number: Any) -> Fraction:
-    return Fraction(int(number.p), int(number.q))

@@ -8,10 +8,9 @@ from typing import Any
 import sympy as sp
 
 from semispline.derivations.splines import end_derivatives, span_symbols
-from semispline.papers.ledger import Case, Formula, given
+from semispline.papers.ledger import Case, Formula, contained, given, union
 from semispline.papers.lin2014 import printed as pr
-from semispline.papers.lin2014.checks.blending import PRINTED_PAIRS, printed_pair
-from semispline.papers.lin2014.checks.property import contained, union
+from semispline.papers.lin2014.checks.printed_pairs import PRINTED_PAIRS, printed_pair
 
 # A ball of radius r on a base of curvature c across the contact, and the jump of the curvature there.
 BALL_RADIUS = sp.Symbol("r", positive=True)

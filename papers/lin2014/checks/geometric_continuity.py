@@ -17,9 +17,17 @@ from typing import Any
 import sympy as sp
 
 from semispline.derivations.contact import A, contact_conditions, special_conditions
-from semispline.papers.ledger import Case, Check, Counterexample, Formula, Strength, given, smallest_assignment
+from semispline.papers.ledger import (
+    Case,
+    Check,
+    Counterexample,
+    Formula,
+    Strength,
+    given,
+    premises,
+    smallest_assignment,
+)
 from semispline.papers.lin2014 import printed as pr
-from semispline.papers.lin2014.checks.property import premises
 
 _U, _V, _W = sp.symbols("u v w")
 _DERIVATIVES = {pr.R_w: (1, 0), pr.R_v: (0, 1), pr.R_ww: (2, 0), pr.R_wv: (1, 1), pr.R_vv: (0, 2)}

@@ -1,6 +1,6 @@
 """What a printed formula does to a surface: a checked blend whose rows are set anew by the formula, then measured.
 
-The pair is `examples/made-pair.json`: two bicubic bases with mismatched, non-uniform knots and a curved contact each.
+The pair is the made one of `examples`, unless another is given.
 """
 
 from __future__ import annotations
@@ -8,7 +8,6 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import cache
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -16,25 +15,15 @@ import sympy as sp
 
 from semispline.papers.ledger import Consequence, Formula
 from semispline.papers.lin2014 import printed as pr
-from semispline.papers.lin2014.checks.contact import Side, t_ks1, u_before, u_last, w_kr1
-from semispline.papers.reproduction import cad_verdict
+from semispline.papers.lin2014.checks.contact_rows import Side, t_ks1, u_before, u_last, w_kr1
+from semispline.papers.lin2014.examples.made_pair import made_pair
+from semispline.papers.reproduction import cad_verdict, turn_between
 from semispline.solver.blending import BlendResult, blend, make_side
-from semispline.solver.io import read_problem
 from semispline.solver.judge import Base, measure_contact
 from semispline.solver.options import Continuity
-from semispline.solver.splines import BSplineCurve, BSplineSurface, SemiStructuredSurface
+from semispline.solver.splines import BSplineCurve, SemiStructuredSurface
 
-EXAMPLES = Path(__file__).parents[1] / "examples"
 ROWS_BY_SIDE = {"start": (pr.P_0, pr.P_1, pr.P_2), "end": (pr.P_m, pr.P_m1, pr.P_m2)}
-
-
-@cache
-def made_pair() -> tuple[Base, Base]:
-    """Return the two bases of the made pair."""
-    problem = read_problem(EXAMPLES / "made-pair.json")
-    if not (isinstance(problem.a, BSplineSurface) and isinstance(problem.b, BSplineSurface)):
-        raise TypeError("made-pair.json: expected two B-spline surfaces")
-    return Base(problem.a, problem.edge_a), Base(problem.b, problem.edge_b)  # type: ignore[arg-type]
 
 
 @cache
@@ -117,7 +106,7 @@ def measured_rows(
     measured = {
         "gap": contact.gap,
         "angle between tangent planes [degrees]": contact.angle_degrees,
-        "turn of the normal across the contact [degrees]": _oriented_turn(*ends, flipped=flipped),
+        "turn of the normal across the contact [degrees]": turn_between(*ends, flipped=flipped),
         "curvature jump [1/length]": contact.curvature_jump,
         "relative curvature jump": contact.curvature_jump_relative,
         "relative curvature jump with the corrected formula": kept.curvature_jump_relative,
@@ -127,23 +116,3 @@ def measured_rows(
         measured["relative C2 residual"] = contact.c2_residual
         measured["relative C2 residual with the corrected formula"] = kept.c2_residual
     return Consequence(what, measured, {"Open CASCADE": cad_verdict(*ends, flipped=flipped)})
-
-
-def _oriented_turn(a: Base, b: Base, *, flipped: bool) -> float:
-    """Return by how much the surface turns back on itself at the contact: 0 for a smooth join, 180 for a fold.
-
-    Both cross derivatives are taken in the direction from a into b; a fold shows as opposite normals.
-    """
-    s = np.linspace(0.03, 0.97, 17)
-    vectors = []
-    for base, leaving in ((a, True), (b, False)):
-        start, end = base.range_along
-        x = start + (1 - s if flipped and not leaving else s) * (end - start)
-        cross, along = base.derivative(x, 1, 0), base.derivative(x, 0, 1)
-        outward = 1.0 if base.edge[1] == "1" else -1.0
-        cross = cross * (outward if leaving else -outward)
-        along = along * (-1.0 if flipped and not leaving else 1.0)
-        vectors.append(np.cross(cross, along))
-    n1, n2 = vectors
-    sine, cosine = np.linalg.norm(np.cross(n1, n2), axis=1), np.sum(n1 * n2, axis=1)
-    return float(np.degrees(np.arctan2(sine, cosine)).max())

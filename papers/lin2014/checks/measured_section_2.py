@@ -1,4 +1,4 @@
-"""What the misprints of section 2 do to a surface, measured in exact arithmetic on the patch that stands for Fig. 3."""
+"""What the misprints of section 2 do to a surface: exactly on a patch that stands for Fig. 3, and on the made pair."""
 
 from __future__ import annotations
 
@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from semispline.derivations.bezier import blossom, division_curve, division_rows
+from semispline.derivations.bezier import de_casteljau, division_curve, division_rows
 from semispline.papers.ledger import Consequence
-from semispline.papers.lin2014.checks.consequences import made_blend
+from semispline.papers.lin2014.checks.measured_rows import made_blend
 from semispline.solver.judge import curve_points
 
 # A bicubic patch over the unit square, one number a coordinate, and the Bezier function that divides it.
@@ -40,12 +40,8 @@ def _largest_change(wrong: Any, true: Any) -> float:
 
 
 def _at(rows: Any, u: Fraction, w: Fraction) -> Fraction:
-    points = [_bezier(row, u) if row else Fraction(0) for row in rows]
-    return _bezier(points, w)
-
-
-def _bezier(points: Any, x: Fraction) -> Any:
-    return blossom(points, [x] * (len(points) - 1))
+    points = [de_casteljau(row, u) if row else Fraction(0) for row in rows]
+    return de_casteljau(points, w)
 
 
 def top_last_row() -> Consequence:

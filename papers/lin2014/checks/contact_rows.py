@@ -7,10 +7,9 @@ contact at u = 0, h_r = u_r, and for one at u = 1, h_r = 1 - u_(m-k+2-r).
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import replace
 from functools import cache, partial
-from itertools import pairwise
 from typing import Any, Literal
 
 import sympy as sp
@@ -22,21 +21,11 @@ from semispline.derivations.splines import (
     end_derivatives_from_pieces,
     span_symbols,
 )
-from semispline.papers.ledger import (
-    Case,
-    Check,
-    Counterexample,
-    Formula,
-    Meaning,
-    Strength,
-    given,
-    interpret,
-    smallest_assignment,
-)
+from semispline.papers.ledger import Case, Check, Formula, Meaning, Strength, given, interpret
 from semispline.papers.lin2014 import printed as pr
+from semispline.papers.lin2014.printed import CUBIC
 
 ORDERS = range(2, 9)
-CUBIC = 4
 
 Side = Literal["start", "end"]
 # What a row is compared in: all coordinates; these with alpha = beta = 1; or, as (16) asks, the one along the normal.
@@ -68,16 +57,6 @@ def row_check(side: Side, row: int, mode: Mode = "all") -> Check:
         proof=True,
         probe=partial(_row_probe, side, mode),
     )
-
-
-@cache
-def unconditional(check: Check) -> Check:
-    """Return the check of a part that needs nothing of the condition of its claim: every instance must be true."""
-
-    def cases(formula: Formula | None) -> Iterator[Case]:
-        yield from (replace(case, meets=True) for case in check.cases(formula))
-
-    return replace(check, cases=cases)
 
 
 @cache
@@ -116,6 +95,7 @@ def derivative_check(surface: Literal["P", "R"], order: int) -> Check:
     )
 
 
+ONES = {pr.alpha: sp.Integer(1), pr.beta: sp.Integer(1)}
 # Rational values without any relation between them, at which mutants are told apart.
 _PROBE = {
     **dict(zip(BLEND_H, (sp.Rational(2, 17), sp.Rational(5, 19), sp.Rational(11, 23)), strict=True)),
@@ -135,7 +115,7 @@ def _row_probe(side: Side, mode: Mode, formula: Formula) -> tuple[Any, ...]:
 @cache
 def _probe_values(side: Side, mode: Mode, k: int, k_b: int) -> dict[Any, Any]:
     values = letter_values(side, k, k_b, rows_from_pieces(2, k - 1, k_b - 1, side), mode)
-    probe = _PROBE | _ONES if mode == "parametric" else _PROBE
+    probe = _PROBE | ONES if mode == "parametric" else _PROBE
     return probe | {symbol: sp.sympify(value).subs(probe) for symbol, value in values.items()}
 
 
@@ -282,95 +262,6 @@ def difference_form(expression: Any, rows: tuple[Any, ...], *, flat: bool = Fals
         (sp.factor(coefficient / denominator) * sp.prod(x**n for x, n in zip(generators, powers, strict=True)))
         for powers, coefficient in polynomial.terms()
     )
-
-
-def row_counterexample(
-    side: Side, row: int, *formulas: Formula, parametric: bool = False, least_order: int = 0
-) -> Counterexample | None:
-    """Search for the smallest instance at which no reading of a row is the true one: orders first, then heights.
-
-    The base is regular: its first two rows differ. The blend has `least_order` or more, and not less than the row
-    needs. The one in the paper's own orders and knots (k = 4, no middle curve, so that u is 1/3, 2/3) is found
-    beside it.
-    """
-    lowest = max(row + 1, least_order)
-    for total in range(lowest + 2, 2 * ORDERS[-1] + 1):
-        for k in range(lowest, total - 1):
-            k_b = total - k
-            fixed = _ONES if parametric else {}
-            found = _counterexample_at(side, row, formulas, (k, k_b), fixed)
-            if found is not None:
-                own = _counterexample_at(side, row, formulas, (CUBIC, CUBIC), _OWN_KNOTS | fixed)
-                return found if own is None else replace(found, own=str(own))
-    return None
-
-
-_ONES = {pr.alpha: sp.Integer(1), pr.beta: sp.Integer(1)}
-_OWN_KNOTS = {BLEND_H[0]: sp.Rational(1, 3), BLEND_H[1]: sp.Rational(2, 3), BLEND_H[2]: sp.Integer(1)}
-
-
-def _counterexample_at(
-    side: Side, row: int, formulas: Sequence[Formula], orders: tuple[int, int], fixed: dict[Any, Any]
-) -> Counterexample | None:
-    degree = orders[0] - 1
-    values = letter_values(side, *orders, rows_from_pieces(min(2, degree), degree, orders[1] - 1, side))
-    readings = [given(formula).relation.rhs.subs(values, simultaneous=True).subs(fixed) for formula in formulas]
-    true = values[ROWS[side][row]].subs(fixed)
-    found = _smallest_difference(readings, true, BASE_ROWS[side][:2])
-    if found is None:
-        return None
-    names = zip(("k", str(base_order(side))), map(str, orders), strict=True)
-    wrong = " or ".join(dict.fromkeys(str(reading.subs(found)) for reading in readings))
-    at = named(side, {h: x for h, x in fixed.items() if h != BLEND_H[2] and h not in _ONES} | found)
-    return Counterexample((*names, *at), wrong, str(true.subs(found)))
-
-
-def _smallest_difference(readings: Sequence[Any], true: Any, apart: tuple[Any, ...] = ()) -> dict[Any, Any] | None:
-    """Return the smallest instance at which all readings miss, with the two letters `apart` different."""
-    differences = [reading - true for reading in readings]
-    residuals = [sp.numer(sp.together(difference)) for difference in differences]
-    if any(sp.expand(residual) == 0 for residual in residuals):
-        return None
-    h = [x for x in BLEND_H if any(expression.has(x) for expression in (*readings, true))]
-    b = [x for x in BASE_H if any(expression.has(x) for expression in (*readings, true))]
-    letters = set().union(*(difference.free_symbols for difference in differences))
-    symbols = [*h, *b, *sorted(letters - set(h) - set(b), key=str)]
-    evaluate = [sp.lambdify(symbols, residual, "math") for residual in residuals]
-
-    def counts(at: dict[Any, Any]) -> bool:
-        # Inner knots of U lie strictly inside [0, 1] and increase; so do those of the base.
-        inside = all(at[x] < 1 for x in h)
-        increase = all(at[x] < at[y] for chain in (h, b) for x, y in pairwise(chain))
-        regular = not apart or at.get(apart[0], 0) != at.get(apart[1], 0)
-        return inside and increase and regular and all(f(*(at[s] for s in symbols)) != 0 for f in evaluate)
-
-    return smallest_assignment(symbols, counts)
-
-
-def named(side: Side, at: dict[Any, Any]) -> tuple[tuple[str, str], ...]:
-    """Return an instance in the paper's letters."""
-    if side == "start":
-        names = {BLEND_H[0]: "u_1", BLEND_H[1]: "u_2", BASE_H[0]: "w_{k_r} - w_s", BASE_H[1]: "w_{k_r+1} - w_s"}
-    else:
-        names = dict(zip(BLEND_H, ("1 - u_{m-k+1}", "1 - u_{m-k}", "1 - u_{m-k-1}"), strict=True))
-        names |= {BASE_H[0]: "t_{k_s} - t_s", BASE_H[1]: "t_{k_s+1} - t_s"}
-    return tuple((names.get(symbol, str(symbol)), str(value)) for symbol, value in at.items())
-
-
-def derivative_counterexample(surface: Literal["P", "R"], order: int, formula: Formula) -> Counterexample | None:
-    """Search for the smallest instance at which a printed end derivative is not the true one: orders first."""
-    is_blend = surface == "P"
-    rows = (pr.P_0, pr.P_1, pr.P_2) if is_blend else (pr.R_0, pr.R_1, pr.R_2)
-    for k in range(2, ORDERS[-1] + 1):
-        true = (end_derivatives_from_pieces(2, k - 1)[order, :] * sp.Matrix(rows))[0]
-        h1, h2, _ = BLEND_H
-        knots = {pr.u_1: h1, pr.u_2: h2, pr.w_kr: pr.w_s + h1, w_kr1: pr.w_s + h2, pr.k: k, pr.k_r: k}
-        wrong = formula.relation.rhs.subs(knots, simultaneous=True)
-        found = _smallest_difference([wrong], true)
-        if found is not None:
-            values = (("k" if is_blend else "k_r", str(k)), *named("start", found))
-            return Counterexample(values, str(wrong.subs(found)), str(true.subs(found)))
-    return None
 
 
 def mirror_check(row: int) -> Check:

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from base64 import b64encode
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Sequence
 from html import escape
 from importlib.resources import files
 from io import BytesIO
@@ -15,9 +14,11 @@ from PIL import Image
 from semispline.papers.baselines import oriented_bases
 from semispline.papers.ledger import Ledger, Verdict
 from semispline.papers.report.chart import LEGEND, energy_chart
-from semispline.papers.report.ledger_text import ledger_html
-from semispline.papers.report.tables import METHODS_NOTE, cell, methods_table, reached
-from semispline.papers.reproduction import Comparison, Comparisons, Example, Finding, Study, Table
+from semispline.papers.report.ledger_as_html import ledger_html
+from semispline.papers.report.measured_tables import METHODS_NOTE, methods_table
+from semispline.papers.report.results import Results
+from semispline.papers.report.table_text import cell, table_html
+from semispline.papers.reproduction import Comparison, Example, Finding, reached
 from semispline.solver.pictures import model, viewer_html, viewer_script
 
 # Pixels across a picture in the page; the files beside it are for print.
@@ -26,35 +27,6 @@ _PICTURE_WIDTH = 1600
 _OPEN = 3
 # A browser then refuses to fetch anything.
 _NOTHING_FROM_OUTSIDE = "default-src 'none'; img-src data:; style-src 'unsafe-inline'; script-src 'unsafe-inline'"
-
-
-@dataclass(frozen=True, eq=False)
-class Results:
-    """Everything that a run has found.
-
-    Attributes
-    ----------
-    ledger : Ledger
-    study : Study
-    comparisons : mapping
-        Every method on every example.
-    blends : Table
-        C2 and G2 blends of the pairs, edge by edge.
-    pictures : mapping
-        Name of a drawing -> its PNG file.
-    environment : mapping
-        Versions and machine.
-    command : str
-        How to repeat it.
-    """
-
-    ledger: Ledger
-    study: Study
-    comparisons: Comparisons
-    blends: Table
-    pictures: Mapping[str, Path]
-    environment: Mapping[str, str]
-    command: str
 
 
 def page(results: Results) -> str:
@@ -110,17 +82,6 @@ def _summary(ledger: Ledger, found: Sequence[Finding]) -> str:
 
 def _paragraph(text: str) -> str:
     return f"<p>{escape(text)}</p>"
-
-
-def table_html(table: Table) -> str:
-    """Return a table with its title above and its note below."""
-    head = "".join(f"<th>{escape(text)}</th>" for text in table.head)
-    rows = "".join("<tr>" + "".join(f"<td>{escape(text)}</td>" for text in row) + "</tr>" for row in table.rows)
-    note = f"<p class='note'>{escape(table.note)}</p>" if table.note else ""
-    return (
-        f"<h3 id='{escape(table.name)}'>{escape(table.title)}</h3>"
-        f"<div class='scroll'><table><thead><tr>{head}</tr></thead><tbody>{rows}</tbody></table></div>{note}"
-    )
 
 
 def _examples(results: Results) -> str:

@@ -2,85 +2,39 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import replace
+from collections.abc import Iterator, Sequence
 from fractions import Fraction
-from functools import cache
-from itertools import pairwise
 from typing import Any
 
 import sympy as sp
-from sympy.polys.domains import QQ
-from sympy.polys.matrices import DomainMatrix
 
-from semispline.derivations.properties import (
-    contact_orders,
-    least_bernstein_coefficient,
-    partition_residuals,
-    proofs,
-    supports,
-)
+from semispline.derivations.properties import least_bernstein_coefficient, partition_residuals, supports
 from semispline.derivations.splines import X, basis_pieces
 from semispline.papers.ledger import (
     WITHIN,
     Case,
-    Check,
-    Formula,
-    Strength,
+    as_expression,
     clamped,
     coefficient,
+    contact_at_knot,
+    contained,
     de_boor,
+    identity_cases,
+    insertion_cases,
+    locality_induction_cases,
     net_ring,
+    premises,
     rational_points,
+    samples,
+    sharp_continuity_cases,
     spline_basis,
+    triangle_cases,
+    union,
 )
 from semispline.papers.lin2014 import printed as pr
-from semispline.papers.lin2014.checks.spline import CUBIC, Sample, samples, triangle_cases
+from semispline.papers.lin2014.printed import CUBIC
 
 HALF, THIRD = Fraction(1, 2), Fraction(1, 3)
-
-
-def proof_check(*names: str, instances: Callable[[], Iterator[Case]]) -> Check:
-    """Return the check that the identities behind some properties are zero, for every degree and knot vector.
-
-    The instances, which take the functions themselves, are run after them.
-    """
-
-    def cases(_: Formula | None) -> Iterator[Case]:
-        yield from identity_cases(*names)
-        yield from instances()
-
-    method = (
-        f"identities for symbolic degree and knots ({', '.join(names)}; argument in derivations.properties), and the "
-        "Cox-de Boor functions at instances"
-    )
-    return Check(cases, Strength.SYMBOLIC_ORDER, method, proof=True)
-
-
-_proofs = cache(proofs)
-
-
-def premises(cases: Iterable[Case]) -> Iterator[Case]:
-    """Yield cases on which an argument stands: instances of nothing, and where one is false there is no verdict."""
-    yield from (replace(case, own=False) for case in cases)
-
-
-def identity_cases(*names: str) -> Iterator[Case]:
-    """Yield the identities behind some properties, which are to be zero."""
-    for proof in _proofs():
-        if proof.name in names:
-            for name, residual in proof.identities.items():
-                yield Case(f"{proof.name}: {name}", residual == 0, residual=residual)
-
-
-def question(cases: Callable[[], Iterator[Case]], method: str, strength: Strength = Strength.RATIONAL) -> Check:
-    """Return a check of a question without a formula."""
-    return Check(lambda _: cases(), strength, method)
-
-
-def proved(cases: Callable[[], Iterator[Case]], method: str, strength: Strength = Strength.SYMBOLIC_ORDER) -> Check:
-    """Return a check of a question whose cases prove the answer."""
-    return Check(lambda _: cases(), strength, method, proof=True)
 
 
 def common_domain_cases() -> Iterator[Case]:
@@ -114,24 +68,14 @@ def weight_cases() -> Iterator[Case]:
         yield Case(label, bool(least >= 0), own=order == CUBIC)
     for sample in samples():
         for u, v in ((Fraction(2, 7), Fraction(3, 7)), (Fraction(0), Fraction(1)), (Fraction(4, 5), Fraction(1, 3))):
-            factors = weights(sample, u, v)
+            factors = sample.weights(u, v)
             convex = sum(factors) == 1 and min(factors) >= 0
             yield Case(f"orders {sample.k}, {sample.l} at {u}, {v}", convex, own=sample.k == sample.l == CUBIC)
 
 
 def clamped_exact(order: int) -> list[Any]:
     """Return a clamped vector with a single and a double inner knot."""
-    return [sp.Rational(*t.as_integer_ratio()) for t in clamped(order, THIRD, *[HALF] * min(2, order - 1))]
-
-
-def weights(sample: Sample, u: Fraction, v: Fraction) -> list[Fraction]:
-    """Return what each control point of a surface is multiplied by at (u, v): Cox-de Boor, function by function."""
-    basis = spline_basis({"U": sample.U} | dict(enumerate(sample.V)))
-    return [
-        basis(i, sample.k, u, "U") * basis(j, sample.l, v, i)
-        for i, size in enumerate(sample.sizes)
-        for j in range(size)
-    ]
+    return [as_expression(t) for t in clamped(order, THIRD, *[HALF] * min(2, order - 1))]
 
 
 def affine_cases() -> Iterator[Case]:
@@ -146,20 +90,11 @@ def affine_cases() -> Iterator[Case]:
 
 
 def locality_cases() -> Iterator[Case]:
-    """Yield that N_i,k vanishes on span c, [t_c, t_(c+1)), unless i <= c < i + k, for every order and knots.
+    """Yield that each control point is felt on a few spans only: f_ij = N_i(u) N_ij(v) vanishes where a factor does.
 
-    By induction on the order: on a span outside of that both functions of order k - 1 in the recurrence vanish by
-    the claim for k - 1. N_i,1 is 1 on span i alone. Then f_ij = N_i(u) N_ij(v) vanishes where either factor does. That
-    N_i,k lives on all of these spans is found at instances of every order from 2 to 8.
+    That a function lives on all of the spans between its knots is found at instances of every order from 2 to 8.
     """
-    i = sp.Symbol("i", integer=True)
-    k = 2 + sp.Symbol("r", integer=True, nonnegative=True)
-    away = sp.Symbol("d", integer=True, nonnegative=True)
-    rising, falling = sp.symbols("omega psi")
-    functions = rising * sp.Function("N")(i) + falling * sp.Function("N")(i + 1)
-    for label, span in (("before its first knot", i - 1 - away), ("after its last knot", i + k + away)):
-        residual = functions.replace(sp.Function("N"), lambda j, c=span: _lower_function(j, k - 1, c))
-        yield Case(f"every order and knots, {label}", bool(residual == 0), residual=residual)
+    yield from locality_induction_cases()
     for order in range(2, 9):
         distinct = list(range(3 * order))
         found = supports(order - 1, distinct)
@@ -168,7 +103,7 @@ def locality_cases() -> Iterator[Case]:
         yield Case(f"order {order}: spans on which each function lives", found == wanted, own=order == CUBIC)
     for sample in samples():
         for u, v in ((Fraction(2, 7), Fraction(3, 7)), (Fraction(1, 9), Fraction(8, 9))):
-            felt = [factor != 0 for factor in weights(sample, u, v)]
+            felt = [factor != 0 for factor in sample.weights(u, v)]
             near = [
                 across[i] <= u <= across[i + sample.k] and along[j] <= v <= along[j + sample.l]
                 for across in (sample.U,)
@@ -176,76 +111,6 @@ def locality_cases() -> Iterator[Case]:
                 for j in range(sample.sizes[i])
             ]
             yield Case(f"orders {sample.k}, {sample.l} at {u}, {v}", felt == near, own=sample.k == sample.l == CUBIC)
-
-
-def _lower_function(j: Any, order: Any, span: Any) -> Any:
-    """Return N_j of an order on a span by the claim: zero where the span is known to be outside of its knots."""
-    outside = (j - span).is_positive or (span - (j + order - 1)).is_positive
-    return sp.Integer(0) if outside else sp.Symbol(f"N_{j}")
-
-
-def insertion_cases() -> Iterator[Case]:
-    """Yield that a spline stays one where a knot z is inserted, for every order, knots and place of z.
-
-    With s_0 .. s_(k+1) the knots of function B of order k and z among them, B' the function over s_0 .. s_k and B''
-    that over s_1 .. s_(k+1), B = (z - s_0)/(s_k - s_0) B' + (s_(k+1) - z)/(s_(k+1) - s_1) B''. By induction on k: the
-    recurrence on the left, the claim for k - 1 put in, all written in the three new functions of order k - 1. For
-    order 1 a step function is cut in two.
-    """
-    s0, s1, s2, before, sk, after, z, x = sp.symbols("s_0 s_1 s_2 s_{k-1} s_k s_{k+1} z x")
-    new = sp.symbols("A B C")
-
-    def rising(start: Any, end: Any) -> Any:
-        return (x - start) / (end - start)
-
-    def falling(start: Any, end: Any) -> Any:
-        return (end - x) / (end - start)
-
-    first = rising(s0, before) * new[0] + falling(s1, sk) * new[1]
-    second = rising(s1, sk) * new[1] + falling(s2, after) * new[2]
-    claimed = (z - s0) / (sk - s0) * first + (after - z) / (after - s1) * second
-    left = (z - s0) / (before - s0) * new[0] + (sk - z) / (sk - s1) * new[1]
-    right = (z - s1) / (sk - s1) * new[1] + (after - z) / (after - s2) * new[2]
-    # Old knots, z left out; where z is next to an end one of the two lower functions keeps its knots.
-    for label, place, lower, start, end in (
-        ("z inside", {}, (left, right), s1, sk),
-        ("z right after the start", {s1: z}, (left, new[2]), s2, sk),
-        ("z right before the end", {sk: z}, (new[0], right), s1, before),
-    ):
-        old = rising(s0, end) * lower[0] + falling(start, after) * lower[1]
-        residual = sp.cancel((old - claimed).subs(place))
-        yield Case(f"knot insertion, every order and knots, {label}", residual == 0, residual=residual)
-
-
-def sharp_continuity_cases() -> Iterator[Case]:
-    """Yield that across an r-fold knot x all splines of degree p are C^(p-r), some no smoother.
-
-    All are: `continuity`. For p = r the function over a, x, .., x, b is ((t - a)/(x - a))^p before x and
-    ((b - t)/(b - x))^p after it, by the recurrence, and its slope jumps. And every spline of degree p - 1 is the
-    derivative of one of degree p (`u-derivative`, solved for the control points one after another), smoother by one.
-    """
-    yield from identity_cases("continuity", "derivative", "u-derivative")
-    p, before, after = sp.symbols("p g h", positive=True)
-    t = sp.Symbol("t")
-    # The knot x is the origin, a = -g, b = h.
-    left, right = ((t + before) / before) ** p, ((after - t) / after) ** p
-    for name, piece in (("before", left), ("after", right)):
-        step = sp.simplify(piece.subs(p, p + 1) / piece - piece.subs(p, 1))
-        yield Case(f"recurrence {name} the knot", bool(step == 0), residual=step)
-    yield Case("pieces that meet", bool(left.subs(t, 0) == right.subs(t, 0) == 1))
-    jump = right.diff(t).subs(t, 0) - left.diff(t).subs(t, 0)
-    yield Case("a slope that jumps", bool(jump.is_negative))
-    first, width, target = sp.symbols("P_i d Q_i")
-    second = first + width * target / p
-    residual = sp.expand(p * (second - first) / width - target)
-    yield Case("a spline of one degree more", residual == 0, residual=residual)
-
-
-@cache
-def contact_at_knot(order: int, multiplicity: int) -> int:
-    """Return how smooth all splines of an order are at a knot h, 0 < h < 1, of a multiplicity, but no smoother."""
-    knots = [0] * order + ["h"] * multiplicity + [1] * order
-    return min(x for x in contact_orders(order - 1, knots, "h") if x is not None)
 
 
 def same_knots_cases() -> Iterator[Case]:
@@ -269,33 +134,6 @@ def same_knots_cases() -> Iterator[Case]:
             by_columns = [de_boor(k, across, [net[i, j] for i in range(rows)], u) for j in range(columns)]
             same = de_boor(k, across, by_rows, u) == de_boor(length, along, by_columns, v)
             yield Case(f"orders {k}, {length} at {u}, {v}", bool(same), own=k == length == CUBIC)
-
-
-def contained(order: int, inner: Sequence[Fraction], outer: Sequence[Fraction]) -> bool:
-    """Tell whether every spline over one knot vector is one over another, by exact linear algebra.
-
-    Splines of one order over the same domain that agree at more points in every span than a polynomial of that order
-    has coefficients are the same.
-    """
-    spans = sorted(set(inner) | set(outer))
-    points = [a + (b - a) * Fraction(r, order + 1) for a, b in pairwise(spans) for r in range(order + 1)]
-    values = [_collocation(order, vector, points) for vector in (outer, inner)]
-    return bool(values[0].rank() == values[0].hstack(values[1]).rank())
-
-
-def _collocation(order: int, vector: Sequence[Fraction], points: Sequence[Fraction]) -> DomainMatrix:
-    basis = spline_basis({"V": vector})
-    count = len(vector) - order
-    rows = [[QQ(*basis(i, order, x, "V").as_integer_ratio()) for i in range(count)] for x in points]
-    return DomainMatrix(rows, (len(points), count), QQ)
-
-
-def union(order: int, *vectors: Sequence[Fraction]) -> tuple[Fraction, ...]:
-    """Return the smallest knot vector that holds the inner knots of all, each with its largest multiplicity."""
-    inner: list[Fraction] = []
-    for knot in sorted({x for vector in vectors for x in vector[order:-order]}):
-        inner += [knot] * max(list(vector).count(knot) for vector in vectors)
-    return clamped(order, *inner, start=vectors[0][0], end=vectors[0][-1])
 
 
 def conversion_cases() -> Iterator[Case]:
@@ -403,7 +241,7 @@ def independent_control_cases() -> Iterator[Case]:
 
 def _jump(vector: Sequence[Fraction]) -> sp.Expr:
     """Return the jump of the first derivative of the middle basis function across 1/2."""
-    spans = basis_pieces(CUBIC - 1, [sp.Rational(*x.as_integer_ratio()) for x in vector])
+    spans = basis_pieces(CUBIC - 1, [as_expression(x) for x in vector])
     half = sp.Rational(1, 2)
     left = [s for s in spans if s.start < half]
     right = [s for s in spans if s.end > half]

@@ -1,4 +1,4 @@
-"""What the errors of sections 3 and 4 do to a surface, measured on blends of the made pair."""
+"""What the errors of sections 3 and 4, in energy and system, do to a surface, measured on blends of the made pair."""
 
 from __future__ import annotations
 
@@ -9,8 +9,9 @@ from typing import TypeAlias
 import numpy as np
 
 from semispline.papers.ledger import Consequence
-from semispline.papers.lin2014.checks.consequences import made_blend, made_pair
 from semispline.papers.lin2014.checks.energy import printed_system
+from semispline.papers.lin2014.checks.measured_rows import made_blend
+from semispline.papers.lin2014.examples.made_pair import made_pair
 from semispline.solver.arrays import FloatArray
 from semispline.solver.blending import BlendResult, blend, thin_plate_energy
 from semispline.solver.judge import local_geometry, surface_points

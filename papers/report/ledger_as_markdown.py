@@ -9,7 +9,8 @@ from typing import Any
 from sympy import Equality
 
 from semispline.papers.ledger import Claim, Decision, Formula, Ledger, ReadingDecision, Verdict
-from semispline.papers.report.ledger_text import (
+from semispline.papers.report.formulas import latex
+from semispline.papers.report.ledger_words import (
     checked_text,
     consequence_text,
     correction_text,
@@ -17,7 +18,6 @@ from semispline.papers.report.ledger_text import (
     kind_text,
     mutants_text,
 )
-from semispline.papers.report.mathml import latex
 
 # Heads what a study adds after the ledger in the same file.
 STUDY_HEADING = "# What the study finds"

@@ -3,52 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from typing import Any
 
-from semispline.papers.baselines import BlendTask, Outcome
-from semispline.papers.reproduction import Comparison, Measures, Table
-from semispline.solver.judge import model_size
-
-# What counts as met: degrees, fraction of the curvature, fraction of the size of the model.
-LIMIT = 1e-9
-
-
-def cell(value: Any) -> str:
-    """Return the text of a value: four significant digits, or all digits in front of the point.
-
-    Examples
-    --------
-    >>> [cell(value) for value in (None, True, 123456.78, 2.5e-13, 0.0817, (1e-18, 0.25), 7)]
-    ['–', 'yes', '123457', '2.5e-13', '0.0817', '0 to 0.25', '7']
-    """
-    if value is None:
-        return "–"
-    if isinstance(value, bool):
-        return "yes" if value else "no"
-    if isinstance(value, tuple):
-        largest = max(map(abs, value))
-        # Far below the other end of a range is rounding.
-        return " to ".join(cell(x if abs(x) > 1e-9 * largest else 0.0) for x in value)
-    if not isinstance(value, float):
-        return str(value)
-    if 1e4 <= abs(value) < 1e9:
-        return f"{value:.0f}"
-    return f"{value:.4g}" if value == 0 or abs(value) >= 1e-3 else f"{value:.1e}"
-
-
-def reached(task: BlendTask, measures: Measures) -> str:
-    """Return the continuity that both contacts meet up to rounding: G2, G1, G0, or "none"."""
-    if measures.gap > LIMIT * max(model_size(base.surface) for base in (task.a, task.b)):
-        return "none"
-    if measures.angle_degrees > LIMIT:
-        return "G0"
-    return "G1" if measures.curvature_jump_relative > LIMIT else "G2"
-
-
-def c2_residual(measures: Measures) -> float | None:
-    """Return the larger difference of second derivatives across the contacts, relative; None where there is none."""
-    found = (measures.contact_a.c2_residual, measures.contact_b.c2_residual)
-    return None if found[0] is None or found[1] is None else max(found[0], found[1])
+from semispline.papers.baselines import Outcome
+from semispline.papers.report.table_text import cell
+from semispline.papers.reproduction import Comparison, Measures, Table, reached
 
 
 def _remark(outcome: Outcome, measures: Measures) -> str:
@@ -75,7 +33,7 @@ def methods_table(comparisons: Sequence[Comparison]) -> Table:
             continue
         values = (
             number, comparison.method.title, reached(comparison.task, m), outcome.control_points, m.energy, m.bending,
-            m.gap, m.angle_degrees, m.curvature_jump_relative, c2_residual(m), m.folds, m.largest_turn_degrees,
+            m.gap, m.angle_degrees, m.curvature_jump_relative, m.c2_residual, m.folds, m.largest_turn_degrees,
             m.least_area_ratio, m.mean_curvature, outcome.alpha2, outcome.beta2, outcome.iterations, m.seconds,
             _remark(outcome, m),
         )  # fmt: skip
@@ -117,18 +75,3 @@ def blends_table(chosen: Iterable[tuple[str, Comparison]]) -> Table:
     columns = tuple(zip(_SIDE_HEAD, *rows, strict=True))
     note = "Contact is judged by the de Boor referee; gap in model units, the curvature jump relative."
     return Table("edges", "Blends, measured", columns[0], columns[1:], note)
-
-
-def text_lines(table: Table) -> list[str]:
-    """Return the table for a terminal."""
-    columns = list(zip(table.head, *table.rows, strict=True))
-    widths = [max(map(len, column)) for column in columns]
-    lines = (table.head, *table.rows)
-    return ["  ".join(c.ljust(w) for c, w in zip(line, widths, strict=True)).rstrip() for line in lines]
-
-
-def markdown_lines(table: Table) -> list[str]:
-    """Return the table in Markdown, with its title and its note."""
-    lines = (table.head, ("---",) * len(table.head), *table.rows)
-    body = ["| " + " | ".join(c.replace("|", "\\|").replace("\n", " ") for c in line) + " |" for line in lines]
-    return [f"### {table.title}", "", *body, "", *([table.note, ""] if table.note else [])]

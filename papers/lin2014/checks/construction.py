@@ -11,52 +11,38 @@ from typing import Any
 import sympy as sp
 
 from semispline.derivations.contact import A, contact_rows
+from semispline.derivations.counts import domain_ends, functions_on, last_knot
 from semispline.derivations.splines import X, basis_pieces, end_derivative_step, end_derivatives, span_symbols
 from semispline.papers.ledger import (
     Case,
     Check,
+    Counting,
     Formula,
     Meaning,
     Strength,
     UndefinedError,
     clamped,
+    contained,
     de_boor,
     difference_case,
     given,
-    net_ring,
-)
-from semispline.papers.lin2014 import printed as pr
-from semispline.papers.lin2014.checks.contact import ORDERS
-from semispline.papers.lin2014.checks.energy import u_basis
-from semispline.papers.lin2014.checks.property import (
-    contained,
     insertion_cases,
+    net_ring,
     premises,
     sharp_continuity_cases,
     union,
 )
-from semispline.papers.lin2014.checks.spline import Counting, domain_ends, functions_on, last_knot
-
-CUBIC = 4
-# The pairs of contact curves whose knots the paper prints; those of Fig. 10 with the fourth zero that is missing.
-PRINTED_PAIRS = {
-    "Fig. 5": ("fig-5.first", "fig-5.second"),
-    "Fig. 6": ("fig-6.planar", "fig-6.curved"),
-    "Figs. 8 and 9": ("fig-8.larger", "fig-8.smaller"),
-    "Fig. 10": ("fig-10.first", "fig-10.second"),
-}
-WITH_MIDDLE_CURVE = ("Fig. 5", "Fig. 6", "Figs. 8 and 9")
-
-
-def printed_pair(name: str) -> tuple[tuple[Fraction, ...], tuple[Fraction, ...]]:
-    """Return both knot vectors of a figure, clamped."""
-    first, second = (clamped(CUBIC, *inner_knots(key)) for key in PRINTED_PAIRS[name])
-    return first, second
-
-
-def inner_knots(key: str) -> list[Fraction]:
-    """Return the knots of a printed vector strictly inside [0, 1]."""
-    return [Fraction(int(x.p), int(x.q)) for x in map(sp.Rational, pr.KNOTS[key]) if 0 < x < 1]
+from semispline.papers.lin2014 import printed as pr
+from semispline.papers.lin2014.checks.contact_rows import ORDERS
+from semispline.papers.lin2014.checks.energy import u_basis
+from semispline.papers.lin2014.checks.printed_pairs import (
+    PRINTED_PAIRS,
+    WITH_MIDDLE_CURVE,
+    inner_knots,
+    merged,
+    printed_pair,
+)
+from semispline.papers.lin2014.printed import CUBIC
 
 
 @cache
@@ -269,13 +255,6 @@ def middle_count_check(count: int) -> Check:
                 yield Case(label, bool(printed == last), own=own, residual=printed - last)
 
     return Check(cases, Strength.SYMBOLIC_ORDER, _ROWS_SET, proof=True)
-
-
-@cache
-def merged(name: str) -> tuple[Fraction, ...]:
-    """Return v_1, .., v_n of a figure: inner knots of both vectors, each once."""
-    first, second = PRINTED_PAIRS[name]
-    return tuple(sorted({*inner_knots(first), *inner_knots(second)}))
 
 
 def paired_cases(last_pair: Callable[[Any], Any]) -> Callable[[Formula | None], Iterator[Case]]:

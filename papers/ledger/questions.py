@@ -1,0 +1,34 @@
+"""Short ways to write a check: of a question without a formula, of a premise, of a part without its condition."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import replace
+from functools import cache
+
+from semispline.papers.ledger.records import Case, Check, Formula, Strength
+
+
+def premises(cases: Iterable[Case]) -> Iterator[Case]:
+    """Yield cases on which an argument stands: instances of nothing, and where one is false there is no verdict."""
+    yield from (replace(case, own=False) for case in cases)
+
+
+def question(cases: Callable[[], Iterator[Case]], method: str, strength: Strength = Strength.RATIONAL) -> Check:
+    """Return a check of a question without a formula."""
+    return Check(lambda _: cases(), strength, method)
+
+
+def proved(cases: Callable[[], Iterator[Case]], method: str, strength: Strength = Strength.SYMBOLIC_ORDER) -> Check:
+    """Return a check of a question whose cases prove the answer."""
+    return Check(lambda _: cases(), strength, method, proof=True)
+
+
+@cache
+def unconditional(check: Check) -> Check:
+    """Return the check of a part that needs nothing of the condition of its claim: every instance must be true."""
+
+    def cases(formula: Formula | None) -> Iterator[Case]:
+        yield from (replace(case, meets=True) for case in check.cases(formula))
+
+    return replace(check, cases=cases)

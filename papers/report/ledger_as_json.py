@@ -1,0 +1,62 @@
+"""A decided ledger as the file format has it."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from semispline.papers.ledger import Ledger
+from semispline.papers.report.ledger_words import (
+    consequence_text,
+    correction_text,
+    evidence_text,
+    residual_of,
+    strength_text,
+)
+
+
+def ledger_record(ledger: Ledger) -> dict[str, Any]:
+    """Return the ledger as the file format has it."""
+    claims = []
+    for claim, decision in zip(ledger.paper.claims, ledger.decisions, strict=True):
+        claims.append(
+            {
+                "id": claim.id,
+                "where": claim.where,
+                "statement": claim.statement,
+                "verdict": str(decision.verdict) if decision.verdict else None,
+                "recorded": str(decision.recorded),
+                "problem": decision.problem,
+                "evidence": evidence_text(decision) or claim.reason,
+                "strength": strength_text(decision) or None,
+                "proved": decision.proved,
+                "condition": "; ".join(r.condition for r in decision.readings if r.condition),
+                "readings": [
+                    {"reading": r.label, "verdict": str(r.verdict), "cases": r.cases, "true": r.true_case,
+                     "false": r.false_case, "residual": "" if r.residual is None else str(r.residual)}
+                    for r in decision.readings
+                ],
+                "printed": [str(f.relation) for f in claim.formulas],
+                "residual": str(residual_of(decision) or ""),
+                "counterexample": decision.counterexample,
+                "corrected": correction_text(claim),
+                "corrected_formulas": [str(f.relation) for f in claim.corrected_formulas],
+                "consequence": consequence_text(decision.consequence),
+                "measured": dict(decision.consequence.measured) if decision.consequence else {},
+                "remark": claim.remark,
+                "mutants": {
+                    "tried": decision.mutation.tried,
+                    "kinds": dict(sorted(decision.mutation.kinds.items())),
+                    "equivalent": [{"mutant": m, "reason": why} for m, why in decision.mutation.equivalent],
+                    "undecidable": [{"mutant": m, "reason": why} for m, why in decision.mutation.undecidable],
+                    "survivors": list(decision.mutation.survivors),
+                },
+                "seconds": round(decision.seconds, 3),
+            }
+        )  # fmt: skip
+    return {
+        "format": "semispline/1",
+        "kind": "ledger",
+        "paper": ledger.paper.name,
+        "claims": claims,
+        "counts": ledger.counts(),
+    }
