@@ -79,8 +79,8 @@ def _require_leaving(problem: BlendProblem, found: tuple[float, float]) -> None:
     """Refuse shape parameters of almost 0: the energy is even in alpha, so alpha = 0 draws the search."""
     sides = zip("ab", ("alpha2", "beta2"), problem.free, found, problem.natural, strict=True)
     missed = [
-        f"contact {side}: the search ran to a degenerate shape parameter, {name} = {value:.1e}, {value / natural:.1e} of "
-        f"its natural size, expected at least {DEGENERATE:g}"
+        f"contact {side}: the search ran to a degenerate shape parameter, {name} = {value:.1e}, {value / natural:.1e} "
+        f"of its natural size, expected at least {DEGENERATE:g}"
         for side, name, is_free, value, natural in sides
         if is_free and not value >= DEGENERATE * natural
     ]

@@ -315,6 +315,11 @@ def test_every_combination_of_sides(pair):
         assert local.energy == pytest.approx(result.energy, rel=1e-8)
 
 
+DEGENERATE = re.compile(
+    "contact [ab]: the search ran to a degenerate shape parameter, (alpha|beta)2 = .*try method reduced"
+)
+
+
 def searched(a, b, **options):
     """The paper's search: its answer, or None where it says that it ran to a degenerate shape parameter.
 
@@ -323,8 +328,8 @@ def searched(a, b, **options):
     try:
         return blend(a, b, method="bfgs", **options)
     except ContactError as error:
-        assert re.match("contact [ab]: the search ran to a degenerate shape parameter, (alpha|beta)2 = ", str(error))
-        assert "try method reduced" in str(error)
+        if not DEGENERATE.match(str(error)):
+            raise
         return None
 
 
@@ -404,8 +409,8 @@ def crooked_pair(seed):
     return Base(surfaces[0], "u0"), Base(moved(surfaces[1], turn, rng.uniform(-1.5, 1.5, 3)), "u0")
 
 
-# Found among 3000 random pairs: a minimum in this box, on none of its ends but those of the usual box, is one that holds
-# a local method; whether such a method, from the natural shape parameters, gets there is not a law.
+# Found among 3000 random pairs: a minimum in this box, on none of its ends but those of the usual box, may hold a local
+# method; whether such a method, from the natural shape parameters, gets there is not a law.
 @pytest.mark.parametrize(
     ("seed", "trap", "ends", "excess"),
     [(770, (0.6, 0.7), (), 1.0025), (1328, (1 / 8, 0.15), ("alpha2 lower", "beta2 lower"), 1.015)],
