@@ -1,7 +1,8 @@
 """Run the tests whose numbers depend on it under other kernels of OpenBLAS, in another order and with other hashes.
 
 `python tests/kernels.py` takes each kernel that the processor has and that this OpenBLAS was built with, once, and
-`python tests/kernels.py another` one that is not the default. NumPy's own loops are held to what such a processor has.
+`python tests/kernels.py another` one that is not the default. The loops of NumPy and the functions of the C library are
+held to what such a processor has.
 A line at the start of each run repeats it.
 """
 
@@ -25,8 +26,10 @@ NEEDS = {
     "Zen": {"avx2", "fma"},
     "SkylakeX": {"avx512f", "avx512cd", "avx512bw", "avx512dq", "avx512vl"},
 }
-# How the names of NumPy's loops begin, of instructions that a processor of this kind lacks.
-LACKS = {"Prescott": ("",), "Haswell": ("X86_V4", "AVX512"), "Zen": ("X86_V4", "AVX512"), "SkylakeX": ()}
+# What processors of a kind lack: how NumPy calls its loops for it (beginnings of names), and what the C library calls it,
+# whose sin, exp or pow differ in the last bit without.
+LOOPS = {"Prescott": ("",), "Haswell": ("X86_V4", "AVX512"), "Zen": ("X86_V4", "AVX512"), "SkylakeX": ()}
+GLIBC = {"Prescott": "glibc.cpu.hwcaps=-AVX2,-FMA,-FMA4"}
 
 PROBE = """
 import json, numpy, scipy.linalg
@@ -57,8 +60,13 @@ def runs(names, probe=probed):
     default, loops = probe({})
     found = [({}, default)]
     for name in names:
-        without = " ".join(loop for loop in loops if loop.startswith(LACKS[name]))
-        settings = {"OPENBLAS_CORETYPE": name} | ({"NPY_DISABLE_CPU_FEATURES": without} if without else {})
+        without = " ".join(loop for loop in loops if loop.startswith(LOOPS[name]))
+        all_settings = {
+            "OPENBLAS_CORETYPE": name,
+            "NPY_DISABLE_CPU_FEATURES": without,
+            "GLIBC_TUNABLES": GLIBC.get(name),
+        }
+        settings = {variable: value for variable, value in all_settings.items() if value}
         kernels, _ = probe(settings)
         if kernels not in [known for _, known in found]:
             found.append((settings, kernels))

@@ -38,7 +38,11 @@ def test_each_kernel_is_run_once_and_numpy_is_held_to_it():
     assert runs(list(NEEDS), probe) == [
         ({}, ["openblas SkylakeX"]),
         (
-            {"OPENBLAS_CORETYPE": "Prescott", "NPY_DISABLE_CPU_FEATURES": "X86_V3 X86_V4 AVX512_ICL"},
+            {
+                "OPENBLAS_CORETYPE": "Prescott",
+                "NPY_DISABLE_CPU_FEATURES": "X86_V3 X86_V4 AVX512_ICL",
+                "GLIBC_TUNABLES": "glibc.cpu.hwcaps=-AVX2,-FMA,-FMA4",
+            },
             ["openblas Katmai"],
         ),
         ({"OPENBLAS_CORETYPE": "Haswell", "NPY_DISABLE_CPU_FEATURES": "X86_V4 AVX512_ICL"}, ["openblas Haswell"]),
