@@ -26,7 +26,8 @@ NEEDS = {
     "Zen": {"avx2", "fma"},
     "SkylakeX": {"avx512f", "avx512cd", "avx512bw", "avx512dq", "avx512vl"},
 }
-# What processors of a kind lack: how NumPy calls its loops for it (beginnings of names), and what the C library calls it,
+
+# What processors of a kind lack: as NumPy calls its loops for it (beginnings of names), and as the C library calls it,
 # whose sin, exp or pow differ in the last bit without.
 LOOPS = {"Prescott": ("",), "Haswell": ("X86_V4", "AVX512"), "Zen": ("X86_V4", "AVX512"), "SkylakeX": ()}
 GLIBC = {"Prescott": "glibc.cpu.hwcaps=-AVX2,-FMA,-FMA4"}
