@@ -5,7 +5,7 @@ BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 LEFT_OUT := compiler or browser or slow
 
-.PHONY: report test test-left-out lint types fresh bench clean
+.PHONY: report test test-left-out test-kernels lint types fresh bench clean
 
 $(STAMP): pyproject.toml constraints.txt
 	$(PYTHON) -m venv $(VENV)
@@ -23,6 +23,10 @@ test: $(STAMP)
 # pytest leaves with 5 when nothing carries these marks.
 test-left-out: $(STAMP)
 	$(BIN)/python -m pytest -n 2 --quiet -m '$(LEFT_OUT)' || [ $$? -eq 5 ]
+
+# Under each kernel of OpenBLAS that the processor has; KERNELS=another takes one that is not the default.
+test-kernels: $(STAMP)
+	$(BIN)/python tests/kernels.py $(KERNELS)
 
 lint: $(STAMP)
 	$(BIN)/ruff check .

@@ -15,7 +15,7 @@ import typer
 
 from semispline.derivations import cli as derivations_cli
 from semispline.solver import cli as solver_cli
-from semispline.solver.exit_status import ANSWER_IS_NO, reports_errors
+from semispline.solver.exit_status import ANSWER_IS_NO, FAILED, reports_errors
 
 if TYPE_CHECKING:
     from semispline.papers.ledger import Ledger
@@ -42,7 +42,7 @@ def verify_command(
         typer.Option(metavar="FILE", help="Write the report of the paper; what a study found stays at its end."),
     ] = None,
 ) -> None:
-    """Decide every claim of a paper anew; exit status 1 if a verdict is not the recorded one."""
+    """Decide every claim of a paper anew; exit status 1 if a verdict is not the recorded one, 3 if one is missing."""
     from semispline.papers.report import ledger_markdown, ledger_record, with_study_kept
     from semispline.solver.io import check_output, to_text, write_text
 
@@ -60,8 +60,7 @@ def verify_command(
         write_text(markdown, with_study_kept(ledger_markdown(ledger), before))
     if json_file != "-":
         print_ledger(ledger)
-    if not ledger.ok:
-        raise typer.Exit(ANSWER_IS_NO)
+    _end_as(ledger)
 
 
 @app.command("reproduce")
@@ -77,8 +76,7 @@ def reproduce_command(
     if paper not in paper_names():
         raise LedgerError(f"paper: found {paper!r}, expected one of {', '.join(paper_names())}")
     ledger = reproduce(paper, out, decide=decided, show=print_ledger, echo=typer.echo, progress=_progress)
-    if not ledger.ok:
-        raise typer.Exit(ANSWER_IS_NO)
+    _end_as(ledger)
 
 
 @app.command("generate")
@@ -114,6 +112,14 @@ def decided(name: str) -> Ledger:
     total = len(collected(name).claims)
     with _progress("deciding", total) as advance:
         return verify(name, workers=min(os.cpu_count() or 1, 8), progress=lambda decision: advance(decision.id))
+
+
+def _end_as(ledger: Ledger) -> None:
+    """End with the exit status of a ledger: what gave no answer is a failure of its check, and never a no."""
+    if ledger.unanswered:
+        raise typer.Exit(FAILED)
+    if not ledger.ok:
+        raise typer.Exit(ANSWER_IS_NO)
 
 
 def print_ledger(ledger: Ledger) -> None:

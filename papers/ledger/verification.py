@@ -8,6 +8,7 @@ import time
 from collections import Counter
 from collections.abc import Callable, Iterator
 from concurrent.futures import ProcessPoolExecutor, as_completed
+from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from dataclasses import dataclass
 from math import isfinite
@@ -27,6 +28,7 @@ from semispline.papers.ledger.records import (
     Verdict,
     decided_cases,
 )
+from semispline.solver.errors import ComputationError
 
 
 @dataclass(frozen=True)
@@ -123,15 +125,19 @@ class VacuousError(CheckFailedError):
     """A check without a single instance."""
 
 
-# No check of a paper that ships takes a tenth of this.
-TIME_LIMIT = 120.0
+class _OutOfTimeError(BaseException):
+    """Raised in the middle of a check by its limit: no `except Exception` on the way out may take it for an answer."""
+
+
+# Of processor time, in seconds; no check of a paper that ships takes a fiftieth of this.
+TIME_LIMIT = 600.0
 
 
 def decide(claim: Claim, time_limit: float = TIME_LIMIT) -> Decision:
     """Run every check of one record.
 
     A check without an answer does not raise: it leaves a decision without a verdict, which is never `ok`. So does one
-    that takes longer than `time_limit` seconds, on systems with an interval timer.
+    that takes more than `time_limit` seconds of processor time, on systems with an interval timer (Linux, macOS).
     """
     started = time.perf_counter()
     readings: tuple[ReadingDecision, ...] = ()
@@ -157,6 +163,8 @@ def decide(claim: Claim, time_limit: float = TIME_LIMIT) -> Decision:
                 consequence = claim.consequence()
             _require_evidence(verdict, readings, counterexample, consequence)
             mutation = _mutation(claim)
+    except _OutOfTimeError:
+        verdict, problem = None, f"undecided: out of time, no answer within {time_limit:g} s of processor time"
     except VacuousError as error:
         verdict, problem, vacuous = None, str(error), True
     except Exception as error:  # a check may fail in any way; none may pass for it
@@ -197,21 +205,32 @@ def _require_evidence(
 
 @contextmanager
 def _limited(seconds: float) -> Iterator[None]:
-    """Raise `CheckFailedError` in the body after some seconds; does nothing outside the main thread of a process."""
+    """Raise `_OutOfTimeError` in the body when this process has used some seconds of processor time.
+
+    Time that passes while the process waits for its turn does not count, so that a busy machine decides nothing; what
+    the system does for it counts (ITIMER_PROF, not ITIMER_VIRTUAL), so that a check that only fills memory ends too.
+    Does nothing outside the main thread of a process, where Python hears no signals.
+    """
     if not hasattr(signal, "setitimer") or threading.current_thread() is not threading.main_thread():
         yield
         return
+    met = False
 
     def stop(_number: int, _frame: object) -> None:
-        raise CheckFailedError(f"no answer within {seconds:g} seconds")
+        nonlocal met
+        met = True
+        raise _OutOfTimeError
 
-    before = signal.signal(signal.SIGALRM, stop)
-    signal.setitimer(signal.ITIMER_REAL, seconds)
+    before = signal.signal(signal.SIGPROF, stop)
+    signal.setitimer(signal.ITIMER_PROF, seconds)
     try:
         yield
     finally:
-        signal.setitimer(signal.ITIMER_REAL, 0)
-        signal.signal(signal.SIGALRM, before)
+        signal.setitimer(signal.ITIMER_PROF, 0)
+        signal.signal(signal.SIGPROF, before)
+        # Where something took the error all the same, neither an answer nor an error that came after it counts.
+        if met:
+            raise _OutOfTimeError
 
 
 def _decide_reading(reading: Reading) -> ReadingDecision:
@@ -279,6 +298,11 @@ class Ledger:
         """Every verdict is the recorded one, nothing vacuous, no mutant survived without a reason."""
         return all(decision.ok for decision in self.decisions)
 
+    @property
+    def unanswered(self) -> tuple[str, ...]:
+        """The records whose checks gave no answer: a failure of the check, neither a pass nor a "no"."""
+        return tuple(decision.id for decision in self.decisions if decision.verdict is None)
+
     def counts(self) -> dict[str, int]:
         """Return how many records are printed, decided, proved; each verdict; vacuous, changed; mutants."""
         decided = [d for d in self.decisions if d.verdict not in (None, Verdict.NOT_CHECKABLE)]
@@ -325,6 +349,8 @@ def verify(
     ------
     LedgerError
         The paper cannot be found, or a record is not well formed.
+    ComputationError
+        A worker ended before it had answered.
     """
     paper = load_paper(name)
     decisions: dict[str, Decision] = {}
@@ -346,7 +372,13 @@ def _decisions(paper: Paper, workers: int) -> Iterator[Decision]:
         groups = [ids[start : start + _GROUP] for start in range(0, len(ids), _GROUP)]
         waiting = [pool.submit(_decide_by_id, paper.name, group) for group in groups]
         for future in as_completed(waiting):
-            yield from future.result()
+            try:
+                yield from future.result()
+            except BrokenProcessPool:
+                raise ComputationError(
+                    f"{paper.name}: a process that decides its claims was ended from outside, perhaps for want of "
+                    "memory; try again, with more memory"
+                ) from None
 
 
 _GROUP = 6

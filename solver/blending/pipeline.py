@@ -275,7 +275,7 @@ def _checked_contacts(
                 check_regular_edge(base)
                 raise ContactError(
                     f"contact {name}: the blend is degenerate where it meets the base, its shape parameter is "
-                    f"{shape:.1e}; try method reduced, which keeps it admissible"
+                    f"{shape:.1e}; try a larger alpha, or a box that begins higher"
                 )
             if not value <= limit:
                 raise ContactError(

@@ -1,7 +1,8 @@
 """The paper's own route to G1 and G2, for comparison: substitution, then BFGS with finite differences.
 
 Unknown are the free control points, alpha and beta; the contact conditions are substituted into the energy; the search
-starts from the parametric solution, alpha = beta = 1, and stops at some local minimum.
+starts from the parametric solution, alpha = beta = 1, and stops at some local minimum. Which one, rounding may decide:
+on another processor the same search may end elsewhere.
 """
 
 from __future__ import annotations
@@ -16,7 +17,10 @@ from semispline.solver.blending.closing import periodic_points
 from semispline.solver.blending.nlp import contact_rows
 from semispline.solver.blending.problem import BlendProblem
 from semispline.solver.blending.reduced import ZERO_ENERGY
-from semispline.solver.errors import ComputationError
+from semispline.solver.errors import ComputationError, ContactError
+
+# Below this part of natural, alpha^4, which curvature at the contact is made of, is less than what points are rounded.
+DEGENERATE = 1e-8
 
 
 @dataclass(frozen=True)
@@ -48,6 +52,8 @@ def solve_quasi_newton(problem: BlendProblem) -> QuasiNewtonSolution:
     ------
     ComputationError
         The search left the finite numbers.
+    ContactError
+        The search, which knows no bounds, ran to alpha or beta of almost 0: the blend would not leave that side.
 
     Source: section 4 of the paper (its fminunc).
     """
@@ -61,11 +67,25 @@ def solve_quasi_newton(problem: BlendProblem) -> QuasiNewtonSolution:
         float(next(shape)) ** 2 if is_free else fixed
         for is_free, fixed in zip(problem.free, problem.start, strict=True)
     )
+    _require_leaving(problem, (a, b))
     points = problem.control_points(a, b)
     allowed = float(problem.form.products(points[None])[0, 0])
     terms = float(np.sum(np.abs(points) * (abs(problem.form.matrix()) @ np.abs(points))))
     excess = (float(found.fun) - allowed) / max(allowed, ZERO_ENERGY * terms)
     return QuasiNewtonSolution(a, b, int(found.nit), str(found.message), excess)
+
+
+def _require_leaving(problem: BlendProblem, found: tuple[float, float]) -> None:
+    """Refuse shape parameters of almost 0: the energy is even in alpha, so alpha = 0 draws the search."""
+    sides = zip("ab", ("alpha2", "beta2"), problem.free, found, problem.natural, strict=True)
+    missed = [
+        f"contact {side}: the search ran to a degenerate shape parameter, {name} = {value:.1e}, {value / natural:.1e} "
+        f"of its natural size, expected at least {DEGENERATE:g}"
+        for side, name, is_free, value, natural in sides
+        if is_free and not value >= DEGENERATE * natural
+    ]
+    if missed:
+        raise ContactError(f"{'; '.join(missed)}; method bfgs knows no bounds: try method reduced, which keeps them")
 
 
 def substituted_objective(problem: BlendProblem) -> tuple[ca.Function, np.ndarray]:

@@ -15,6 +15,8 @@ _FLAGS = (
     "--disable-background-networking", "--disable-component-update", "--disable-sync", "--disable-dev-shm-usage",
     "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--remote-debugging-pipe",
 )  # fmt: skip
+# Seconds for one answer: a browser that has ended is noticed at once, so this is for a machine that is busy elsewhere.
+_PATIENCE = 600
 
 
 class Browser:
@@ -63,7 +65,7 @@ class Browser:
         """Open a file and wait until everything in it has been loaded."""
         self._loaded = False
         self._ask("Page.navigate", url=Path(path).resolve().as_uri())
-        end = time.monotonic() + 60
+        end = time.monotonic() + _PATIENCE
         while not self._loaded:
             self._receive(end)
         self.settle()
@@ -103,7 +105,7 @@ class Browser:
         if self._session:
             message["sessionId"] = self._session
         os.write(self._write, json.dumps(message).encode() + b"\0")
-        end = time.monotonic() + 60
+        end = time.monotonic() + _PATIENCE
         while True:
             answer = self._receive(end)
             if answer.get("id") == message["id"]:

@@ -3,11 +3,14 @@
 import json
 import subprocess
 import sys
+from dataclasses import replace
 
 import pytest
 from typer.testing import CliRunner
 
 from semispline.papers.cli import app
+from semispline.papers.ledger.records import Verdict
+from semispline.papers.ledger.verification import verify
 
 runner = CliRunner()
 
@@ -69,6 +72,26 @@ def test_a_changed_claim_is_exit_status_1_and_names_it(made_up_paper):
     result = run("verify", made_up_paper(recorded="HOLDS"))
     assert result.exit_code == 1
     assert "eq-2: found fails, recorded holds" in result.stderr
+
+
+def test_a_check_without_an_answer_is_exit_status_3_whatever_the_others_say(made_up_paper):
+    claims = made_up_paper(recorded="HOLDS") / "claims.py"
+    claims.write_text(claims.read_text().replace("(Reading((Part(CHECK, pr.RIGHT),)),)", "(Reading((Part(SILENT),)),)"))
+    silent = 'SILENT = Check(lambda _: [Case("b", None)], Strength.RATIONAL, "nothing")\nCLAIMS = ('
+    claims.write_text(claims.read_text().replace("CLAIMS = (", silent))
+    result = run("verify", claims.parent)
+    assert result.exit_code == 3
+    assert "eq-1: found no answer, recorded holds" in result.stderr
+    assert "eq-2: found fails, recorded holds" in result.stderr
+
+
+@pytest.mark.parametrize(("verdict", "status"), [("holds", 0), ("fails", 1), (None, 3)])
+def test_reproduce_ends_as_verify_does(monkeypatch, made_up_paper_once, verdict, status):
+    ledger = verify(str(made_up_paper_once), workers=1)
+    first = replace(ledger.decisions[0], verdict=verdict and Verdict(verdict))
+    ledger = replace(ledger, decisions=(first, *ledger.decisions[1:]))
+    monkeypatch.setattr("semispline.papers.whole_study.reproduce", lambda *_, **__: ledger)
+    assert run("reproduce", "lin2014").exit_code == status
 
 
 @pytest.mark.parametrize("arguments", [("verify", "nowhere"), ("reproduce", "nowhere")])

@@ -1,5 +1,6 @@
 """Deciding: the made-up paper, and every way in which a check may fail to decide."""
 
+import signal
 import time
 from dataclasses import replace
 
@@ -22,6 +23,7 @@ from semispline.papers.ledger.records import (
     Verdict,
 )
 from semispline.papers.ledger.verification import decide, verify
+from semispline.solver.errors import ComputationError
 
 x, y = sp.symbols("x y", real=True)
 
@@ -128,17 +130,68 @@ def test_a_check_without_an_instance_is_vacuous():
     assert not decision.ok
 
 
-def test_a_check_that_does_not_end_is_stopped_and_is_no_pass():
-    def cases(_):
-        yield TRUE
-        while True:
-            time.sleep(0.01)
+def undecided(cases, time_limit=0.2):
+    part = Part(Check(cases, Strength.RATIONAL, "given cases"))
+    return decide(Claim("c", "w", "s", Verdict.HOLDS, (Reading((part,)),)), time_limit)
 
-    part = Part(Check(cases, Strength.RATIONAL, "waiting"))
-    decision = decide(Claim("c", "w", "s", Verdict.HOLDS, (Reading((part,)),)), time_limit=0.2)
+
+def test_a_check_that_does_not_end_is_stopped_and_is_neither_a_pass_nor_a_no():
+    def cases(_):
+        yield FALSE
+        while True:
+            pass
+
+    decision = undecided(cases)
     assert decision.verdict is None
-    assert "no answer within 0.2 seconds" in decision.problem
+    assert decision.problem == "undecided: out of time, no answer within 0.2 s of processor time"
     assert not decision.ok
+    assert not decision.vacuous
+
+
+@pytest.mark.parametrize("taken", [Exception, BaseException])
+def test_a_check_that_takes_the_end_of_its_time_for_something_else_is_undecided(taken):
+    def cases(_):
+        try:
+            while True:
+                pass
+        except taken:
+            yield FALSE
+
+    assert undecided(cases).problem.startswith("undecided: out of time")
+
+
+def test_time_that_a_check_waits_does_not_count():
+    def cases(_):
+        time.sleep(0.5)
+        yield TRUE
+
+    assert undecided(cases).ok
+
+
+def test_no_limit_is_left_when_a_claim_is_decided():
+    for claim in (claim_of(TRUE), claim_of(TRUE, Case("b", None))):
+        decide(claim)
+        assert signal.getitimer(signal.ITIMER_PROF) == (0, 0)
+        assert signal.getsignal(signal.SIGPROF) is signal.SIG_DFL
+
+
+def test_a_ledger_names_what_gave_no_answer(made_up_paper):
+    claims = made_up_paper(recorded="HOLDS") / "claims.py"
+    claims.write_text(claims.read_text().replace("residual == 0,", "None if n == 4 else residual == 0,"))
+    assert verify(str(claims.parent), workers=1).unanswered == ("eq-1", "eq-2")
+
+
+def test_a_verdict_that_differs_is_an_answer(made_up_paper):
+    ledger = verify(str(made_up_paper(recorded="HOLDS")), workers=1)
+    assert not ledger.ok
+    assert ledger.unanswered == ()
+
+
+def test_a_worker_that_is_ended_is_a_failed_computation(made_up_paper):
+    claims = made_up_paper() / "claims.py"
+    claims.write_text(claims.read_text().replace('"""Add up, for n = 1 .. 9."""', "__import__('os')._exit(9)"))
+    with pytest.raises(ComputationError, match="ended from outside"):
+        verify(str(claims.parent), workers=2)
 
 
 def test_only_exact_evidence_counts_as_proof():

@@ -1,18 +1,20 @@
 """The proved global minimum: certificates, rivals, and where local methods go wrong."""
 
+import re
 from dataclasses import replace
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from scipy.optimize import brute, minimize
+from scipy.optimize import OptimizeResult, brute, minimize
 from scipy.stats import special_ortho_group
 
 from helpers.bases import cylinder, facing_pair, moved, patch
 from semispline import Base, BlendOptions, BSplineSurface, ComputationError, ContactError, EdgeError, FoldError, blend
 from semispline.solver.blending.pipeline import state_problem
 from semispline.solver.blending.problem import make_problem
+from semispline.solver.blending.quasi_newton import solve_quasi_newton
 from semispline.solver.blending.reduced import shape_polynomial, solve_reduced
 from semispline.solver.blending.sides import make_side, matched_sides
 from semispline.solver.judge.correspondence import Correspondence
@@ -313,10 +315,30 @@ def test_every_combination_of_sides(pair):
         assert local.energy == pytest.approx(result.energy, rel=1e-8)
 
 
-@pytest.mark.parametrize("seed", range(6))
-def test_bfgs_is_reported_and_never_better(seed):
+DEGENERATE = re.compile(
+    "contact [ab]: the search ran to a degenerate shape parameter, (alpha|beta)2 = .*try method reduced"
+)
+
+
+def searched(a, b, **options):
+    """The paper's search: its answer, or None where it says that it ran to a degenerate shape parameter.
+
+    Which of the two, and at which of its minima it stops, may depend on how the processor rounds.
+    """
+    try:
+        return blend(a, b, method="bfgs", **options)
+    except ContactError as error:
+        if not DEGENERATE.match(str(error)):
+            raise
+        return None
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_bfgs_is_never_better_or_says_where_it_degenerates(seed):
     a, b = facing_pair(np.random.default_rng(seed), edges=("u0", "u0"), backwards=(False, False))
-    rough = blend(a, b, method="bfgs")
+    rough = searched(a, b)
+    if rough is None:
+        return
     assert rough.method == "bfgs"
     assert rough.iterations > 0
     # Over a box that has its answer inside, however small: the default one begins at 1/8 of natural.
@@ -329,23 +351,54 @@ def test_bfgs_is_reported_and_never_better(seed):
     assert around.search_excess is None
 
 
+def test_bfgs_names_each_side_that_degenerates(monkeypatch):
+    # On every processor: the search is told where to end.
+    a, b = facing_pair(np.random.default_rng(0), edges=("u0", "u0"), backwards=(False, False))
+    natural = state_problem(a, b).problem.natural
+
+    def ends_at(*shape):
+        def search(objective, start, method):
+            x = start.copy()
+            x[-2:] = np.sqrt(np.multiply(shape, natural))
+            return OptimizeResult(x=x, fun=objective(x), nit=3, message="ended")
+
+        monkeypatch.setattr("semispline.solver.blending.quasi_newton.minimize", search)
+        return solve_quasi_newton(state_problem(a, b).problem)
+
+    found = ends_at(1.01e-8, 1.01e-8)
+    np.testing.assert_allclose((found.a, found.b), np.multiply(1.01e-8, natural), rtol=1e-12)
+    for shape, sides in (((0.9e-8, 1), "a"), ((1, 0.0), "b"), ((1e-12, 1e-15), "ab")):
+        with pytest.raises(ContactError) as refusal:
+            ends_at(*shape)
+        named = re.findall("contact ([ab]): the search ran to a degenerate shape parameter", str(refusal.value))
+        assert "".join(named) == sides
+
+
+def floor_and_wall():
+    """Two planes at a right angle: one minimum, at alpha^2 = beta^2 = 27/16, and the search begins beside it."""
+    knots = [0, 0, 1, 1]
+    floor = BSplineSurface(1, 1, knots, knots, [[[0, 0, 0], [0, 1, 0]], [[1, 0, 0], [1, 1, 0]]])
+    wall = BSplineSurface(1, 1, knots, knots, [[[2, 0, 1], [2, 1, 1]], [[2, 0, 2], [2, 1, 2]]])
+    return Base(floor, "u1"), Base(wall, "u0")
+
+
 def test_bfgs_outside_of_the_box_says_so():
     # In a box that its answer misses the paper's search has less energy than any admissible blend, and says why.
-    a, b = facing_pair(np.random.default_rng(0), edges=("u0", "u0"), backwards=(False, False))
-    free = blend(a, b, method="bfgs")
+    a, b = floor_and_wall()
+    free = blend(a, b, method="bfgs", middle_curves=0)
+    assert free.alpha2 == pytest.approx(27 / 16, rel=1e-4)
     assert not free.warnings
     assert not free.active_bounds
-    assert free.alpha2_bounds[0] < free.alpha2 < free.alpha2_bounds[1]
     factor = free.alpha2 / (free.alpha2_bounds[0] * 8)
     missed = (1.1 * factor, 10 * factor)
-    rough, proved = (blend(a, b, method=method, box=missed) for method in ("bfgs", "reduced"))
+    rough, proved = (blend(a, b, method=method, middle_curves=0, box=missed) for method in ("bfgs", "reduced"))
     assert rough.alpha2 < rough.alpha2_bounds[0]
     assert rough.active_bounds[0] == "alpha2 lower"
     assert [w for w in rough.warnings if w.startswith("alpha2 is") and "knows no bounds" in w]
     assert rough.energy < proved.energy
     assert not proved.warnings
     with pytest.raises(FoldError, match="outside of the admissible"):
-        blend(a, b, method="bfgs", box=missed, strict=True)
+        blend(a, b, method="bfgs", middle_curves=0, box=missed, strict=True)
 
 
 def crooked_pair(seed):
@@ -356,21 +409,29 @@ def crooked_pair(seed):
     return Base(surfaces[0], "u0"), Base(moved(surfaces[1], turn, rng.uniform(-1.5, 1.5, 3)), "u0")
 
 
-# Found among 3000 random pairs: from the natural shape parameters a local method ends in a worse minimum.
-@pytest.mark.parametrize(("seed", "excess"), [(770, 1.0025), (1328, 1.015)])
-def test_a_local_method_stops_at_a_worse_minimum(seed, excess):
+# Found among 3000 random pairs: a minimum in this box, on none of its ends but those of the usual box, may hold a local
+# method; whether such a method, from the natural shape parameters, gets there is not a law.
+@pytest.mark.parametrize(
+    ("seed", "trap", "ends", "excess"),
+    [(770, (0.6, 0.7), (), 1.0025), (1328, (1 / 8, 0.15), ("alpha2 lower", "beta2 lower"), 1.015)],
+)
+def test_a_local_method_may_stop_at_a_worse_minimum(seed, trap, ends, excess):
     a, b = crooked_pair(seed)
-    proved, local = (blend(a, b, flip="no", method=m) for m in ("reduced", "casadi"))
-    assert local.energy > excess * proved.energy
-    check_certificate(proved.certificate)
+    proved, trapped = blend(a, b, flip="no"), blend(a, b, flip="no", box=trap)
+    assert trapped.active_bounds == ends
+    assert trapped.energy > excess * proved.energy
+    for certificate in (proved.certificate, trapped.certificate):
+        check_certificate(certificate)
+    assert blend(a, b, flip="no", method="casadi").energy >= proved.energy * (1 - 1e-10)
 
 
-# Unbounded BFGS runs to alpha = 0, where the blend no longer leaves its contact curve.
+# Least energy is at alpha = 0, where the blend no longer leaves its contact curve, and unbounded BFGS runs there.
 @pytest.mark.parametrize("seed", [0, 2, 4, 13])
 def test_bfgs_runs_to_zero(seed):
     a, b = crooked_pair(seed)
-    with pytest.raises(ContactError, match="degenerate where it meets the base"):
-        blend(a, b, flip="no", method="bfgs", middle_curves=0)
+    rough = searched(a, b, flip="no", middle_curves=0)
     proved = blend(a, b, flip="no", middle_curves=0)
     assert proved.active_bounds
     assert proved.proven_gap <= 1e-10
+    # Should the search stop on its way, it stops outside of the box, with less energy than is admissible, and says so.
+    assert rough is None or (rough.warnings and rough.energy < proved.energy)
