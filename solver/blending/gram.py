@@ -82,7 +82,8 @@ class _Gram:
         every = np.arange(a.size)
         spans = np.searchsorted(first_a + a.degree, every), np.searchsorted(first_a, every, side="right") - 1
         start = first_b[spans[0]]
-        count = first_b[spans[1]] + b.degree + 1 - start
+        # None for a function that lives on merged knots alone: elevated rows may have such.
+        count = np.where(spans[1] < spans[0], 0, first_b[spans[1]] + b.degree + 1 - start)
         self._shape = a.size, b.size
         self._row_starts = np.concatenate([[0], np.cumsum(count)])
         # Entry (i, j) has the place j + shift[i].
