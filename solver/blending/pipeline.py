@@ -14,6 +14,7 @@ from semispline.solver.arrays import FloatArray, real_number, require
 from semispline.solver.blending.gram import thin_plate_energy
 from semispline.solver.blending.problem import BlendProblem, ProblemOptions, VScale, make_problem
 from semispline.solver.blending.result import BlendResult
+from semispline.solver.blending.rounding import EnergyRounding, measure_energy_rounding
 from semispline.solver.blending.sides import Continuity, Side, make_side, matched_sides
 from semispline.solver.errors import ContactError, FoldError, OptionError
 from semispline.solver.judge import (
@@ -38,8 +39,9 @@ from semispline.solver.splines import BSplineCurve, SemiStructuredSurface
 Method: TypeAlias = Literal["reduced", "casadi", "bfgs"]
 Shape: TypeAlias = float | Literal["free", "natural"]
 
-# A normal that turns this far between neighbouring samples has met a fold.
+# A normal that turns this far between neighbouring samples has met a fold; well before it, it is too coarse to tell.
 FOLD_TURN = 90.0
+STEEP_TURN = 60.0
 # An area element this far below its mean is as good as a fold.
 PINCH = 1e-3
 # A normal that turns this far across a knot of full multiplicity, in degrees, makes a crease: well below what CAD
@@ -151,6 +153,7 @@ def blend(
     surface = _surface(problem, found, sides, frame)
     energy = thin_plate_energy(surface)
     seconds = time.perf_counter() - started
+    rounding = measure_energy_rounding(problem, surface, frame, energy)
     # What came out, judged by code that knows nothing of the above.
     contact_a, contact_b = _checked_contacts(a, b, surface, pair, matched, found)
     if found.certificate is not None:
@@ -158,7 +161,12 @@ def blend(
     seam = _seam(surface, problem)
     regularity = measure_regularity(surface)
     creases = measure_creases(surface)
-    warnings = _warnings(regularity, creases) + _bound_warnings(problem, found) + _seam_warning(a, b)
+    warnings = (
+        _warnings(regularity, creases)
+        + _bound_warnings(problem, found)
+        + _rounding_warning(rounding, surface, energy)
+        + _seam_warning(a, b)
+    )
     if strict and warnings:
         raise FoldError(f"{'; '.join(warnings)}; try other middle curves, alpha='natural', or without strict")
     return BlendResult(
@@ -166,6 +174,7 @@ def blend(
         continuity=pair,
         method=found.method,
         energy=energy,
+        energy_rounding=rounding.energy,
         alpha2=None if sides[0].order == 0 else found.a,
         beta2=None if sides[1].order == 0 else found.b,
         alpha2_bounds=problem.bounds[0] if problem.free[0] else None,
@@ -183,8 +192,9 @@ def blend(
         status=found.status,
         search_excess=found.search_excess,
         kkt_residual=found.kkt_residual,
-        certificate=found.certificate,
-        proven_gap=found.proven_gap,
+        # What rounding made is not proved to be least.
+        certificate=None if rounding.matters else found.certificate,
+        proven_gap=None if rounding.matters else found.proven_gap,
         constraint_rank=found.constraint_rank,
         seconds=seconds,
     )
@@ -406,12 +416,16 @@ def _warnings(regularity: Regularity, creases: tuple[Crease, ...]) -> tuple[str,
     """Return what a user should look at before the blend is used."""
     found = []
     sharpest = max((crease.angle_degrees for crease in creases), default=0.0)
+    turn = regularity.largest_turn_degrees
     # A turn that a crease explains is no fold.
-    if regularity.largest_turn_degrees - sharpest >= FOLD_TURN:
+    if turn - sharpest >= FOLD_TURN:
+        found.append(f"the blend folds: its normal turns by {turn:.0f} degrees between samples")
+    elif turn - sharpest > STEEP_TURN:
         found.append(
-            f"the blend folds: its normal turns by {regularity.largest_turn_degrees:.0f} degrees between samples"
+            f"the blend turns steeply: its normal turns by {turn:.0f} degrees between samples, above "
+            f"{STEEP_TURN:.0f} a fold may be missed"
         )
-    elif regularity.least_area_ratio < PINCH:
+    if turn - sharpest < FOLD_TURN and regularity.least_area_ratio < PINCH:
         found.append(f"the blend is pinched: its area element falls to {regularity.least_area_ratio:.1e} of the mean")
     sharp = [crease for crease in creases if crease.angle_degrees >= SHARP]
     if sharp:
@@ -425,12 +439,36 @@ def _warnings(regularity: Regularity, creases: tuple[Crease, ...]) -> tuple[str,
 
 
 def _bound_warnings(problem: BlendProblem, found: _Found) -> tuple[str, ...]:
-    """Return a warning for each shape parameter outside of its bounds: method bfgs, the paper's own, knows none."""
-    return tuple(
-        f"{name} is {value:.3g}, outside of the admissible {low:.3g} to {high:.3g}: "
-        f"method {found.method} knows no bounds"
-        for name, value, low, high in _shape_unknowns(problem, found)
-        if not low <= value <= high
+    """Return a warning for each shape parameter that a bound stopped, or that is beyond: method bfgs knows none."""
+    warnings = []
+    active = _active_bounds(problem, found)
+    for name, value, low, high in _shape_unknowns(problem, found):
+        if not low <= value <= high:
+            warnings.append(
+                f"{name} is {value:.3g}, outside of the admissible {low:.3g} to {high:.3g}: "
+                f"method {found.method} knows no bounds"
+            )
+        elif f"{name} lower" in active or f"{name} upper" in active:
+            which, bound = ("lower", low) if f"{name} lower" in active else ("upper", high)
+            warnings.append(
+                f"{name} is at its {which} bound {bound:.3g}: beyond it the energy may fall further; widen the box, or set alpha"
+            )
+    return tuple(warnings)
+
+
+def _rounding_warning(rounding: EnergyRounding, surface: SemiStructuredSurface, energy: float) -> tuple[str, ...]:
+    """Return a warning where the energy is made of rounding."""
+    if not rounding.matters:
+        return ()
+    fraction, width, place = min(
+        (width / float(breaks[-1] - breaks[0]), width, f"{name} = {at:g}")
+        for name, breaks in zip("uv", surface.breakpoints, strict=True)
+        for width, at in zip(np.diff(breaks).tolist(), breaks.tolist(), strict=False)
+    )
+    return (
+        f"the energy {energy:.3g} may be off by {rounding.energy:.2g} where control points round, and is not proved: "
+        f"the narrowest span, at {place}, is {width:.1e} long, {fraction:.1e} of the domain; take knots further apart, "
+        "or work nearer to the origin",
     )
 
 
