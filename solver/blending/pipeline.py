@@ -16,7 +16,7 @@ from semispline.solver.blending.problem import BlendProblem, ProblemOptions, VSc
 from semispline.solver.blending.result import BlendResult
 from semispline.solver.blending.rounding import EnergyRounding, measure_energy_rounding
 from semispline.solver.blending.sides import Continuity, Side, make_side, matched_sides
-from semispline.solver.errors import ContactError, FoldError, OptionError
+from semispline.solver.errors import ComputationError, ContactError, FoldError, OptionError
 from semispline.solver.judge import (
     Base,
     Contact,
@@ -32,6 +32,7 @@ from semispline.solver.judge import (
     measure_regularity,
     required_limits,
     snapped_seam,
+    tied_directions,
 )
 from semispline.solver.proof import Certificate, check_certificate
 from semispline.solver.splines import BSplineCurve, SemiStructuredSurface
@@ -44,6 +45,8 @@ FOLD_TURN = 90.0
 STEEP_TURN = 60.0
 # An area element this far below its mean is as good as a fold.
 PINCH = 1e-3
+# Blends in two directions whose normals turn alike to this many degrees turn equally.
+_EQUAL_TURNS = 1e-3
 # A normal that turns this far across a knot of full multiplicity, in degrees, makes a crease: well below what CAD
 # systems take for tangent (0.01 and more), well above the rounding of a surface that is smooth there.
 SHARP = 1e-3
@@ -85,7 +88,8 @@ def blend(
         How alpha and beta are found where contact is geometric: the proved global minimum, the constrained problem in
         CasADi, or the paper's own search.
     flip : {"auto", "yes", "no"}
-        Whether edge b runs against edge a; "auto" takes the way without a twist.
+        Whether edge b runs against edge a; "auto" takes the way without a twist. Where closeness
+        cannot tell, both ways are blended and the one whose normal turns less is taken.
     alpha : "free", "natural", a number, or a pair of these for a and b
         Where contact is geometric: search alpha, take its natural size (mean gap over mean cross speed, for alpha^2),
         or set alpha itself.
@@ -114,7 +118,7 @@ def blend(
     ContactError
         The referee found the contact worse than its limits.
     FoldError
-        With `strict`: the blend folds or is creased.
+        With `strict`: the blend has warnings.
 
     Source: section 3 and equation (11) of the paper; contact conditions from `semispline.derivations.contact`.
 
@@ -133,19 +137,19 @@ def blend(
         raise OptionError(f"strict: found {strict!r}, expected True or False")
     if not isinstance(method, str) or method not in get_args(Method):
         raise OptionError(f"method: found {method!r}, expected one of {', '.join(get_args(Method))}")
-    stated = state_problem(
-        a,
-        b,
-        continuity=continuity,
-        middle_curves=middle_curves,
-        degree_u=degree_u,
-        flip=flip,
-        alpha=alpha,
-        box=box,
-        v_scale=v_scale,
-        u_knots=u_knots,
-        middle_knots=middle_knots,
-    )
+    stated_by: dict[str, Any] = {
+        "continuity": continuity,
+        "middle_curves": middle_curves,
+        "degree_u": degree_u,
+        "alpha": alpha,
+        "box": box,
+        "v_scale": v_scale,
+        "u_knots": u_knots,
+        "middle_knots": middle_knots,
+    }
+    if len(tied := _tied(a, b, flip)) > 1:
+        return _strictly(_less_turning(a, b, tied, stated_by | {"method": method}), strict)
+    stated = state_problem(a, b, flip=flip, **stated_by)
     problem, sides, frame, matched = stated.problem, stated.sides, stated.frame, stated.matched
     pair = sides[0].continuity, sides[1].continuity
     # The one or two numbers that are not linear, then everything that is.
@@ -167,9 +171,7 @@ def blend(
         + _rounding_warning(rounding, surface, energy)
         + _seam_warning(a, b)
     )
-    if strict and warnings:
-        raise FoldError(f"{'; '.join(warnings)}; try other middle curves, alpha='natural', or without strict")
-    return BlendResult(
+    result = BlendResult(
         surface=surface,
         continuity=pair,
         method=found.method,
@@ -198,6 +200,7 @@ def blend(
         constraint_rank=found.constraint_rank,
         seconds=seconds,
     )
+    return _strictly(result, strict)
 
 
 @dataclass(frozen=True, eq=False)
@@ -236,8 +239,18 @@ def state_problem(
     middle_knots: Sequence[Sequence[float]] | None = None,
 ) -> StatedProblem:
     """State the problem that `blend` solves; arguments and errors are those of `blend`."""
-    require(a, "a", Base)
-    require(b, "b", Base)
+    if len(tied := _tied(a, b, flip)) > 1:
+        stated_by: dict[str, Any] = {
+            "continuity": continuity,
+            "middle_curves": middle_curves,
+            "degree_u": degree_u,
+            "alpha": alpha,
+            "box": box,
+            "v_scale": v_scale,
+            "u_knots": u_knots,
+            "middle_knots": middle_knots,
+        }
+        flip = "yes" if _less_turning(a, b, tied, stated_by).flipped else "no"
     pair = (continuity, continuity) if isinstance(continuity, str) else continuity
     if not isinstance(pair, tuple | list) or len(pair) != 2:
         raise OptionError(f"continuity: found {continuity!r}, expected one of C0..G2 or a pair of them")
@@ -257,6 +270,40 @@ def state_problem(
     frame = _frame(*sides)
     problem = make_problem(sides[0].moved(*frame), sides[1].moved(*frame), options)
     return StatedProblem(problem, sides, frame, matched)
+
+
+def _tied(a: Base, b: Base, flip: Flip) -> tuple[Flip, ...]:
+    """Return the directions of b to be tried: more than one only where closeness is to decide, and cannot."""
+    require(a, "a", Base)
+    require(b, "b", Base)
+    return tied_directions(a, b) if flip == "auto" else (flip,)
+
+
+def _less_turning(a: Base, b: Base, directions: tuple[Flip, ...], options: dict[str, Any]) -> BlendResult:
+    """Blend in each direction, and return the blend whose normal turns least; of equals the first.
+
+    Raises
+    ------
+    ComputationError
+        That of the first direction, where all fail.
+    """
+    results: list[BlendResult] = []
+    failures: list[ComputationError] = []
+    for flip in directions:
+        try:
+            results.append(blend(a, b, flip=flip, **options))
+        except ComputationError as failure:
+            failures.append(failure)
+    if not results:
+        raise failures[0]
+    return min(results, key=lambda result: round(result.regularity.largest_turn_degrees / _EQUAL_TURNS))
+
+
+def _strictly(result: BlendResult, strict: bool) -> BlendResult:
+    """Return the result, refused if it has warnings and is to have none."""
+    if strict and result.warnings:
+        raise FoldError(f"{'; '.join(result.warnings)}; try other middle curves, alpha='natural', or without strict")
+    return result
 
 
 @dataclass(frozen=True)

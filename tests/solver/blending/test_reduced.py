@@ -333,7 +333,7 @@ def test_bfgs_outside_of_the_box_says_so():
     # In a box that its answer misses the paper's search has less energy than any admissible blend, and says why.
     a, b = facing_pair(np.random.default_rng(0), edges=("u0", "u0"), backwards=(False, False))
     free = blend(a, b, method="bfgs")
-    assert not free.warnings
+    assert not [w for w in free.warnings if w.startswith("alpha2 is")]
     assert not free.active_bounds
     assert free.alpha2_bounds[0] < free.alpha2 < free.alpha2_bounds[1]
     factor = free.alpha2 / (free.alpha2_bounds[0] * 8)
@@ -343,7 +343,7 @@ def test_bfgs_outside_of_the_box_says_so():
     assert rough.active_bounds[0] == "alpha2 lower"
     assert [w for w in rough.warnings if w.startswith("alpha2 is") and "knows no bounds" in w]
     assert rough.energy < proved.energy
-    assert not proved.warnings
+    assert [w for w in proved.warnings if w.startswith("alpha2 is at its lower bound")]
     with pytest.raises(FoldError, match="outside of the admissible"):
         blend(a, b, method="bfgs", box=missed, strict=True)
 
