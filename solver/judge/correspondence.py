@@ -22,8 +22,8 @@ CLOSED = 1e-9
 # angle, say. Below the second fraction the difference is rounding.
 TIE = 1e-2
 _ROUNDING = 1e-9
-# A surface that leaves a closed edge at less than this sine to its plane does not tell which way the edge circles.
-_CIRCLING = 0.1
+# Surfaces that leave closed edges at flatter angles to their planes do not tell how these circle: product of two sines.
+LEAST_CIRCLING = 1e-2
 # A seam this close to a knot of the other edge, as a fraction of the domain, is moved onto it: across a span h the
 # rounding of control points bends a curve by 1e-16 / h^2, which is to stay below 1e-8.
 SNAP = 1e-4
@@ -82,19 +82,22 @@ def tied_directions(a: Base, b: Base) -> tuple[Flip, ...]:
     if decided and is_closed(a) and is_closed(b):
         # What leaves a enters b.
         circles = -_circling(a) * _circling(b)
-        decided = abs(circles) < _CIRCLING**2 or (circles < 0) == closest.flipped
+        decided = abs(circles) < LEAST_CIRCLING or (circles < 0) == closest.flipped
     return tuple("yes" if one.flipped else "no" for one in ((closest,) if decided else (closest, other)))
 
 
 def _circling(base: Base) -> float:
-    """Return the cosine between the area vector of a closed edge and the mean direction into the surface."""
+    """Return how a closed edge circles about the surface: its area vector times the mean direction inwards, unit both.
+
+    1 or -1 for a pipe, 0 for a flat ring.
+    """
     start, end = base.range_along
     t = np.arange(_SAMPLES) / _SAMPLES
     s = start + t * (end - start)
     area = np.cross(_centred(base, t), base.derivative(s, 0, 1)).sum(axis=0)
-    inwards = base.derivative(s, 1, 0).sum(axis=0) * (1 if base.edge[1] == "0" else -1)
-    length = float(np.linalg.norm(area) * np.linalg.norm(inwards))
-    return float(area @ inwards) / length if length else 0.0
+    inwards = base.derivative(s, 1, 0) * (1 if base.edge[1] == "0" else -1)
+    length = float(np.linalg.norm(area) * np.linalg.norm(inwards, axis=1).sum())
+    return float(area @ inwards.sum(axis=0)) / length if length else 0.0
 
 
 @dataclass(frozen=True, eq=False)
