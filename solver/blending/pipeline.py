@@ -14,7 +14,7 @@ from semispline.solver.arrays import FloatArray, real_number, require
 from semispline.solver.blending.gram import thin_plate_energy
 from semispline.solver.blending.problem import BlendProblem, ProblemOptions, VScale, make_problem
 from semispline.solver.blending.result import BlendResult
-from semispline.solver.blending.rounding import EnergyRounding, measure_energy_rounding
+from semispline.solver.blending.rounding import measure_energy_rounding, rounding_warning
 from semispline.solver.blending.sides import Continuity, Side, make_side, matched_sides
 from semispline.solver.errors import ComputationError, ContactError, FoldError, OptionError
 from semispline.solver.judge import (
@@ -168,7 +168,7 @@ def blend(
     warnings = (
         _warnings(regularity, creases)
         + _bound_warnings(problem, found)
-        + _rounding_warning(rounding, surface, energy)
+        + rounding_warning(rounding, surface, energy)
         + _seam_warning(a, b)
     )
     result = BlendResult(
@@ -498,25 +498,10 @@ def _bound_warnings(problem: BlendProblem, found: _Found) -> tuple[str, ...]:
         elif f"{name} lower" in active or f"{name} upper" in active:
             which, bound = ("lower", low) if f"{name} lower" in active else ("upper", high)
             warnings.append(
-                f"{name} is at its {which} bound {bound:.3g}: beyond it the energy may fall further; widen the box, or set alpha"
+                f"{name} is at its {which} bound {bound:.3g}: beyond it the energy may fall further; widen the box, or "
+                "set alpha"
             )
     return tuple(warnings)
-
-
-def _rounding_warning(rounding: EnergyRounding, surface: SemiStructuredSurface, energy: float) -> tuple[str, ...]:
-    """Return a warning where the energy is made of rounding."""
-    if not rounding.matters:
-        return ()
-    fraction, width, place = min(
-        (width / float(breaks[-1] - breaks[0]), width, f"{name} = {at:g}")
-        for name, breaks in zip("uv", surface.breakpoints, strict=True)
-        for width, at in zip(np.diff(breaks).tolist(), breaks.tolist(), strict=False)
-    )
-    return (
-        f"the energy {energy:.3g} may be off by {rounding.energy:.2g} where control points round, and is not proved: "
-        f"the narrowest span, at {place}, is {width:.1e} long, {fraction:.1e} of the domain; take knots further apart, "
-        "or work nearer to the origin",
-    )
 
 
 def _seam_warning(a: Base, b: Base) -> tuple[str, ...]:

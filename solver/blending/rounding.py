@@ -9,7 +9,7 @@ import numpy as np
 from semispline.solver.arrays import FloatArray
 from semispline.solver.blending.gram import EnergyForm
 from semispline.solver.blending.problem import BlendProblem
-from semispline.solver.splines import SemiStructuredSurface
+from semispline.solver.splines import SemiStructuredSurface, breakpoints
 
 # An energy that rounding may change by more than this fraction is said to be rounding, and nothing is proved of it.
 ROUNDING_SHARE = 1e-3
@@ -73,3 +73,20 @@ def _bent(form: EnergyForm) -> float:
     knots = form.rows[0].knots
     length = float(knots[-1] - knots[0])
     return length + 2 / length + 1 / length**3
+
+
+def rounding_warning(rounding: EnergyRounding, surface: SemiStructuredSurface, energy: float) -> tuple[str, ...]:
+    """Return a warning where the energy is made of rounding."""
+    if not rounding.matters:
+        return ()
+    rows = (breakpoints(curve.knots) for curve in surface.control_curves)
+    fraction, width, place = min(
+        (width / float(breaks[-1] - breaks[0]), width, f"{name} = {at:g}")
+        for name, breaks in (("u", surface.breakpoints[0]), *(("v", row) for row in rows))
+        for width, at in zip(np.diff(breaks).tolist(), breaks.tolist(), strict=False)
+    )
+    return (
+        f"the energy {energy:.3g} may be off by {rounding.energy:.2g} where control points round, and is not proved: "
+        f"the narrowest span, at {place}, is {width:.1e} long, {fraction:.1e} of the domain; take knots further apart, "
+        "or work nearer to the origin",
+    )
