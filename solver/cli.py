@@ -202,6 +202,7 @@ def report_record(result: BlendResult) -> dict[str, Any]:
         "continuity": list(result.continuity),
         "method": result.method,
         "energy": result.energy,
+        "energy_rounding": result.energy_rounding,
         "alpha2": result.alpha2,
         "beta2": result.beta2,
     }

@@ -46,7 +46,8 @@ class BlendOptions:
         How alpha and beta are found where contact is geometric: the proved global minimum, the constrained problem in
         CasADi, or the paper's own search.
     flip : {"auto", "yes", "no"}
-        Whether edge b runs against edge a; "auto" takes the way without a twist.
+        Whether edge b runs against edge a; "auto" takes the way without a twist. Where closeness cannot tell, both ways
+        are blended and the one whose normal turns less is taken.
     alpha : "energy", "natural", a number, or a pair of these for a and b
         Where contact is geometric: search alpha of least energy, take its natural size (mean gap over mean cross speed,
         for alpha^2), or set alpha itself; kept as a pair.

@@ -7,9 +7,18 @@ from collections.abc import Sequence
 import numpy as np
 
 from semispline.solver.arrays import FloatArray, finite_array
-from semispline.solver.errors import OptionError
+from semispline.solver.errors import InputError, OptionError
 from semispline.solver.scalars import whole_number
-from semispline.solver.splines import Basis, breakpoints, checked_knots, clamped, merge_breakpoints, uniform_knots
+from semispline.solver.splines import (
+    MERGE_TOLERANCE,
+    Basis,
+    breakpoints,
+    checked_knots,
+    clamped,
+    crowded_knots,
+    merge_breakpoints,
+    uniform_knots,
+)
 
 # More than any blend needs; the energy in u is held in full.
 MOST_MIDDLE_CURVES = 1000
@@ -86,7 +95,30 @@ def _clamped_inside(inner: FloatArray, degree: int, start: float, end: float, na
     if len(inner) and not (start < inner[0] and inner[-1] < end):
         raise OptionError(f"{name}: found {inner[0]} to {inner[-1]}, expected values inside ({start}, {end})")
     knots = clamped(inner, degree, start, end)
-    return checked_knots(knots, degree, len(knots) - degree - 1, name)
+    checked = checked_knots(knots, degree, len(knots) - degree - 1, name)
+    check_knots_apart(checked, degree, name, OptionError)
+    return checked
+
+
+def check_knots_apart(knots: FloatArray, degree: int, name: str, error: type[InputError]) -> None:
+    """Refuse knots that are distinct but count as one, of more than full multiplicity.
+
+    Such a curve may jump within a span that no integral counts, and its basis has functions that live there alone.
+
+    Raises
+    ------
+    InputError
+        Of the given kind, naming the knots.
+    """
+    crowded = crowded_knots(knots, degree)
+    if len(crowded):
+        low, high = crowded[0], crowded[-1]
+        at_end = low == knots[0] or high == knots[-1]
+        raise error(
+            f"{name}: {len(crowded)} knots from {low} to {high} are within {MERGE_TOLERANCE:g} of the domain and count "
+            f"as one, expected at most {degree + at_end} for degree {degree}{' at an end' if at_end else ''}; leave "
+            "out some, or take them further apart"
+        )
 
 
 def middle_basis(a: Basis, b: Basis) -> Basis:

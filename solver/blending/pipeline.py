@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -12,8 +12,9 @@ from semispline.solver.arrays import FloatArray, require
 from semispline.solver.blending.gram import thin_plate_energy
 from semispline.solver.blending.problem import BlendProblem, make_problem
 from semispline.solver.blending.result import BlendResult
+from semispline.solver.blending.rounding import measure_energy_rounding, rounding_warning
 from semispline.solver.blending.sides import Side, make_side, matched_sides
-from semispline.solver.errors import ContactError, FoldError
+from semispline.solver.errors import ComputationError, ContactError, FoldError
 from semispline.solver.judge import (
     Base,
     Contact,
@@ -28,15 +29,19 @@ from semispline.solver.judge import (
     measure_regularity,
     required_limits,
     snapped_seam,
+    tied_directions,
 )
-from semispline.solver.options import BlendOptions, Continuity, Method, named_options
+from semispline.solver.options import BlendOptions, Continuity, Flip, Method, named_options
 from semispline.solver.proof import Certificate, check_certificate
 from semispline.solver.splines import BSplineCurve, SemiStructuredSurface
 
-# A normal that turns this far between neighbouring samples has met a fold.
+# A normal that turns this far between neighbouring samples has met a fold; well before it, it is too coarse to tell.
 FOLD_TURN = 90.0
+STEEP_TURN = 60.0
 # An area element this far below its mean is as good as a fold.
 PINCH = 1e-3
+# Blends in two directions whose normals turn alike to this many degrees turn equally.
+_EQUAL_TURNS = 1e-3
 # A normal that turns this far across a knot of full multiplicity, in degrees, makes a crease: well below what CAD
 # systems take for tangent (0.01 and more), well above the rounding of a surface that is smooth there.
 SHARP = 1e-3
@@ -71,7 +76,7 @@ def blend(
     ContactError
         The referee found the contact worse than its limits.
     FoldError
-        With `strict`: the blend folds or is creased.
+        With `strict`: the blend has warnings.
 
     Source: section 3 and equation (11) of the paper; contact conditions from `semispline.derivations.contact`.
 
@@ -87,6 +92,8 @@ def blend(
     """
     started = time.perf_counter()
     chosen = named_options(options, named)
+    if len(tied := _tied(a, b, chosen.flip)) > 1:
+        return _strictly(_less_turning(a, b, tied, replace(chosen, strict=False)), chosen.strict)
     stated = state_problem(a, b, chosen)
     problem, sides, frame, matched = stated.problem, stated.sides, stated.frame, stated.matched
     # The one or two numbers that are not linear, then everything that is.
@@ -94,6 +101,7 @@ def blend(
     surface = _surface(problem, found, sides, frame)
     energy = thin_plate_energy(surface)
     seconds = time.perf_counter() - started
+    rounding = measure_energy_rounding(problem, surface, frame, energy)
     # What came out, judged by code that knows nothing of the above.
     contact_a, contact_b = _checked_contacts(a, b, surface, chosen.continuities, matched, found)
     if found.certificate is not None:
@@ -101,14 +109,18 @@ def blend(
     seam = _seam(surface, problem)
     regularity = measure_regularity(surface)
     creases = measure_creases(surface)
-    warnings = _warnings(regularity, creases) + _bound_warnings(problem, found) + _seam_warning(a, b)
-    if chosen.strict and warnings:
-        raise FoldError(f"{'; '.join(warnings)}; try other middle curves, alpha='natural', or without strict")
-    return BlendResult(
+    warnings = (
+        _warnings(regularity, creases)
+        + _bound_warnings(problem, found)
+        + rounding_warning(rounding, surface, energy)
+        + _seam_warning(a, b)
+    )
+    result = BlendResult(
         surface=surface,
         continuity=chosen.continuities,
         method=found.method,
         energy=energy,
+        energy_rounding=rounding.energy,
         alpha2=None if sides[0].order == 0 else found.a,
         beta2=None if sides[1].order == 0 else found.b,
         alpha2_bounds=problem.bounds[0] if problem.free[0] else None,
@@ -126,11 +138,13 @@ def blend(
         status=found.status,
         search_excess=found.search_excess,
         kkt_residual=found.kkt_residual,
-        certificate=found.certificate,
-        proven_gap=found.proven_gap,
+        # What rounding made is not proved to be least.
+        certificate=None if rounding.matters else found.certificate,
+        proven_gap=None if rounding.matters else found.proven_gap,
         constraint_rank=found.constraint_rank,
         seconds=seconds,
     )
+    return _strictly(result, chosen.strict)
 
 
 @dataclass(frozen=True, eq=False)
@@ -156,9 +170,10 @@ class StatedProblem:
 
 def state_problem(a: Base, b: Base, options: BlendOptions | None = None, **named: Any) -> StatedProblem:
     """State the problem that `blend` solves; arguments and errors are those of `blend`."""
-    require(a, "a", Base)
-    require(b, "b", Base)
     chosen = named_options(options, named)
+    if len(tied := _tied(a, b, chosen.flip)) > 1:
+        less_turning = _less_turning(a, b, tied, replace(chosen, method="reduced", strict=False))
+        chosen = replace(chosen, flip="yes" if less_turning.flipped else "no")
     at_a, at_b = chosen.continuities
     # The bases as the blend sees them: contact at w = 0, one parameter v, coordinates of size 1.
     sides = make_side(a, at_a, "base a"), make_side(b, at_b, "base b")
@@ -167,6 +182,40 @@ def state_problem(a: Base, b: Base, options: BlendOptions | None = None, **named
     frame = _frame(*sides)
     problem = make_problem(sides[0].moved(*frame), sides[1].moved(*frame), chosen)
     return StatedProblem(problem, sides, frame, matched)
+
+
+def _tied(a: Base, b: Base, flip: Flip) -> tuple[Flip, ...]:
+    """Return the directions of b to be tried: more than one only where closeness is to decide, and cannot."""
+    require(a, "a", Base)
+    require(b, "b", Base)
+    return tied_directions(a, b) if flip == "auto" else (flip,)
+
+
+def _less_turning(a: Base, b: Base, directions: tuple[Flip, ...], options: BlendOptions) -> BlendResult:
+    """Blend in each direction, and return the blend whose normal turns least; of equals the first.
+
+    Raises
+    ------
+    ComputationError
+        That of the first direction, where all fail.
+    """
+    results: list[BlendResult] = []
+    failures: list[ComputationError] = []
+    for flip in directions:
+        try:
+            results.append(blend(a, b, replace(options, flip=flip)))
+        except ComputationError as failure:
+            failures.append(failure)
+    if not results:
+        raise failures[0]
+    return min(results, key=lambda result: round(result.regularity.largest_turn_degrees / _EQUAL_TURNS))
+
+
+def _strictly(result: BlendResult, strict: bool) -> BlendResult:
+    """Return the result, refused if it has warnings and is to have none."""
+    if strict and result.warnings:
+        raise FoldError(f"{'; '.join(result.warnings)}; try other middle curves, alpha='natural', or without strict")
+    return result
 
 
 @dataclass(frozen=True)
@@ -295,12 +344,16 @@ def _warnings(regularity: Regularity, creases: tuple[Crease, ...]) -> tuple[str,
     """Return what a user should look at before the blend is used."""
     found = []
     sharpest = max((crease.angle_degrees for crease in creases), default=0.0)
+    turn = regularity.largest_turn_degrees
     # A turn that a crease explains is no fold.
-    if regularity.largest_turn_degrees - sharpest >= FOLD_TURN:
+    if turn - sharpest >= FOLD_TURN:
+        found.append(f"the blend folds: its normal turns by {turn:.0f} degrees between samples")
+    elif turn - sharpest > STEEP_TURN:
         found.append(
-            f"the blend folds: its normal turns by {regularity.largest_turn_degrees:.0f} degrees between samples"
+            f"the blend turns steeply: its normal turns by {turn:.0f} degrees between samples, above "
+            f"{STEEP_TURN:.0f} a fold may be missed"
         )
-    elif regularity.least_area_ratio < PINCH:
+    if turn - sharpest < FOLD_TURN and regularity.least_area_ratio < PINCH:
         found.append(f"the blend is pinched: its area element falls to {regularity.least_area_ratio:.1e} of the mean")
     sharp = [crease for crease in creases if crease.angle_degrees >= SHARP]
     if sharp:
@@ -314,13 +367,22 @@ def _warnings(regularity: Regularity, creases: tuple[Crease, ...]) -> tuple[str,
 
 
 def _bound_warnings(problem: BlendProblem, found: _Found) -> tuple[str, ...]:
-    """Return a warning for each shape parameter outside of its bounds: method bfgs, the paper's own, knows none."""
-    return tuple(
-        f"{name} is {value:.3g}, outside of the admissible {low:.3g} to {high:.3g}: "
-        f"method {found.method} knows no bounds"
-        for name, value, low, high in _shape_unknowns(problem, found)
-        if not low <= value <= high
-    )
+    """Return a warning for each shape parameter that a bound stopped, or that is beyond: method bfgs knows none."""
+    warnings = []
+    active = _active_bounds(problem, found)
+    for name, value, low, high in _shape_unknowns(problem, found):
+        if not low <= value <= high:
+            warnings.append(
+                f"{name} is {value:.3g}, outside of the admissible {low:.3g} to {high:.3g}: "
+                f"method {found.method} knows no bounds"
+            )
+        elif f"{name} lower" in active or f"{name} upper" in active:
+            which, bound = ("lower", low) if f"{name} lower" in active else ("upper", high)
+            warnings.append(
+                f"{name} is at its {which} bound {bound:.3g}: beyond it the energy may fall further; widen the box, or "
+                "set alpha"
+            )
+    return tuple(warnings)
 
 
 def _seam_warning(a: Base, b: Base) -> tuple[str, ...]:

@@ -24,6 +24,9 @@ class BlendResult:
         "linear" where nothing but a linear solve was needed.
     energy : float
         Thin-plate energy (11) over [0, 1] x the v-domain, whatever `v_scale` was minimised.
+    energy_rounding : float
+        By how much rounding of the control points may change it, at most; above 0.001 of the energy `warnings` say so
+        and nothing is proved.
     alpha2, beta2 : float or None
         Of (2.1) and (2.2), the bases in their own parameters; 1 for C1 and C2, None for C0 and G0.
     alpha2_bounds, beta2_bounds : (float, float) or None
@@ -43,7 +46,8 @@ class BlendResult:
     creases : tuple of Crease
         Knots of full multiplicity, across which (11) counts nothing, and how far the normal turns there.
     warnings : tuple of str
-        What a user should look at: folds, creases, shape parameters out of their bounds.
+        What a user should look at: folds, steep turns, creases, shape parameters at their bounds or beyond, an energy
+        that is rounding.
     iterations : int
         Of the nonlinear solver; 0 where there is none.
     status : str or None
@@ -54,7 +58,8 @@ class BlendResult:
     kkt_residual : float or None
         Largest entry of the gradient of the Lagrangian and of multiplier times slack, scaled; only for method casadi.
     certificate : Certificate or None
-        Proof that no admissible alpha and beta have less energy, in coordinates of size 1; only for method reduced.
+        Proof that no admissible alpha and beta have less energy, in coordinates of size 1; only for method reduced,
+        None where the energy is rounding.
     proven_gap : float or None
         What the proof leaves open, as a fraction of the energy.
     constraint_rank : (int, int) or None
@@ -67,6 +72,7 @@ class BlendResult:
     continuity: tuple[Continuity, Continuity]
     method: str
     energy: float
+    energy_rounding: float
     alpha2: float | None
     beta2: float | None
     alpha2_bounds: tuple[float, float] | None

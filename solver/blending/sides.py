@@ -8,6 +8,7 @@ import numpy as np
 
 from semispline.solver.arrays import FloatArray
 from semispline.solver.blending.closing import reseamed
+from semispline.solver.blending.layout import check_knots_apart
 from semispline.solver.errors import EdgeError
 from semispline.solver.generated import contact_numpy, shape_numpy
 from semispline.solver.judge import Base, Correspondence
@@ -89,7 +90,7 @@ def make_side(base: Base, continuity: Continuity, name: str = "base") -> Side:
     Raises
     ------
     EdgeError
-        The base is rational or semi-structured.
+        The base is rational or semi-structured, or has too many knots along the edge that count as one.
     """
     surface = base.surface
     if not isinstance(surface, BSplineSurface):
@@ -103,6 +104,7 @@ def make_side(base: Base, continuity: Continuity, name: str = "base") -> Side:
     across, along = (surface.degree_u, surface.knots_u), (surface.degree_v, surface.knots_v)
     if base.edge[0] == "v":
         net, across, along = net.transpose(1, 0, 2), along, across
+    check_knots_apart(along[1], along[0], f"{name}: knots_{'v' if base.edge[0] == 'u' else 'u'}", EdgeError)
     degree, knots = across
     if base.edge[1] == "1":
         net, steps = net[::-1], knots[-1] - knots[::-1]

@@ -7,6 +7,7 @@ from .correspondence import Correspondence as Correspondence
 from .correspondence import correspond as correspond
 from .correspondence import is_closed as is_closed
 from .correspondence import snapped_seam as snapped_seam
+from .correspondence import tied_directions as tied_directions
 from .creases import Crease as Crease
 from .creases import measure_creases as measure_creases
 from .curvature import DEGENERATE as DEGENERATE

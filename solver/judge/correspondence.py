@@ -17,6 +17,12 @@ from semispline.solver.splines import gauss_rule, merge_breakpoints
 _FRACTIONS = np.array([0.002, 0.1, 0.3, 0.5, 0.7, 0.9, 0.998])
 # An edge whose ends are closer than this fraction of its extent is closed.
 CLOSED = 1e-9
+# Directions whose closeness differs by less than this fraction of what it can be tie: rims within a degree of a right
+# angle, say. Below the second fraction the difference is rounding.
+TIE = 1e-2
+_ROUNDING = 1e-9
+# Surfaces that leave closed edges at flatter angles to their planes do not tell how these circle: product of two sines.
+LEAST_CIRCLING = 1e-2
 # A seam this close to a knot of the other edge, as a fraction of the domain, is moved onto it: across a span h the
 # rounding of control points bends a curve by 1e-16 / h^2, which is to stay below 1e-8.
 SNAP = 1e-4
@@ -45,21 +51,83 @@ def correspond(a: Base, b: Base, flip: Flip = "auto") -> Correspondence:
     """Find the direction, and for closed edges the shift, that bring the edges closest.
 
     Closeness is the mean squared distance of corresponding points. Both curves are centred first, which changes all
-    sums alike but keeps the rounding of a large offset out of the comparison. A tie keeps the direction. The shift is
-    exact up to rounding, and the same whichever edge comes first.
+    sums alike but keeps the rounding of a large offset out of the comparison. Of two directions that are equally close
+    the first of `tied_directions` is taken. The shift is exact up to rounding, and the same whichever edge comes first.
 
     Raises
     ------
     EdgeError
         `flip` is not one of auto, yes, no.
     """
+    best = _directions(a, b, flip)[0]
+    if not (is_closed(a) and is_closed(b)):
+        return Correspondence(best.flipped)
+    length = b.range_along[1] - b.range_along[0]
+    guess = (-best.step if best.flipped else best.step) % _SAMPLES / _SAMPLES * length
+    return Correspondence(best.flipped, _refined(a, b, Correspondence(best.flipped, guess)))
+
+
+def tied_directions(a: Base, b: Base) -> tuple[Flip, ...]:
+    """Return the directions of edge b between which closeness does not decide, the closer one first.
+
+    Both where they are about equally close, as for edges at right angles; and where closed edges come closest in the
+    direction in which b circles the other way about its surface than a does, as in a pipe that bends back.
+
+    Where both are equally close the order follows from where the edges lie: it is the same whichever way they run and
+    whichever comes first.
+    """
+    closest, other = _directions(a, b, "auto")
+    decided = closest.closeness - other.closeness > TIE
+    if decided and is_closed(a) and is_closed(b):
+        # What leaves a enters b.
+        circles = -_circling(a) * _circling(b)
+        decided = abs(circles) < LEAST_CIRCLING or (circles < 0) == closest.flipped
+    return tuple("yes" if one.flipped else "no" for one in ((closest,) if decided else (closest, other)))
+
+
+def _circling(base: Base) -> float:
+    """Return how a closed edge circles about the surface: its area vector times the mean direction inwards, unit both.
+
+    1 or -1 for a pipe, 0 for a flat ring.
+    """
+    start, end = base.range_along
+    t = np.arange(_SAMPLES) / _SAMPLES
+    s = start + t * (end - start)
+    area = np.cross(_centred(base, t), base.derivative(s, 0, 1)).sum(axis=0)
+    inwards = base.derivative(s, 1, 0) * (1 if base.edge[1] == "0" else -1)
+    length = float(np.linalg.norm(area) * np.linalg.norm(inwards, axis=1).sum())
+    return float(area @ inwards.sum(axis=0)) / length if length else 0.0
+
+
+@dataclass(frozen=True, eq=False)
+class _Direction:
+    """One direction of edge b, with the shift by samples that brings it closest to edge a.
+
+    Attributes
+    ----------
+    closeness : float
+        Correlation of the edges, between -1/2 and 1/2.
+    moments : ndarray, shape (6,)
+        Mean products of coordinates of a and b, those of two axes added up: the same whichever edge comes first, and
+        different for directions that are equally close.
+    """
+
+    flipped: bool
+    step: int
+    closeness: float
+    moments: FloatArray
+
+
+def _directions(a: Base, b: Base, flip: Flip) -> list[_Direction]:
+    """Return the directions that `flip` allows, the closest first."""
     if flip not in get_args(Flip):
         raise EdgeError(f"flip: found {flip!r}, expected one of auto, yes, no")
     closed = is_closed(a) and is_closed(b)
     # Closed curves are sampled from the seam on, so that shifts by whole steps meet equal parameters.
     t = (np.arange(_SAMPLES) + (0.0 if closed else 0.5)) / _SAMPLES
     first, second = (_centred(base, t) for base in (a, b))
-    candidates = []
+    size = float(np.sum(first**2) + np.sum(second**2)) or 1.0
+    found = []
     for flipped in (False, True) if flip == "auto" else (flip == "yes",):
         turned = (np.roll(second[::-1], 1, axis=0) if closed else second[::-1]) if flipped else second
         # Distance grows as the correlation falls: its terms of one curve alone do not depend on the match.
@@ -67,16 +135,16 @@ def correspond(a: Base, b: Base, flip: Flip = "auto") -> Correspondence:
         shifted = np.lib.stride_tricks.sliding_window_view(np.concatenate([turned, turned]), _SAMPLES, axis=0)
         correlation = np.einsum("ix,kxi->k", first, shifted[: len(steps)])
         best = int(correlation.argmax())
-        candidates.append((float(correlation[best]), flipped, best))
-    slack = 1e-9 * float(np.sum(first**2) + np.sum(second**2))
-    value, flipped, step = candidates[0]
-    if len(candidates) > 1 and candidates[1][0] > value + slack:
-        value, flipped, step = candidates[1]
-    if not closed:
-        return Correspondence(flipped)
-    length = b.range_along[1] - b.range_along[0]
-    guess = (-step if flipped else step) % _SAMPLES / _SAMPLES * length
-    return Correspondence(flipped, _refined(a, b, Correspondence(flipped, guess)))
+        products = first.T @ shifted[best].T / size
+        moments = (products + products.T)[np.triu_indices(3)]
+        found.append(_Direction(flipped, best, float(correlation[best]) / size, moments))
+    if len(found) > 1:
+        one, other = found
+        apart = np.append(one.closeness - other.closeness, one.moments - other.moments)
+        telling = apart[np.abs(apart) > _ROUNDING]
+        if len(telling) and telling[0] < 0:
+            return [other, one]
+    return found
 
 
 def is_closed(base: Base) -> bool:

@@ -8,7 +8,7 @@ from typing import Literal
 import numpy as np
 
 from semispline.solver.arrays import FloatArray
-from semispline.solver.splines import SemiStructuredSurface, reverse_u, reverse_v
+from semispline.solver.splines import SemiStructuredSurface, breakpoints, merge_breakpoints, reverse_u, reverse_v
 
 # Samples in each span of the other parameter, away from its own knots.
 _PLACES = (np.arange(4) + 0.5) / 4
@@ -16,7 +16,7 @@ _PLACES = (np.arange(4) + 0.5) / 4
 
 @dataclass(frozen=True)
 class Crease:
-    """A knot of full multiplicity, and how sharply the surface bends there.
+    """A knot of full multiplicity, and how sharply the surface bends there; knots that count as one are one.
 
     Attributes
     ----------
@@ -43,17 +43,17 @@ def measure_creases(surface: SemiStructuredSurface) -> tuple[Crease, ...]:
     >>> crease.parameter, crease.at, round(crease.angle_degrees, 9)
     ('u', 0.5, 90.0)
     """
-    full_u = _full(surface.degree_u, surface.knots_u)
-    full_v = np.unique(np.concatenate([_full(curve.degree, curve.knots) for curve in surface.control_curves]))
+    first_u, last_u = _full([(surface.degree_u, surface.knots_u)])
+    first_v, last_v = _full([(curve.degree, curve.knots) for curve in surface.control_curves])
     u, v = (_between(breaks) for breaks in surface.breakpoints)
     found: list[Crease] = []
-    if full_u.size:
+    if first_u.size:
         # Knots belong to the span after them: from below they are met on the surface run backwards.
-        below = _normals(reverse_u(surface), _reversed(full_u, surface.domain[0]), v)
-        found += _creases("u", full_u, _turns(_normals(surface, full_u, v), -below).max(axis=1))
-    if full_v.size:
-        below = _normals(reverse_v(surface), u, _reversed(full_v, surface.domain[1]))
-        found += _creases("v", full_v, _turns(_normals(surface, u, full_v), -below).max(axis=0))
+        below = _normals(reverse_u(surface), _reversed(first_u, surface.domain[0]), v)
+        found += _creases("u", first_u, _turns(_normals(surface, last_u, v), -below).max(axis=1))
+    if first_v.size:
+        below = _normals(reverse_v(surface), u, _reversed(first_v, surface.domain[1]))
+        found += _creases("v", first_v, _turns(_normals(surface, u, last_v), -below).max(axis=0))
     return tuple(found)
 
 
@@ -61,10 +61,20 @@ def _creases(parameter: Literal["u", "v"], knots: FloatArray, angles: FloatArray
     return [Crease(parameter, at, angle) for at, angle in zip(knots.tolist(), angles.tolist(), strict=True)]
 
 
-def _full(degree: int, knots: FloatArray) -> FloatArray:
-    """Return the inner knots of full multiplicity."""
-    values, counts = np.unique(knots[degree + 1 : -degree - 1], return_counts=True)
-    return np.asarray(values[counts >= degree])
+def _full(rows: list[tuple[int, FloatArray]]) -> tuple[FloatArray, FloatArray]:
+    """Return the inner knots of full multiplicity in some row, and the last of those that count as one with each."""
+    breaks = merge_breakpoints(*(breakpoints(knots) for _, knots in rows))
+    between = (breaks[:-1] + breaks[1:]) / 2
+    full = np.zeros(len(breaks), dtype=bool)
+    first, last = np.full(len(breaks), np.inf), np.full(len(breaks), -np.inf)
+    for degree, knots in rows:
+        inner = knots[degree + 1 : -degree - 1]
+        places = np.searchsorted(between, inner)
+        full |= np.bincount(places, minlength=len(breaks)) >= degree
+        np.minimum.at(first, places, inner)
+        np.maximum.at(last, places, inner)
+    full[[0, -1]] = False
+    return first[full], last[full]
 
 
 def _between(breaks: FloatArray) -> FloatArray:

@@ -13,6 +13,7 @@ from .knots import basis_matrix as basis_matrix
 from .knots import breakpoints as breakpoints
 from .knots import checked_knots as checked_knots
 from .knots import clamped as clamped
+from .knots import crowded_knots as crowded_knots
 from .knots import derivative_matrix as derivative_matrix
 from .knots import derivative_points as derivative_points
 from .knots import greville as greville

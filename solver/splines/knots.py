@@ -148,6 +148,27 @@ def merge_breakpoints(*vectors: FloatArray) -> FloatArray:
     return np.concatenate([[start], values, [end]])
 
 
+def crowded_knots(knots: FloatArray, degree: int) -> FloatArray:
+    """Return the first knots that count as one, of a multiplicity that no knot may have; empty where there are none.
+
+    An inner knot may have multiplicity `degree`, an end `degree` + 1: so `checked_knots` has it for equal knots, and
+    this for those within 1e-12 of the domain, as `merge_breakpoints` merges them.
+
+    Examples
+    --------
+    >>> crowded_knots(np.array([0, 0, 0.5, 0.5 + 1e-13, 1, 1]), 1).tolist()
+    [0.5, 0.5000000000001]
+    >>> crowded_knots(np.array([0, 0, 0.5, 0.5 + 1e-11, 1, 1]), 1).tolist()
+    []
+    """
+    breaks = merge_breakpoints(breakpoints(knots))
+    groups = np.searchsorted((breaks[:-1] + breaks[1:]) / 2, knots)
+    allowed = np.full(len(breaks), degree)
+    allowed[[0, -1]] += 1
+    crowded = np.flatnonzero(np.bincount(groups, minlength=len(breaks)) > allowed)
+    return np.asarray(knots[groups == crowded[0]] if len(crowded) else knots[:0])
+
+
 def greville(knots: FloatArray, degree: int) -> FloatArray:
     """Return the Greville abscissae, shape (n,): the mean of `degree` consecutive knots each.
 

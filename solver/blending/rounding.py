@@ -1,0 +1,92 @@
+"""What rounding of the control points may do to the energy: across a span h it bends a surface by 1e-16 / h^2."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from semispline.solver.arrays import FloatArray
+from semispline.solver.blending.gram import EnergyForm
+from semispline.solver.blending.problem import BlendProblem
+from semispline.solver.splines import SemiStructuredSurface, breakpoints
+
+# An energy that rounding may change by more than this fraction is said to be rounding, and nothing is proved of it.
+ROUNDING_SHARE = 1e-3
+# Energies below this fraction of that of a surface that bends by its own size count as zero, as for flat blends.
+_ZERO_ENERGY = 1e-12
+
+
+@dataclass(frozen=True, eq=False)
+class EnergyRounding:
+    """How much of the energy of a blend may be rounding of its control points.
+
+    Attributes
+    ----------
+    energy : float
+        By how much the thin-plate energy (11) may be off.
+    share : float
+        The same as a fraction, of that energy or of the one that was minimised, whichever is worse.
+    """
+
+    energy: float
+    share: float
+
+    @property
+    def matters(self) -> bool:
+        """Whether the energy is not to be believed."""
+        return self.share > ROUNDING_SHARE
+
+
+def measure_energy_rounding(
+    problem: BlendProblem, surface: SemiStructuredSurface, frame: tuple[FloatArray, float], energy: float
+) -> EnergyRounding:
+    """Bound what errors of 1e-16 of the largest coordinate, in every control point, may do to the energy.
+
+    Parameters
+    ----------
+    problem : BlendProblem
+    surface : SemiStructuredSurface
+        The blend, model units.
+    frame : (ndarray of shape (3,), float)
+        Centre and size of the coordinates of `problem`.
+    energy : float
+        Thin-plate energy (11) of the blend, model units.
+    """
+    centre, size = frame
+    points = np.concatenate([curve.control_points for curve in surface.control_curves])
+    sides = np.concatenate([side.rows.reshape(-1, 3) for side in (problem.a, problem.b)]) * size + centre
+    # Prescribed rows are combinations of those of the bases, and are as coarse as these.
+    errors = np.finfo(float).eps * np.maximum(np.abs(points).max(axis=0), np.abs(sides).max(axis=0))
+    own = problem.form if problem.form.rows is problem.rows else EnergyForm(problem.form.u, problem.rows)
+    change = own.change_by_errors(points - centre, errors)
+    share = change / max(energy, _ZERO_ENERGY * _bent(own) * size**2)
+    if own is not problem.form:
+        minimised = float(problem.form.products(points[None] - centre)[0, 0])
+        floor = _ZERO_ENERGY * _bent(problem.form) * size**2
+        share = max(share, problem.form.change_by_errors(points - centre, errors) / max(minimised, floor))
+    return EnergyRounding(change, share)
+
+
+def _bent(form: EnergyForm) -> float:
+    """Return the energy of a surface all of whose second derivatives over the unit square are 1."""
+    knots = form.rows[0].knots
+    length = float(knots[-1] - knots[0])
+    return length + 2 / length + 1 / length**3
+
+
+def rounding_warning(rounding: EnergyRounding, surface: SemiStructuredSurface, energy: float) -> tuple[str, ...]:
+    """Return a warning where the energy is made of rounding."""
+    if not rounding.matters:
+        return ()
+    rows = (breakpoints(curve.knots) for curve in surface.control_curves)
+    fraction, width, place = min(
+        (width / float(breaks[-1] - breaks[0]), width, f"{name} = {at:g}")
+        for name, breaks in (("u", surface.breakpoints[0]), *(("v", row) for row in rows))
+        for width, at in zip(np.diff(breaks).tolist(), breaks.tolist(), strict=False)
+    )
+    return (
+        f"the energy {energy:.3g} may be off by {rounding.energy:.2g} where control points round, and is not proved: "
+        f"the narrowest span, at {place}, is {width:.1e} long, {fraction:.1e} of the domain; take knots further apart, "
+        "or work nearer to the origin",
+    )
