@@ -9,7 +9,6 @@ from .correspondence import is_closed as is_closed
 from .correspondence import snapped_seam as snapped_seam
 from .creases import Crease as Crease
 from .creases import measure_creases as measure_creases
-from .curvature import DEGENERATE as DEGENERATE
 from .curvature import LocalGeometry as LocalGeometry
 from .curvature import isophote_angle as isophote_angle
 from .curvature import local_geometry as local_geometry
