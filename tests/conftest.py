@@ -16,7 +16,7 @@ NO_SHARED = "shared files not found; set SEMISPLINE_SHARED"
 
 @pytest.fixture(scope="session")
 def shared():
-    """Return the folder of files that the repository does not hold: SEMISPLINE_SHARED, or `shared` beside the checkout."""
+    """Return the folder of files that are not in the repository: SEMISPLINE_SHARED, or `shared` beside it."""
     said = os.environ.get("SEMISPLINE_SHARED")
     folder = Path(said or Path(__file__).parents[2] / "shared")
     if not folder.is_dir():

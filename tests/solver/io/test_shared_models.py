@@ -24,8 +24,8 @@ MODELS = [
 
 @pytest.mark.parametrize(("name", "faces", "rational", "trimmed"), MODELS)
 def test_faces_of_a_model(shared, name, faces, rational, trimmed):
-    entries = list_surfaces(shared / "data" / "cad" / name)
-    assert (len(entries), sum(e.rational for e in entries), sum(e.trimmed for e in entries)) == (faces, rational, trimmed)
+    found = list_surfaces(shared / "data" / "cad" / name)
+    assert (len(found), sum(e.rational for e in found), sum(e.trimmed for e in found)) == (faces, rational, trimmed)
 
 
 def test_two_faces_of_a_model_are_joined(shared):
