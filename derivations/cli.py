@@ -1,9 +1,11 @@
-"""`semispline derive` and `semispline generate`. SymPy loads only when a command runs."""
+"""`semispline derive` and `semispline generate`. What loads SymPy waits inside the functions until a command runs."""
 
 from __future__ import annotations
 
 import shlex
+from contextlib import redirect_stdout
 from enum import StrEnum
+from io import StringIO
 from pathlib import Path
 from typing import Annotated
 
@@ -108,9 +110,6 @@ def derived(call: str) -> str:
     >>> derived("energy-density")
     'e = P_uu**2 + 2 * P_uv**2 + P_vv**2\n'
     """
-    from contextlib import redirect_stdout
-    from io import StringIO
-
     output = StringIO()
     with redirect_stdout(output):
         code = app(["derive", *shlex.split(call)], standalone_mode=False)

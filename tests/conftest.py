@@ -1,6 +1,9 @@
 """Settings that all tests share."""
 
+import os
 import random
+import sys
+from pathlib import Path
 
 import pytest
 from hypothesis import settings
@@ -8,6 +11,19 @@ from hypothesis import settings
 # The clock decides nothing here, and the same examples are tried at every run: a red test can be repeated.
 settings.register_profile("repeatable", deadline=None, derandomize=True, print_blob=True)
 settings.load_profile("repeatable")
+
+NO_SHARED = "shared files not found; set SEMISPLINE_SHARED"
+
+
+@pytest.fixture(scope="session")
+def shared():
+    """Return the folder of files that are not in the repository: SEMISPLINE_SHARED, or `shared` beside it."""
+    said = os.environ.get("SEMISPLINE_SHARED")
+    folder = Path(said or Path(__file__).parents[2] / "shared")
+    if not folder.is_dir():
+        # Who named a folder meant it.
+        (pytest.fail if said else pytest.skip)(f"{NO_SHARED} (looked for {folder})")
+    return folder
 
 
 def pytest_addoption(parser):
@@ -17,13 +33,6 @@ def pytest_addoption(parser):
 def pytest_report_header(config):
     seed = config.getoption("order_seed")
     return None if seed is None else f"order of tests: --order-seed={seed}"
-
-
-@pytest.hookimpl(trylast=True)
-def pytest_collection_modifyitems(config, items):
-    seed = config.getoption("order_seed")
-    if seed is not None:
-        items[:] = reordered(items, seed)
 
 
 def reordered(items, seed):
@@ -37,3 +46,28 @@ def reordered(items, seed):
     for tests in files:
         chance.shuffle(tests)
     return [item for tests in files for item in tests]
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(config, items):
+    """Mark the tests that ask for the shared folder, so that `-m shared` finds them, and reorder all where asked."""
+    for item in items:
+        if "shared" in getattr(item, "fixturenames", ()):
+            item.add_marker(pytest.mark.shared)
+    seed = config.getoption("order_seed")
+    if seed is not None:
+        items[:] = reordered(items, seed)
+
+
+def pytest_terminal_summary(terminalreporter):
+    """Say aloud how many tests had no files to work on."""
+    skipped = [r for r in terminalreporter.stats.get("skipped", []) if NO_SHARED in str(r.longrepr)]
+    if skipped:
+        terminalreporter.write_line(f"{len(skipped)} tests skipped: {NO_SHARED}", yellow=True)
+
+
+@pytest.fixture(scope="session", autouse=True)
+def only_public_names():
+    """Fail at the end of a run where a hall was imported by its bare name: each of its classes would exist twice."""
+    yield
+    assert sorted({name.partition(".")[0] for name in sys.modules} & {"solver", "papers", "derivations"}) == []

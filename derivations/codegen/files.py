@@ -8,6 +8,8 @@ from collections.abc import Callable
 from difflib import unified_diff
 from pathlib import Path
 
+from semispline.derivations.codegen.catalogue import generated_files
+
 GENERATED = Path("solver", "generated")
 THEORY = Path("docs", "theory.md")
 
@@ -41,8 +43,6 @@ def expected_files(root: Path, derive: Callable[[str], str]) -> dict[Path, str]:
     derive : callable
         Arguments of `semispline derive` to what it prints, for the formulas in docs/theory.md.
     """
-    from semispline.derivations.codegen.catalogue import generated_files
-
     files = {GENERATED / name: text for name, text in generated_files().items()}
     if (root / THEORY).is_file():
         files[THEORY] = refreshed((root / THEORY).read_text(encoding="utf-8"), derive)

@@ -245,6 +245,7 @@ def _shape_parameters(problem: BlendProblem, method: Method) -> _Found:
     """Find alpha^2 and beta^2 of least energy; where both are fixed there is nothing to find."""
     if not any(problem.free):
         return _Found(*problem.start, method="linear")
+    # Each method waits until it is asked for: CasADi alone takes longer to load than a blend to solve.
     if method == "reduced":
         from semispline.solver.blending.reduced import solve_reduced
 

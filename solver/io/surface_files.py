@@ -1,4 +1,7 @@
-"""One way in and out for surfaces of every file format."""
+"""One way in and out for surfaces of every file format.
+
+The module of a format waits inside the functions until a file of that format is named.
+"""
 
 from __future__ import annotations
 

@@ -253,6 +253,7 @@ def revolve_polynomial(
     >>> result.surface.control_points.shape, result.error < 1e-4
     ((10, 2, 3), True)
     """
+    # Waits: scipy.interpolate is slow to load.
     from scipy.interpolate import make_interp_spline
 
     require(curve, "curve", BSplineCurve)
@@ -311,6 +312,7 @@ def _chord_parameters(grid: FloatArray, name: str) -> FloatArray:
 
 
 def _interpolate(data: FloatArray, degree: int, parameters: ArrayLike, name: str) -> tuple[FloatArray, FloatArray]:
+    # Waits: scipy.interpolate is slow to load.
     from scipy.interpolate import make_interp_spline
 
     t = finite_array(parameters, 1, name, InputError)
