@@ -162,6 +162,89 @@ def contact_jets(order: int, degree: Any, spans: Sequence[Any], a: Any = A) -> M
     return rows.subs(A, sympify(a))
 
 
+def rows_from_derivatives(order: int, degree: Any, spans: Sequence[Any]) -> Matrix:
+    """Return the matrix W of P_i = sum_k W[i, k] D_k, where D_k is the k-th u-derivative of the blend at the contact.
+
+    Parameters
+    ----------
+    order, degree, spans
+        As for `contact_rows`.
+
+    Returns
+    -------
+    Matrix, shape (n + 1, n + 1)
+        W[i, k] = (p - k)! / p! e_k(h_1, .., h_i): the inverse of `end_derivatives`, all entries positive or zero.
+
+    Raises
+    ------
+    ValueError
+        As `contact_rows`.
+
+    Examples
+    --------
+    >>> rows_from_derivatives(2, Symbol("p"), span_symbols(2))[2, :]
+    Matrix([[1, (h1 + h2)/p, h1*h2/(p*(p - 1))]])
+    """
+    return contact_jets(order, degree, spans, sympify(-1))
+
+
+def chain_monomials(order: int) -> tuple[tuple[int, int], ...]:
+    """Return the exponents (i, j) of the monomials a^i p2^j that the conditions of order 0..n hold, 1 first.
+
+    Examples
+    --------
+    >>> chain_monomials(2)
+    ((0, 0), (0, 1), (1, 0), (2, 0))
+    """
+    return tuple(sorted({key for table in _chain(order) for key in table}))
+
+
+def chain_table(order: int) -> dict[tuple[int, int], Matrix]:
+    """Return the conditions with p1 = -a and p2 for each monomial: D_k = sum_m a^i p2^j sum_d T_m[k, d] d^d R / dw^d.
+
+    p3, p4 and all q_k are zero. Multiplied by constants or by functions of v these matrices serve alike, since the
+    conditions hold for each v.
+
+    Returns
+    -------
+    dict
+        Exponents (i, j) to a Matrix of whole numbers, shape (n + 1, n + 1).
+
+    Source: the chain rule, `contact_conditions`.
+
+    Examples
+    --------
+    >>> chain_table(2)[0, 1]
+    Matrix([
+    [0, 0, 0],
+    [0, 0, 0],
+    [0, 1, 0]])
+    """
+    rows = _chain(order)
+    tables = {key: Matrix.zeros(order + 1, order + 1) for key in chain_monomials(order)}
+    for k, row in enumerate(rows):
+        for key, coefficients in row.items():
+            for d, value in coefficients.items():
+                tables[key][k, d] = value
+    return tables
+
+
+def _chain(order: int) -> list[dict[tuple[int, int], dict[int, Expr]]]:
+    """Return of each condition its coefficients: monomial in a and p2, then order of the derivative of R."""
+    p2 = Symbol("p2")
+    unused = {Symbol(f"{letter}{k}"): 0 for letter, first in (("p", 3), ("q", 1)) for k in range(first, order + 1)}
+    found = []
+    for condition in contact_conditions(order):
+        chosen = condition.subs(unused).subs(Symbol("p1"), -A)
+        row: dict[tuple[int, int], dict[int, Expr]] = {}
+        for d in range(order + 1):
+            for (i, j), value in Poly(chosen.coeff(base_derivative(d, 0)), A, p2).terms():
+                if value:
+                    row.setdefault((i, j), {})[d] = value
+        found.append(row)
+    return found
+
+
 def _blend_degree(degree: Any, order: int) -> Expr:
     p = sympify(degree)
     if p.is_number and p < order:

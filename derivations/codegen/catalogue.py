@@ -4,16 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from sympy import Expr, Matrix, Symbol, diag
+from sympy import Expr, Integer, Matrix, Symbol, diag
 
 from semispline.derivations.codegen.python_backends import CASADI, NUMPY, python_module
 from semispline.derivations.codegen.routines import Argument, Routine, plain_symbols
-from semispline.derivations.contact import contact_conditions, contact_jets, contact_rows
+from semispline.derivations.contact import (
+    chain_monomials,
+    chain_table,
+    contact_conditions,
+    contact_jets,
+    contact_rows,
+    rows_from_derivatives,
+)
 from semispline.derivations.energy import SECOND_DERIVATIVES, gram_block, thin_plate_density
 from semispline.derivations.shape import MAX_POWER, contact_row_powers, energy_polynomial, product_symbol
 from semispline.derivations.splines import end_derivatives, span_symbols
 
-MAX_ORDER = 3
+MAX_ORDER = 4
 
 
 def _spans(letter: str, order: int, whose: str, degree: str) -> list[Argument]:
@@ -88,6 +95,47 @@ def jets_routine(order: int, degree: int | None = None) -> Routine:
         form="matrix",
         values=_rows(contact_jets(order, p, span_symbols(order))),
         names=("J",),
+    )
+
+
+def derivative_rows_routine(order: int) -> Routine:
+    """Return `rows_from_derivatives_n(p, h1, .., hn)`."""
+    p, blend = _degree("p", None, "Degree of the blend in u.", order)
+    return Routine(
+        name=f"rows_from_derivatives_{order}",
+        summary=f"Rows P_i = sum_k W[i, k] D_k of a blend with u-derivatives D_0..D_{order} at the contact.",
+        source="Cox-de Boor, derivations/splines.py; derivations/contact.py",
+        arguments=(*blend, *_spans("h", order, "the blend, counted from the contact", "p")),
+        form="matrix",
+        values=_rows(rows_from_derivatives(order, p, span_symbols(order))),
+        names=("W",),
+    )
+
+
+def chain_monomials_routine(order: int) -> Routine:
+    """Return `chain_monomials_n()`: the exponents of a and p2."""
+    return Routine(
+        name=f"chain_monomials_{order}",
+        summary=f"Exponents of a and p2 in the monomials of the conditions of order 0..{order}.",
+        source="chain rule with p1 = -a, p2, the rest zero; derivations/contact.py",
+        arguments=(),
+        form="matrix",
+        values=tuple(tuple(map(Integer, exponents)) for exponents in chain_monomials(order)),
+        names=("exponents",),
+    )
+
+
+def chain_table_routine(order: int) -> Routine:
+    """Return `chain_table_n()`: what multiplies each monomial, matrices below each other."""
+    tables = chain_table(order)
+    return Routine(
+        name=f"chain_table_{order}",
+        summary=f"D_k = sum over monomials m of m sum_d T_m[k, d] R^(d), k = 0..{order}; the T_m below each other.",
+        source="chain rule with p1 = -a, p2, the rest zero; derivations/contact.py",
+        arguments=(),
+        form="matrix",
+        values=tuple(row for exponents in chain_monomials(order) for row in _rows(tables[exponents])),
+        names=("T",),
     )
 
 
@@ -207,4 +255,11 @@ def generated_files() -> dict[str, str]:
     )
     title = "The least energy as a polynomial in the shape parameters"
     files["shape_numpy.py"] = python_module(title, ("derivations/shape.py",), shape, NUMPY)
+    rows = tuple(
+        routine(order)
+        for order in range(1, MAX_ORDER + 1)
+        for routine in (derivative_rows_routine, chain_monomials_routine, chain_table_routine)
+    )
+    title = "Rows of a blend from its derivatives at a contact, and these from the chain rule"
+    files["rows_numpy.py"] = python_module(title, contact_sources, rows, NUMPY)
     return dict(sorted(files.items()))
