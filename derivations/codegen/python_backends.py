@@ -187,7 +187,7 @@ def python_function(routine: Routine, backend: Backend) -> str:
     lines += _docstring(routine, backend, steps.operations)
     lines += _check_lines(routine.arguments, backend)
     for name, value in steps.temporaries:
-        lines += _assignment(name, value)
+        lines += assignment_lines(name, value)
     lines += _result(routine, backend, steps.entries)
     return "\n".join(lines) + "\n"
 
@@ -305,23 +305,26 @@ def _check_lines(arguments: Sequence[Argument], backend: Backend) -> list[str]:
     return lines
 
 
-def _assignment(name: str, value: Expr) -> list[str]:
+def assignment_lines(name: str, value: Expr) -> list[str]:
+    """Return an assignment on one line, or broken the way `ruff format` breaks it."""
     line = f"    {name} = {expression_text(value)}"
-    if len(line) <= LINE_LENGTH:
+    terms = summands(value)
+    if len(line) <= LINE_LENGTH or len(terms) == 1:
         return [line]
-    broken = [f"        {term}" for term in summands(value)]
-    return [f"    {name} = (", *broken, "    )"] if len(broken) > 1 else [line]
+    packed = f"        {' '.join(terms)}"
+    inside = [packed] if len(packed) <= LINE_LENGTH else [f"        {term}" for term in terms]
+    return [f"    {name} = (", *inside, "    )"]
 
 
 def _result(routine: Routine, backend: Backend, entries: Sequence[Sequence[Expr]]) -> list[str]:
     if routine.form == "block":
         return [f"    return {expression_text(entries[0][0])}"]
     if routine.form == "density":
-        return [*_assignment(routine.names[0], entries[0][0]), f"    return {backend.total(routine.names[0])}"]
+        return [*assignment_lines(routine.names[0], entries[0][0]), f"    return {backend.total(routine.names[0])}"]
     if routine.form == "vectors":
         lines = []
         for name, (value,) in zip(routine.names, entries, strict=True):
-            lines += _assignment(name, value)
+            lines += assignment_lines(name, value)
         return [*lines, f"    return {', '.join(routine.names)}"]
     lines, rows = [], []
     for i, row in enumerate(entries):
@@ -331,7 +334,7 @@ def _result(routine: Routine, backend: Backend, entries: Sequence[Sequence[Expr]
                 names.append(f"{value}.0" if value.is_Integer else expression_text(value))
             else:
                 names.append(f"c{i}_{j}")
-                lines += _assignment(f"c{i}_{j}", value)
+                lines += assignment_lines(f"c{i}_{j}", value)
         rows.append(names)
     name, arguments = backend.matrix(rows)
     return [*lines, _call(f"    return {name}", arguments, "")]

@@ -8,16 +8,19 @@ from random import Random
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from sympy import Matrix, Rational, Symbol, cancel, diag, diff, expand, symbols
+from sympy import Matrix, Rational, Symbol, cancel, diag, diff, expand, factorial, symbols
 from sympy.polys.constructor import construct_domain
 
 from semispline.derivations.contact import (
     A,
     base_derivative,
+    chain_monomials,
+    chain_table,
     contact_conditions,
     contact_jets,
     contact_rows,
     contact_rows_from_pieces,
+    rows_from_derivatives,
     special_conditions,
 )
 from semispline.derivations.splines import end_derivatives, end_derivatives_from_pieces, evaluate_exact, span_symbols
@@ -211,3 +214,38 @@ def test_a_blend_with_these_rows_has_the_derivatives_of_the_base(contact, blend_
         at_base = evaluate_exact(q, W, rows, 1 if base_reversed else 0, d)
         sign = (-1 if blend_reversed else 1) * (-1 if base_reversed else 1)
         assert at_blend == (-sign * Rational(a)) ** d * at_base
+
+
+# ---------------------------------------------------------------- rows from derivatives, conditions by monomials
+
+
+@pytest.mark.parametrize("order", range(1, 5))
+def test_rows_from_derivatives_undo_the_end_derivatives(order):
+    h = span_symbols(order)
+    product = end_derivatives(order, P, h) * rows_from_derivatives(order, P, h)
+    assert product.applyfunc(cancel) == Matrix.eye(order + 1)
+
+
+@pytest.mark.parametrize("order", range(1, 5))
+def test_the_chain_table_is_the_chain_rule_with_p1_and_p2(order):
+    # Taylor coefficients of a composition with a polynomial R: nothing of the derivation is used.
+    u, w, a, p2 = symbols("u w a p2")
+    base = sum(symbols(f"r{d}") * w**d / factorial(d) for d in range(order + 1))
+    composed = base.subs(w, -a * u + p2 * u**2 / 2)
+    tables = chain_table(order)
+    assert tuple(tables) == chain_monomials(order)
+    for k in range(order + 1):
+        known = composed.diff(u, k).subs(u, 0) if k else composed.subs(u, 0)
+        found = sum(
+            a**i * p2**j * table[k, d] * symbols(f"r{d}") for (i, j), table in tables.items() for d in range(order + 1)
+        )
+        assert expand(found - known) == 0
+
+
+@pytest.mark.parametrize("order", range(1, 5))
+def test_with_p2_zero_the_rows_are_those_of_contact_rows(order):
+    h, H = span_symbols(order), span_symbols(order, "H")
+    tables = chain_table(order)
+    jets = sum((A**i * table for (i, j), table in tables.items() if j == 0), Matrix.zeros(order + 1, order + 1))
+    rows = rows_from_derivatives(order, P, h) * jets * end_derivatives(order, Q, H)
+    assert (rows - contact_rows(order, P, h, Q, H)).applyfunc(cancel) == Matrix.zeros(order + 1, order + 1)
