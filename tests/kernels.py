@@ -16,7 +16,12 @@ from pathlib import Path
 ROOT = Path(__file__).parents[1]
 
 # All of what computes in floating point, and nothing that takes minutes: no ledger, no pictures of a report.
-TESTS = ("tests/solver", "tests/papers/baselines", "tests/papers/reproduction/test_measures.py")
+TESTS = (
+    "tests/solver",
+    "tests/papers/baselines",
+    "tests/papers/lin2014/test_baselines_section5.py",
+    "tests/papers/reproduction/test_measures.py",
+)
 LEFT_OUT = "compiler or browser or slow"
 
 # What /proc/cpuinfo of Linux calls what a kernel's code needs.
