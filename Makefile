@@ -24,7 +24,7 @@ test: $(STAMP)
 test-left-out: $(STAMP)
 	$(BIN)/python -m pytest -n 2 --quiet -m '$(LEFT_OUT)' || [ $$? -eq 5 ]
 
-# Under each kernel of OpenBLAS that the processor has; KERNELS=another takes one that is not the default.
+# Under each kernel of OpenBLAS that the processor has; KERNELS=another takes any one that is not the default.
 test-kernels: $(STAMP)
 	$(BIN)/python tests/kernels.py $(KERNELS)
 

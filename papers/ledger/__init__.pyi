@@ -22,11 +22,11 @@ from .loading import collected as collected
 from .loading import paper_names as paper_names
 from .mutation import explained as explained
 from .mutation import mutants as mutants
-from .printed_data import Knots as Knots
-from .printed_data import Numbers as Numbers
-from .printed_data import inner_moves as inner_moves
-from .printed_data import near as near
-from .printed_data import number_changes as number_changes
+from .number_lists import Knots as Knots
+from .number_lists import Numbers as Numbers
+from .number_lists import inner_moves as inner_moves
+from .number_lists import near as near
+from .number_lists import number_changes as number_changes
 from .questions import premises as premises
 from .questions import proved as proved
 from .questions import question as question
