@@ -5,7 +5,7 @@ BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 LEFT_OUT := compiler or browser or slow
 
-.PHONY: report test test-left-out lint types fresh bench clean
+.PHONY: report test test-left-out mutants lint types fresh bench clean
 
 $(STAMP): pyproject.toml constraints.txt
 	$(PYTHON) -m venv $(VENV)
@@ -23,6 +23,10 @@ test: $(STAMP)
 # pytest leaves with 5 when nothing carries these marks.
 test-left-out: $(STAMP)
 	$(BIN)/python -m pytest -n 2 --quiet -m '$(LEFT_OUT)' || [ $$? -eq 5 ]
+
+# A night's work that goes on where it was interrupted; see tests/mutants/__init__.py.
+mutants: $(STAMP)
+	PYTHONPATH=tests PYTHONHASHSEED=0 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m mutants
 
 lint: $(STAMP)
 	$(BIN)/ruff check .
