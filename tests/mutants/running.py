@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import contextlib
+import ctypes
+import fcntl
 import importlib
 import os
 import resource
@@ -16,7 +18,7 @@ from collections import deque
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import IO, Any
 
 import pytest
 
@@ -61,6 +63,7 @@ class Slot:
     pid: int = 0
     started: float = 0.0
     original: tuple[Path, bytes, int] | None = field(default=None, repr=False)
+    lock: IO[str] | None = None
 
     @property
     def tree(self) -> Path:
@@ -80,6 +83,13 @@ def make_slots(root: Path, folder: Path, count: int) -> list[Slot]:
     words = ["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"]
     names = subprocess.run(words, cwd=root, capture_output=True, check=True).stdout.decode().split("\0")
     slots = [Slot(folder / f"slot-{i}") for i in range(count)]
+    folder.mkdir(parents=True, exist_ok=True)
+    lock = (folder / "lock").open("w")  # held as long as the slots are
+    try:
+        fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        raise SystemExit(f"{folder}: another run is at work here") from None
+    slots[0].lock = lock
     for slot in slots:
         shutil.rmtree(slot.folder, ignore_errors=True)
         for name in filter(None, names):
@@ -135,6 +145,8 @@ def _start(slot: Slot, job: Job) -> None:
 
 def _in_child(slot: Slot, job: Job) -> int:
     os.setsid()
+    if sys.platform == "linux":
+        ctypes.CDLL(None).prctl(1, signal.SIGKILL)  # PR_SET_PDEATHSIG: ends when its parent does
     signal.signal(signal.SIGINT, signal.SIG_DFL)
     limit = int(job.seconds) + 1
     resource.setrlimit(resource.RLIMIT_CPU, (limit, limit + 5))

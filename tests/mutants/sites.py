@@ -80,8 +80,6 @@ def mutants_of(file: str, source: bytes) -> list[Mutant]:
             change = f"{_short(source[start:end])} -> {_short(new)}"
             text = rows[row].strip()
             mutant = Mutant(file, function, row + 1, text, change, complete, start, end, new, lines, names)
-            if not _compiles(mutant.apply(source)):
-                continue
             seen[function, text, change] += 1
             found.append(replace(mutant, occurrence=seen[function, text, change]))
     return sorted(found, key=lambda m: (m.start, m.change))
@@ -90,14 +88,6 @@ def mutants_of(file: str, source: bytes) -> list[Mutant]:
 def _short(text: bytes) -> str:
     words = " ".join(text.decode().split())
     return words if len(words) <= 60 else words[:57] + "..."
-
-
-def _compiles(source: bytes) -> bool:
-    try:
-        compile(source, "mutant", "exec")
-    except SyntaxError:
-        return False
-    return True
 
 
 @dataclass(frozen=True)
