@@ -5,7 +5,7 @@ BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 LEFT_OUT := compiler or browser or slow
 
-.PHONY: report test test-left-out test-kernels lint types fresh bench clean
+.PHONY: report test test-left-out test-kernels mutants lint types fresh bench clean
 
 $(STAMP): pyproject.toml constraints.txt
 	$(PYTHON) -m venv $(VENV)
@@ -27,6 +27,10 @@ test-left-out: $(STAMP)
 # Under each kernel of OpenBLAS that the processor has; KERNELS=another takes any one that is not the default.
 test-kernels: $(STAMP)
 	$(BIN)/python tests/kernels.py $(KERNELS)
+
+# A night's work that goes on where it was interrupted; see tests/mutants/__init__.py.
+mutants: $(STAMP)
+	PYTHONPATH=tests PYTHONHASHSEED=0 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m mutants
 
 lint: $(STAMP)
 	$(BIN)/ruff check .
