@@ -282,7 +282,7 @@ def make_problem(a: Side, b: Side, options: ProblemOptions) -> BlendProblem:
     if options.v_scale not in get_args(VScale):
         raise OptionError(f"v_scale: found {options.v_scale!r}, expected one of {', '.join(get_args(VScale))}")
     u = blend_u_basis(options.degree_u, options.middle_curves, options.u_knots)
-    orders = [seam_order(side.along, side.rows[: side.order + 1]) for side in (a, b)]
+    orders = [seam_order(side.along, side.rows[: side.order + 1], side.largest) for side in (a, b)]
     closed = min(orders)
     middle = middle_bases(a.along, b.along, options.middle_curves, options.middle_knots, closed=closed >= 0)
     if closed >= 0 and options.middle_knots is None:

@@ -316,7 +316,16 @@ def test_every_combination_of_sides(pair):
 @pytest.mark.parametrize("seed", range(6))
 def test_bfgs_is_reported_and_never_better(seed):
     a, b = facing_pair(np.random.default_rng(seed), edges=("u0", "u0"), backwards=(False, False))
-    rough = blend(a, b, method="bfgs")
+    try:
+        rough = blend(a, b, method="bfgs")
+    except ContactError as error:
+        refusal = str(error)
+    else:
+        refusal = ""
+    if refusal:
+        # A search without bounds may run to a blend that does not leave its base: which does depends on rounding.
+        assert "degenerate where it meets the base" in refusal
+        return
     assert rough.method == "bfgs"
     assert rough.iterations > 0
     # Over a box that has its answer inside, however small: the default one begins at 1/8 of natural.
