@@ -2,6 +2,7 @@
 
 import re
 
+import casadi as ca
 import numpy as np
 import pytest
 
@@ -16,7 +17,7 @@ from semispline import (
     SemiStructuredSurface,
     blend,
 )
-from semispline.solver.blending import reduced
+from semispline.solver.blending import nlp, reduced
 from semispline.solver.blending.closing import seam_order, with_least_size
 from semispline.solver.blending.pipeline import _warnings, state_problem
 from semispline.solver.judge import measure_creases, measure_regularity
@@ -218,6 +219,91 @@ def test_corrections_of_the_free_rows(correction, answer):
     assert (system.factor.calls == 2) is (answer == "trusted at once")
 
 
+class Converging(Factor):
+    """One whose corrections fall by a factor each time."""
+
+    def solve(self, right):
+        self.calls += 1
+        return self.solved * (1.0 if self.calls == 1 else self.part ** (self.calls - 2))
+
+
+@pytest.mark.parametrize(("factor", "is_trusted"), [(0.3, True), (0.38, True), (0.42, False), (0.49, False)])
+def test_twenty_corrections_are_enough_or_all(factor, is_trusted):
+    # 0.398^20 is 1e-8.
+    problem = state_problem(*facing_pair(np.random.default_rng(0))).problem
+    problem.free_system.factor = Converging(factor, np.ones((problem.free_system.size, 3)))
+    if is_trusted:
+        problem.control_points(*problem.start)
+    else:
+        with pytest.raises(ComputationError, match="too ill-conditioned to be trusted"):
+            problem.control_points(*problem.start)
+
+
+@pytest.mark.parametrize(("largest", "is_fine"), [(0.9e200, True), (-0.9e200, True), (1.1e200, False), (np.nan, False)])
+def test_energies_beyond_fourth_powers_are_refused(monkeypatch, largest, is_fine):
+    problem = state_problem(*facing_pair(np.random.default_rng(0))).problem
+    table = np.ones((5, 5))
+    table[4, 0] = largest
+    monkeypatch.setattr(reduced.shape_numpy, "shape_polynomial_22", lambda *products: table)
+    if is_fine:
+        np.testing.assert_array_equal(reduced.shape_polynomial(problem, (0.0, 0.0)), table)
+    else:
+        with pytest.raises(ComputationError, match=r"expected at most 1e\+200"):
+            reduced.shape_polynomial(problem, (0.0, 0.0))
+
+
+@pytest.mark.parametrize(
+    ("name", "off", "is_solved"),
+    [
+        ("lam_x", 0.9e-8, True),
+        ("lam_x", 1.1e-8, False),
+        ("lam_x", 1e-6, False),
+        ("g", 0.9e-9, True),
+        ("g", 1.1e-9, False),
+        ("g", 1e-6, False),
+    ],
+)
+def test_what_ipopt_may_leave(monkeypatch, name, off, is_solved):
+    # The gradient of the Lagrangian, and how far constraints are missed, each spoilt by a known amount.
+    right = nlp._optimum
+
+    def spoilt(*args, **start):
+        result, stats = right(*args, **start)
+        values = np.asarray(result[name]).copy()
+        values[0] += off
+        return {**result, name: ca.DM(values)}, stats
+
+    monkeypatch.setattr(nlp, "_optimum", spoilt)
+    problem = state_problem(*facing_pair(np.random.default_rng(0))).problem
+    if is_solved:
+        nlp.solve_constrained(problem)
+    else:
+        with pytest.raises(ComputationError, match="IPOPT ended with"):
+            nlp.solve_constrained(problem)
+
+
+@pytest.mark.parametrize(("reached", "solves"), [(0.05, 2), (0.09, 2), (0.11, 1), (0.5, 1)])
+def test_the_search_goes_on_where_the_energy_falls_to_a_tenth(monkeypatch, reached, solves):
+    right, starts = nlp._optimum, []
+
+    def told(*args, **start):
+        result, stats = right(*args, **start)
+        starts.append(start)
+        return (result if "lam_g0" in start else {**result, "f": ca.DM(reached)}), stats
+
+    monkeypatch.setattr(nlp, "_optimum", told)
+    nlp.solve_constrained(state_problem(*facing_pair(np.random.default_rng(0))).problem)
+    assert len(starts) == solves
+
+
+def test_the_objective_is_never_scaled_by_less_than_its_rounding():
+    # One plane: no energy, only terms that cancel.
+    problem = state_problem(Base(flat((0, 1)), "u1"), Base(flat((2, 3)), "u0")).problem
+    points, matrix = problem.control_points(*problem.start), problem.form.matrix().toarray()
+    terms = np.einsum("ix,ij,jx->", np.abs(points), np.abs(matrix), np.abs(points))
+    assert nlp.constrained_problem(problem).f_scale == pytest.approx(1e-5 * terms, rel=1e-12)
+
+
 # A tolerance of 1e-10, of which the search itself may leave a quarter.
 @pytest.mark.parametrize(
     ("error", "proved"),
@@ -275,7 +361,15 @@ def test_options_just_outside_of_their_range(options, message):
 
 
 @pytest.mark.parametrize(
-    "options", [{"alpha": 1.1e-15}, {"alpha": 0.9e15}, {"box": (1.1e-20, 1)}, {"box": (1, 0.9e20)}, {"degree_u": 2}]
+    "options",
+    [
+        {"alpha": 1.1e-15},
+        {"alpha": 0.9e15},
+        {"box": (1.1e-20, 1)},
+        {"box": (1, 0.9e20)},
+        {"degree_u": 2},
+        {"middle_curves": 1000},
+    ],
 )
 def test_options_just_inside_of_their_range(options):
     state_problem(Base(flat((0, 1)), "u1"), Base(flat((2, 3), z=1.0), "u0"), **options)
