@@ -17,8 +17,8 @@ VANISHES = 1e-3
 # To this part it vanishes altogether: the golden sections find no less.
 _NOTHING = 1e-9
 # At a zero of a derivative between two samples its size there is below this part of the mean.
-_SUSPECT = 0.25
-_PER_SPAN = 16
+_SUSPECT = 0.5
+_PER_SPAN = 8
 _SECTIONS = 40
 _GOLDEN = (5**0.5 - 1) / 2
 _REASONS = (
@@ -44,13 +44,13 @@ def places_without_normal(base: Base, surface: Literal["a", "b"]) -> tuple[NoNor
     breaks = base.breakpoints_along()
     inside = (breaks[:-1, None] + np.diff(breaks)[:, None] * np.arange(_PER_SPAN) / _PER_SPAN).ravel()
     s = np.append(inside, breaks[-1])
-    means = np.ones(3)
-    values = _properness(base, s, means)
-    means[:2] = values[:2].mean(axis=1)
-    values = _properness(base, s, means)
+    values = _sizes(base, s)
+    # Where all of one kind vanishes there is no mean; a sine needs none.
+    means = np.array([*(mean if mean > 0 else 1.0 for mean in values[:2].mean(axis=1)), 1.0])
+    values /= means[:, None]
     found = []
     for kind, row in enumerate(values):
-        for at, value in _lows(base, s, means, kind, row):
+        for at, value in _lows(base, s, float(means[kind]), kind, row):
             x, y, z = base.derivative(np.array([at]), 0, 0)[0].tolist()
             found.append(NoNormal(surface, at, (x, y, z), _REASONS[kind], value))
     return tuple(sorted(found, key=lambda place: place.parameter))
@@ -72,18 +72,18 @@ def check_regular_edge(base: Base) -> None:
             )
 
 
-def _properness(base: Base, s: FloatArray, means: FloatArray) -> FloatArray:
-    """Return the derivatives across and along over their means, and the sine between them, shape (3, K)."""
+def _sizes(base: Base, s: FloatArray) -> FloatArray:
+    """Return the lengths of the derivatives across and along, and the sine between them, shape (3, K)."""
     at = base.referee.points(s, 1)
-    across, along = (np.linalg.norm(at[order], axis=1) for order in ((1, 0), (0, 1)))
-    area = np.linalg.norm(np.cross(at[1, 0], at[0, 1]), axis=1)
+    x, y = at[1, 0], at[0, 1]
+    across, along = (np.sqrt(np.einsum("ij,ij->i", d, d)) for d in (x, y))
+    area = np.linalg.norm(np.cross(x, y), axis=1)
     # Where one vanishes there is no angle: that is said already.
     sine = np.divide(area, across * along, out=np.ones_like(area), where=across * along > 0)
-    sizes = np.stack([across, along])
-    return np.concatenate([sizes / np.where(means[:2] > 0, means[:2], 1.0)[:, None], sine[None]])
+    return np.stack([across, along, sine])
 
 
-def _lows(base: Base, s: FloatArray, means: FloatArray, kind: int, row: FloatArray) -> list[tuple[float, float]]:
+def _lows(base: Base, s: FloatArray, mean: float, kind: int, row: FloatArray) -> list[tuple[float, float]]:
     """Return parameter and value of the lowest place of each stretch in which one kind of value vanishes."""
     padded = np.pad(row, 1, constant_values=np.inf)
     lows = np.flatnonzero((row <= padded[:-2]) & (row <= padded[2:]) & (row <= _SUSPECT))
@@ -93,7 +93,7 @@ def _lows(base: Base, s: FloatArray, means: FloatArray, kind: int, row: FloatArr
     best, least = s[lows], row[lows]
     for _ in range(_SECTIONS):
         inner = right - _GOLDEN * (right - left), left + _GOLDEN * (right - left)
-        below, above = (_properness(base, x, means)[kind] for x in inner)
+        below, above = (_sizes(base, x)[kind] / mean for x in inner)
         for x, value in zip(inner, (below, above), strict=True):
             better = value < least
             best, least = np.where(better, x, best), np.where(better, value, least)
