@@ -8,12 +8,12 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from dataclasses import asdict
-from math import isnan
+from math import isfinite, isnan
 from typing import TYPE_CHECKING, Annotated, Any, cast
 
 import typer
 
-from semispline.solver.errors import EdgeError, OptionError
+from semispline.solver.errors import ContactError, EdgeError, OptionError
 from semispline.solver.exit_status import ANSWER_IS_NO, reports_errors
 from semispline.solver.option_flags import takes_blend_options
 from semispline.solver.options import BlendOptions, Continuity, continuity_name
@@ -104,15 +104,17 @@ def check_command(
     with _progress("measuring"):
         contact = measure_contact(Base(first.surface, cast(Any, edge_a)), Base(second.surface, cast(Any, edge_b)))
     misses = _misses(contact, required)
+    doubts = _doubts(contact, required, misses)
     if json_file is not None:
         record = {"a": a, "edge_a": edge_a, "b": b, "edge_b": edge_b, "unit": first.unit, **contact_record(contact)}
         if require is not None:
-            record |= {"require": required, "meets": not misses, "misses": misses}
+            record |= {"require": required, "meets": not misses, "misses": misses, "doubts": doubts}
         _write_json(json_file, {"format": "semispline/1", "kind": "contact", **record})
     if json_file != "-":
         _print_contact(contact, first.unit)
         if require is not None:
-            typer.echo(f"{required}: " + ("no: " + "; ".join(misses) if misses else "yes"))
+            reasons = "; ".join([*misses, *doubts])
+            typer.echo(f"{required}: " + ("no: " if misses else "yes, but " if doubts else "yes") + reasons)
     if misses:
         raise typer.Exit(ANSWER_IS_NO)
 
@@ -188,10 +190,14 @@ def convert_command(
 
 def contact_record(contact: Contact) -> dict[str, Any]:
     """Return what a JSON file holds of a measured contact."""
-    record = asdict(contact)
-    del record["rounding"]
-    # JSON knows no NaN: what cannot be measured is null.
-    return {name: None if isinstance(value, float) and isnan(value) else value for name, value in record.items()}
+    return {name: _finite(value) for name, value in asdict(contact).items()}
+
+
+def _finite(value: Any) -> Any:
+    """Return a value or record for JSON, which knows neither NaN nor infinity: what cannot be told is null."""
+    if isinstance(value, dict):
+        return {name: _finite(part) for name, part in value.items()}
+    return None if isinstance(value, float) and not isfinite(value) else value
 
 
 def report_record(result: BlendResult) -> dict[str, Any]:
@@ -261,24 +267,52 @@ def _misses(contact: Contact, require: Continuity | None) -> list[str]:
 
     return [
         f"{name.replace('_', ' ')} is {value:.3g}, at most {limit:.3g} allowed"
+        if not isnan(value)
+        else f"{name.replace('_', ' ')} does not exist where there is no normal"
         for name, value, limit in required_limits(contact, require)
         if not value <= limit
     ]
 
 
+def _doubts(contact: Contact, require: Continuity | None, misses: list[str]) -> list[str]:
+    """Return what qualifies the answer: places without a normal, and measures of which rounding hides a part.
+
+    Raises
+    ------
+    ContactError
+        Rounding hides so much that there is no answer.
+    """
+    from semispline.solver.judge import doubtful, untold
+
+    if require is None:
+        return []
+    hidden = untold(contact, cast(Any, require))
+    if hidden and not misses:
+        raise ContactError(
+            f"{require} cannot be told: {'; '.join(hidden)}; move both surfaces nearer to the origin, in the program "
+            "that made them, or choose knots that are further apart"
+        )
+    places = contact.no_normal if require in ("G1", "G2") else ()
+    return [f"{place.surface.upper()} has {place}" for place in places] + doubtful(contact, cast(Any, require))
+
+
 def _print_contact(contact: Contact, unit: str | None) -> None:
     length = unit or "model units"
     bend = f"1/{unit}" if unit else "1/(model units)"
-    rows = [("measure", "worst", "unit", "at parameter", "at point")]
-    for name, value, in_unit, place in (
-        ("gap", contact.gap, length, contact.gap_at),
-        ("angle", contact.angle_degrees, "degrees", contact.angle_at),
-        ("curvature jump", contact.curvature_jump, bend, contact.curvature_at),
-        ("curvature jump, relative", contact.curvature_jump_relative, "1", contact.curvature_at),
+    rows = [("measure", "worst", "allowed", "unit", "at parameter", "at point")]
+    for name, measure, in_unit, place in (
+        ("gap", "gap", length, contact.gap_at),
+        ("angle", "angle_degrees", "degrees", contact.angle_at),
+        ("curvature jump", "curvature_jump", bend, contact.curvature_at),
+        ("curvature jump, relative", "curvature_jump_relative", "1", contact.curvature_at),
     ):
         point = ", ".join(f"{x:.5g}" for x in place.point)
-        rows.append((name, f"{value:.3g}", in_unit, f"{place.parameter:.5g}", f"({point})"))
+        value, limit = getattr(contact, measure), contact.allowed.get(measure)
+        allowed = "see below" if limit is None else f"{limit:.3g}"
+        rows.append((name, f"{value:.3g}", allowed, in_unit, f"{place.parameter:.5g}", f"({point})"))
     _print_table(rows)
+    for bare in contact.no_normal:
+        typer.echo(f"{bare.surface.upper()}: {bare}")
 
 
 def _print_result(result: BlendResult) -> None:
@@ -306,8 +340,13 @@ def _print_result(result: BlendResult) -> None:
     for name, contact in contacts:
         if contact is None:
             continue
-        figures = f"gap {contact.gap:.2g}, angle {contact.angle_degrees:.2g} degrees, "
-        rows.append((name, figures + f"relative curvature jump {contact.curvature_jump_relative:.2g}"))
+        allowed = contact.allowed
+        figures = (
+            f"gap {contact.gap:.2g} ({allowed['gap']:.2g})",
+            f"angle {contact.angle_degrees:.2g} ({allowed['angle_degrees']:.2g}) degrees",
+            f"relative curvature jump {contact.curvature_jump_relative:.2g} ({allowed['curvature_jump_relative']:.2g})",
+        )
+        rows.append((f"{name} (allowed)", ", ".join(figures)))
     _print_table(rows)
     for warning in result.warnings:
         typer.echo(f"warning: {warning}", err=True)

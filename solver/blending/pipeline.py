@@ -23,17 +23,21 @@ from semispline.solver.judge import (
     Regularity,
     check_regular_edge,
     correspond,
+    doubtful,
     is_closed,
+    local_origin,
     measure_contact,
     measure_creases,
     measure_regularity,
+    model_size,
     required_limits,
     snapped_seam,
     tied_directions,
+    untold,
 )
 from semispline.solver.options import BlendOptions, Continuity, Flip, Method, named_options
 from semispline.solver.proof import Certificate, check_certificate
-from semispline.solver.splines import BSplineCurve, SemiStructuredSurface
+from semispline.solver.splines import BSplineCurve, SemiStructuredSurface, bounding_box
 
 # A normal that turns this far between neighbouring samples has met a fold; well before it, it is too coarse to tell.
 FOLD_TURN = 90.0
@@ -46,6 +50,8 @@ _EQUAL_TURNS = 1e-3
 # systems take for tangent (0.01 and more), well above the rounding of a surface that is smooth there.
 SHARP = 1e-3
 _NAMED = 5
+# So many sizes from the origin rounding is that of the distance rather than that of the blend.
+_FAR = 1e3
 
 
 def blend(
@@ -114,6 +120,7 @@ def blend(
         + _bound_warnings(problem, found)
         + rounding_warning(rounding, surface, energy)
         + _seam_warning(a, b)
+        + _contact_warnings(surface, (contact_a, contact_b), chosen.continuities, found)
     )
     result = BlendResult(
         surface=surface,
@@ -178,10 +185,13 @@ def state_problem(a: Base, b: Base, options: BlendOptions | None = None, **named
     # The bases as the blend sees them: contact at w = 0, one parameter v, coordinates of size 1.
     sides = make_side(a, at_a, "base a"), make_side(b, at_b, "base b")
     matched = snapped_seam(a, b, correspond(a, b, chosen.flip))
-    sides = matched_sides(*sides, matched)
-    frame = _frame(*sides)
-    problem = make_problem(sides[0].moved(*frame), sides[1].moved(*frame), chosen)
-    return StatedProblem(problem, sides, frame, matched)
+    # Far from the origin each operation would round by the distance: there is but one rounding, of the result.
+    origin = local_origin(a.surface, b.surface)
+    local = matched_sides(sides[0].moved(origin, 1.0), sides[1].moved(origin, 1.0), matched)
+    sides = local[0].moved(-origin, 1.0), local[1].moved(-origin, 1.0)
+    centre, size = _frame(*sides)
+    problem = make_problem(local[0].moved(centre - origin, size), local[1].moved(centre - origin, size), chosen)
+    return StatedProblem(problem, sides, (centre, size), matched)
 
 
 def _tied(a: Base, b: Base, flip: Flip) -> tuple[Flip, ...]:
@@ -320,19 +330,50 @@ def _checked_contacts(
         ("a", a, contact_a, continuity[0], found.a),
         ("b", b, contact_b, continuity[1], found.b),
     ):
-        for measure, value, limit in required_limits(contact, wanted):
-            if np.isnan(value):
-                check_regular_edge(base)
-                raise ContactError(
-                    f"contact {name}: the blend is degenerate where it meets the base, its shape parameter is "
-                    f"{shape:.1e}; try a larger alpha, or a box that begins higher"
-                )
+        measured = required_limits(contact, wanted)
+        if any(np.isnan(value) for _, value, _ in measured):
+            check_regular_edge(base)
+            raise ContactError(
+                f"contact {name}: the blend is degenerate where it meets the base, its shape parameter is "
+                f"{shape:.1e}; try a larger alpha, or a box that begins higher"
+            )
+        hidden = untold(contact, wanted)
+        if hidden:
+            raise ContactError(f"contact {name}: {'; '.join(hidden)} for {wanted}; {_remedy(surface, shape)}")
+        for measure, value, limit in measured:
             if not value <= limit:
                 raise ContactError(
                     f"contact {name}: {measure} is {value:.3g}, expected at most {limit:.3g} for {wanted}; "
                     "try fewer middle curves, or bases whose knots are not so close"
                 )
     return contact_a, contact_b
+
+
+def _remedy(surface: SemiStructuredSurface, shape: float) -> str:
+    """Say what makes rounding too large to tell how a blend meets its base, and what to try."""
+    distance = float(np.abs(bounding_box(surface)).max()) / model_size(surface)
+    if distance > _FAR:
+        return f"the origin is {distance:.0e} times the size of the blend away: work in coordinates nearer to it"
+    return (
+        f"the blend is all but degenerate where it meets the base, its shape parameter is {shape:.1e}: try method "
+        "reduced with the default box, or bases whose knots are not so close"
+    )
+
+
+def _contact_warnings(
+    surface: SemiStructuredSurface,
+    contacts: tuple[Contact, Contact],
+    continuity: tuple[Continuity, Continuity],
+    found: _Found,
+) -> tuple[str, ...]:
+    """Return where contact is confirmed less than it seems: rounding hides a part, or a base has no normal there."""
+    warnings = []
+    for name, contact, wanted, shape in zip(("a", "b"), contacts, continuity, (found.a, found.b), strict=True):
+        warnings += [f"contact {name}: {text}; {_remedy(surface, shape)}" for text in doubtful(contact, wanted)]
+        if wanted in ("G1", "G2"):
+            bare = [place for place in contact.no_normal if place.surface == name]
+            warnings += [f"base {name}: {place}; {wanted} says nothing there" for place in bare[:_NAMED]]
+    return tuple(warnings)
 
 
 def _seam(surface: SemiStructuredSurface, problem: BlendProblem) -> Contact | None:
