@@ -149,7 +149,7 @@ def blend(
     }
     if len(tied := _tied(a, b, flip)) > 1:
         return _strictly(_less_turning(a, b, tied, stated_by | {"method": method}), strict)
-    stated = state_problem(a, b, flip=flip, **stated_by)
+    stated = state_problem(a, b, flip=tied[0], **stated_by)
     problem, sides, frame, matched = stated.problem, stated.sides, stated.frame, stated.matched
     pair = sides[0].continuity, sides[1].continuity
     # The one or two numbers that are not linear, then everything that is.
