@@ -286,14 +286,14 @@ def _doubts(contact: Contact, require: Continuity | None, misses: list[str]) -> 
 
     if require is None:
         return []
-    hidden = untold(contact, cast(Any, require))
+    hidden = untold(contact, require)
     if hidden and not misses:
         raise ContactError(
             f"{require} cannot be told: {'; '.join(hidden)}; move both surfaces nearer to the origin, in the program "
             "that made them, or choose knots that are further apart"
         )
     places = contact.no_normal if require in ("G1", "G2") else ()
-    return [f"{place.surface.upper()} has {place}" for place in places] + doubtful(contact, cast(Any, require))
+    return [f"{place.surface.upper()} has {place}" for place in places] + doubtful(contact, require)
 
 
 def _print_contact(contact: Contact, unit: str | None) -> None:

@@ -100,7 +100,7 @@ def blend(
     chosen = named_options(options, named)
     if len(tied := _tied(a, b, chosen.flip)) > 1:
         return _strictly(_less_turning(a, b, tied, replace(chosen, strict=False)), chosen.strict)
-    stated = state_problem(a, b, chosen)
+    stated = state_problem(a, b, replace(chosen, flip=tied[0]))
     problem, sides, frame, matched = stated.problem, stated.sides, stated.frame, stated.matched
     # The one or two numbers that are not linear, then everything that is.
     found = _shape_parameters(problem, chosen.method)
