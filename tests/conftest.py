@@ -25,12 +25,10 @@ def shared():
     return folder
 
 
-@pytest.hookimpl(tryfirst=True)
-def pytest_collection_modifyitems(items):
+def pytest_itemcollected(item):
     """Mark the tests that ask for the folder, so that `-m shared` finds them."""
-    for item in items:
-        if "shared" in getattr(item, "fixturenames", ()):
-            item.add_marker(pytest.mark.shared)
+    if "shared" in getattr(item, "fixturenames", ()):
+        item.add_marker(pytest.mark.shared)
 
 
 def pytest_terminal_summary(terminalreporter):

@@ -20,7 +20,8 @@ def read(path):
 def code():
     halls = ("derivations", "papers", "semispline", "solver", "tests")
     files = [path for hall in halls for path in (ROOT / hall).rglob("*")]
-    return "\n".join(path.read_text("utf-8") for path in files if path.suffix in (".py", ".pyi"))
+    files = [path for path in files if path.suffix in (".py", ".pyi")]
+    return "\n".join(path.read_text("utf-8") for path in (*files, ROOT / "Makefile"))
 
 
 def quoted(line):
