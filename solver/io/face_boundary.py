@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial.distance import cdist
+from scipy.spatial import cKDTree
 
 from semispline.solver.arrays import FloatArray
 from semispline.solver.splines import Surface
@@ -22,10 +22,10 @@ _HALVINGS = 10
 # Derivatives at a corner are taken a little inside of the piece.
 _INSIDE = 1e-9
 _OPPOSITE = {"u0": "u1", "u1": "u0", "v0": "v1", "v1": "v0"}
-# Points on a natural edge; foot points of the corners of the boundary are found between more of them.
+# Points on a natural edge; corners of the boundary are found from the nearest of more of them.
 _POINTS, _CHORDS = 65, 512
 _NODES = np.linspace(0, 1, 5)
-# Distances held at a time.
+# Numbers held at a time.
 _BLOCK = 4_000_000
 
 
@@ -130,22 +130,53 @@ def edge_offset(surface: Surface, edge: str, boundary: FaceBoundary) -> EdgeOffs
     """
     # On the other side of a seam the same curve in space is another edge of the surface.
     counted = boundary.side != _OPPOSITE[edge]
-    pieces, tolerance = boundary.pieces[counted], boundary.tolerance[counted]
+    boundary = FaceBoundary(boundary.pieces[counted], boundary.tolerance[counted], boundary.side[counted])
     low, high = surface.domain[1 if edge[0] == "u" else 0]
-    corners = _feet(surface, edge, _on_pieces(pieces, np.array([0.0, 1.0])).reshape(-1, 3))
     # The middles between corners besides: no gap between two of them is passed by, however short it is.
-    between = np.unique(np.concatenate([[low], corners, [high]]))
+    between = np.unique(np.concatenate([[low], _corners_on(surface, edge, boundary), [high]]))
     at = np.unique(np.concatenate([np.linspace(low, high, _POINTS), (between[1:] + between[:-1]) / 2]))
-    distance, is_own = _distance(natural_edge(surface, edge, at), pieces, tolerance)
+    distance, is_own = distances(_along(surface, edge, at), boundary)
     # The ends touch the boundary where a neighbouring edge is the face's own.
     return EdgeOffset(float(distance[~is_own].max(initial=0.0)), bool(is_own[1:-1].any()))
 
 
-def natural_edge(surface: Surface, edge: str, at: FloatArray) -> FloatArray:
-    """Return points on an edge of the surface at parameters along it, shape (K, 3)."""
+def natural_boundary(surface: Surface) -> FaceBoundary:
+    """Return the four natural edges of a surface."""
+    parts = []
+    for edge in _OPPOSITE:
+
+        def curve(at: FloatArray, edge: str = edge) -> tuple[FloatArray, FloatArray]:
+            return _along(surface, edge, at), _along(surface, edge, at, 1)
+
+        parts.append((*cubic_pieces(curve, surface.breakpoints[1 if edge[0] == "u" else 0], 0.0), edge))
+    return joined(parts)
+
+
+def distances(points: FloatArray, boundary: FaceBoundary) -> tuple[FloatArray, NDArray[np.bool_]]:
+    """Return the distance of each point to the boundary, and whether that is within a tolerance; shapes (K,)."""
+    nodes = _on_pieces(boundary.pieces, _NODES)
+    start, step = nodes[:, :-1].reshape(-1, 3), np.diff(nodes, axis=1).reshape(-1, 3)
+    each = len(_NODES) - 1
+    found, inside = [], []
+    for block in np.array_split(points, 1 + 3 * len(points) * len(start) // _BLOCK):
+        to_chords, t = _to_chords(block, start, step)
+        # A few of the nearest chords: of two that are nearly as near, either may belong to the nearer piece.
+        near = np.argpartition(to_chords - np.repeat(boundary.tolerance, each), 3, axis=1)[:, :4]
+        piece = near // each
+        first_guess = (near % each + np.take_along_axis(t, near, axis=1)) / each
+        distance = _polished(block, boundary.pieces[piece], first_guess)
+        found.append(distance.min(axis=1))
+        inside.append((distance <= boundary.tolerance[piece]).any(axis=1))
+    return np.concatenate(found), np.concatenate(inside)
+
+
+def _along(surface: Surface, edge: str, at: FloatArray, derivative: int = 0) -> FloatArray:
+    """Return points of an edge, or derivatives along it, at its parameters; shape (K, 3)."""
     ends = surface.domain[0 if edge[0] == "u" else 1]
     across = np.full_like(at, ends[int(edge[1])])
-    return surface.evaluate(across, at) if edge[0] == "u" else surface.evaluate(at, across)
+    if edge[0] == "u":
+        return surface.evaluate(across, at, 0, derivative)
+    return surface.evaluate(at, across, derivative, 0)
 
 
 def points_on(boundary: FaceBoundary) -> FloatArray:
@@ -153,52 +184,33 @@ def points_on(boundary: FaceBoundary) -> FloatArray:
     return _on_pieces(boundary.pieces, _NODES).reshape(-1, 3)
 
 
-def distance_to_polygon(points: FloatArray, polygon: FloatArray) -> FloatArray:
-    """Return the distance of each point to a polygon of vertices, shapes (K, 3) and (S + 1, 3)."""
-    return np.asarray(_to_polygon(points, polygon)[0].min(axis=1))
-
-
-def _to_polygon(points: FloatArray, polygon: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return, of points and chords, the distance and the place on the chord from 0 to 1; both of shape (K, S)."""
-    start, step = polygon[:-1], np.diff(polygon, axis=0)
+def _to_chords(points: FloatArray, start: FloatArray, step: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return, of K points and S chords, the distance and the place on the chord from 0 to 1; both of shape (K, S)."""
     length = np.maximum(np.sum(step**2, axis=1), np.finfo(np.float64).tiny)
-    t = np.clip(np.einsum("ksd,sd->ks", points[:, None] - start, step) / length, 0, 1)
-    return np.asarray(np.linalg.norm(points[:, None] - start - t[..., None] * step, axis=2)), t
+    offset = points[:, None] - start
+    t = np.clip(np.einsum("ksd,sd->ks", offset, step) / length, 0, 1)
+    return np.asarray(np.linalg.norm(offset - t[..., None] * step, axis=2)), t
 
 
-def _feet(surface: Surface, edge: str, points: FloatArray) -> FloatArray:
-    """Return parameters of the edge nearest to points, to well within a chord."""
+def _corners_on(surface: Surface, edge: str, boundary: FaceBoundary) -> FloatArray:
+    """Return parameters of the natural edge at which pieces of the boundary end on it."""
+    ends = _on_pieces(boundary.pieces, np.array([0.0, 1.0])).reshape(-1, 3)
     low, high = surface.domain[1 if edge[0] == "u" else 0]
     at = np.linspace(low, high, _CHORDS + 1)
-    polygon = natural_edge(surface, edge, at)
-    feet = []
-    for block in np.array_split(points, 1 + 3 * len(points) * _CHORDS // _BLOCK):
-        distance, t = _to_polygon(block, polygon)
-        chord = distance.argmin(axis=1)
-        feet.append(at[chord] + t[np.arange(len(block)), chord] * (high - low) / _CHORDS)
-    return np.asarray(np.clip(np.concatenate(feet), low, high))
+    points, tangents = _along(surface, edge, at), _along(surface, edge, at, 1)
+    nearest = cKDTree(points).query(ends)[1]
+    speed = np.maximum(np.sum(tangents**2, axis=1), np.finfo(np.float64).tiny)
+    feet = at[nearest] + np.sum((ends - points[nearest]) * tangents[nearest], axis=1) / speed[nearest]
+    feet = np.clip(feet, low, high)
+    # A corner found a little off only moves a place where the distance is measured.
+    allowed = np.repeat(boundary.tolerance, 2) + float(np.ptp(points, axis=0).max()) / _CHORDS
+    return np.asarray(feet[np.linalg.norm(ends - _along(surface, edge, feet), axis=1) <= allowed])
 
 
 def _on_pieces(pieces: FloatArray, t: FloatArray) -> FloatArray:
     """Return points on cubic pieces, shape (..., len(t), 3)."""
     basis = np.stack([(1 - t) ** 3, 3 * t * (1 - t) ** 2, 3 * t**2 * (1 - t), t**3], axis=-1)
     return np.asarray(np.einsum("ta,...ad->...td", basis, pieces))
-
-
-def _distance(points: FloatArray, pieces: FloatArray, tolerance: FloatArray) -> tuple[FloatArray, NDArray[np.bool_]]:
-    """Return the distance of each point to the pieces, and whether it is within the tolerance of one."""
-    nodes = _on_pieces(pieces, _NODES).reshape(-1, 3)
-    # The tolerance of a piece, once for each of its nodes.
-    allowed = np.repeat(tolerance, len(_NODES))
-    distances, inside = [], []
-    for block in np.array_split(points, 1 + len(points) * len(nodes) // _BLOCK):
-        # Two pieces share a node: the four nearest, so that the right one is among them.
-        near = np.argpartition(cdist(block, nodes) - allowed, 3, axis=1)[:, :4]
-        piece = near // len(_NODES)
-        found = _polished(block, pieces[piece], _NODES[near % len(_NODES)])
-        distances.append(found.min(axis=1))
-        inside.append((found <= tolerance[piece]).any(axis=1))
-    return np.concatenate(distances), np.concatenate(inside)
 
 
 def _polished(points: FloatArray, pieces: FloatArray, t: FloatArray) -> FloatArray:

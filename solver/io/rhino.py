@@ -20,9 +20,9 @@ from semispline.solver.io.disk import require_file
 from semispline.solver.io.face_boundary import (
     FaceBoundary,
     cubic_pieces,
-    distance_to_polygon,
+    distances,
     joined,
-    natural_edge,
+    natural_boundary,
     points_on,
 )
 from semispline.solver.io.faces import Model, surface_from_net, without_equal_weights
@@ -40,20 +40,20 @@ _UNITS = {
     "Centimeters": "cm",
     "Microinches": "uin",
 }
-# An edge of a face follows the edge of its surface if it stays within this fraction of the size: rhino3dm shows no
-# curves in parameter space, so points in space are compared with a polygon of _CHORDS chords. Nor does it show the
-# tolerances of edges: that of the file stands for them. Of a seam it cannot be told on which side of it the face lies.
-_ON_EDGE = 1e-4
-_CHORDS = 256
+# An edge of a face follows the edge of its surface if it stays within this fraction of the size. rhino3dm shows no
+# tolerances of edges, which other programs leave far above that of the file; nor curves in parameter space, so that
+# nothing tells on which side of a seam the face lies.
+_ON_EDGE = 3e-4
 
 
 @dataclass(frozen=True, eq=False)
 class RhinoFace:
-    """A surface of a 3dm file; `edges` are those that bound the face, None where it has no face."""
+    """A surface of a 3dm file, and the face of a Brep that lies on it; None where there is none."""
 
     source: Any
     where: str
-    edges: FaceBoundary | None = None
+    brep: Any = None
+    face: Any = None
 
     @property
     def kind(self) -> str:
@@ -64,23 +64,31 @@ class RhinoFace:
 
     def trimmed(self) -> bool | None:
         """Whether curves cut the face out of its surface."""
-        if self.edges is None:
+        if self.face is None:
             return False
         try:
-            surface = self.surface()
+            edges, natural = self._edges, natural_boundary(self.surface())
         except SemisplineError:
             return None
-        (u0, u1), (v0, v1) = surface.domain
-        size = float(np.ptp(surface.control_points.reshape(-1, 3), axis=0).max())
-        u, v = np.linspace(u0, u1, _CHORDS + 1), np.linspace(v0, v1, _CHORDS + 1)
-        sides = [natural_edge(surface, edge, v if edge[0] == "u" else u) for edge in ("u0", "u1", "v0", "v1")]
-        points = points_on(self.edges)
-        distance = np.min([distance_to_polygon(points, side) for side in sides], axis=0)
-        return bool(distance.max(initial=0.0) > _ON_EDGE * size)
+        return bool((distances(points_on(edges), natural)[0] > edges.tolerance.max(initial=0.0)).any())
 
     def boundary(self) -> FaceBoundary | None:
         """Return the edges of the face, as `Face` says."""
-        return None if self.trimmed() is False else self.edges
+        return self._edges if self.trimmed() else None
+
+    @cached_property
+    def _edges(self) -> FaceBoundary:
+        size = float(np.ptp(self.surface().control_points.reshape(-1, 3), axis=0).max())
+        # A trim along a singular side has no edge; a seam has two trims.
+        trims = [self.face.Loops[i].Trims for i in range(len(self.face.Loops))]
+        numbers = {loop[k].EdgeIndex for loop in trims for k in range(len(loop))} - {-1}
+        parts = []
+        for number in sorted(numbers):
+            curve = self.brep.Edges[number].ToNurbsCurve()
+            knots = np.array([curve.Knots[i] for i in range(len(curve.Knots))])
+            breaks = np.unique(np.clip(knots, curve.Domain.T0, curve.Domain.T1))
+            parts.append((*cubic_pieces(_evaluator(curve), breaks, _ON_EDGE * size), ""))
+        return joined(parts)
 
     def surface(self) -> BSplineSurface:
         """Return the exact, clamped (rational) B-spline surface, without trimming.
@@ -116,7 +124,7 @@ class RhinoFace:
 def open_3dm(path: str | Path, bounded: Collection[int] = ()) -> Model:
     """Open a 3dm file: objects in file order, inside a Brep its surfaces; other objects are left out.
 
-    The boundaries of all faces are read, whichever are `bounded`: without them it is not known which are trimmed.
+    Boundaries are read when they are asked for, whichever faces are `bounded`.
 
     Raises
     ------
@@ -128,15 +136,14 @@ def open_3dm(path: str | Path, bounded: Collection[int] = ()) -> Model:
     file = rhino3dm.File3dm.Read(str(path))
     if file is None:
         raise FileError(f"{path}: not a 3dm file that openNURBS can read")
-    tolerance = float(file.Settings.ModelAbsoluteTolerance)
-    found: list[tuple[Any, FaceBoundary | None]] = []
+    found: list[tuple[Any, Any, Any]] = []
     for item in file.Objects:
         geometry = item.Geometry
         if isinstance(geometry, rhino3dm.Brep):
-            found += _brep_surfaces(geometry, tolerance)
+            found += _brep_surfaces(geometry)
         elif isinstance(geometry, rhino3dm.Surface):
-            found.append((geometry, None))
-    faces = [RhinoFace(source, f"{path}#{number}", edges) for number, (source, edges) in enumerate(found)]
+            found.append((geometry, None, None))
+    faces = [RhinoFace(source, f"{path}#{number}", *face) for number, (source, *face) in enumerate(found)]
     return Model(str(path), _UNITS.get(file.Settings.ModelUnitSystem.name), faces)
 
 
@@ -185,23 +192,21 @@ def _with_ends(knots: Sequence[float]) -> FloatArray:
     return np.array([inner[0], *inner, inner[-1]])
 
 
-def _brep_surfaces(brep: Any, tolerance: float) -> list[tuple[Any, FaceBoundary | None]]:
-    """Return surfaces of a Brep with the edges of the face that lies on each.
+def _brep_surfaces(brep: Any) -> list[tuple[Any, Any, Any]]:
+    """Return surfaces of a Brep, itself, and the face that lies on each.
 
     rhino3dm does not say which face lies on which surface: they are matched by domain and by a few points.
     """
     faces = [brep.Faces[i] for i in range(len(brep.Faces))]
     waiting = {i: _fingerprint(face.UnderlyingSurface()) for i, face in enumerate(faces)}
-    found: list[tuple[Any, FaceBoundary | None]] = []
+    found: list[tuple[Any, Any, Any]] = []
     for k in range(len(brep.Surfaces)):
         surface = brep.Surfaces[k]
         wanted = _fingerprint(surface)
         match = next((i for i, other in waiting.items() if other == wanted), None)
-        edges = None
         if match is not None:
             del waiting[match]
-            edges = _edges(brep, faces[match], tolerance)
-        found.append((surface, edges))
+        found.append((surface, brep, None if match is None else faces[match]))
     return found
 
 
@@ -209,19 +214,6 @@ def _fingerprint(surface: Any) -> tuple[float, ...]:
     u, v = surface.Domain(0), surface.Domain(1)
     points = [surface.PointAt(u.T0 + s * (u.T1 - u.T0), v.T0 + t * (v.T1 - v.T0)) for s, t in ((0.2, 0.3), (0.7, 0.6))]
     return (u.T0, u.T1, v.T0, v.T1, *(c for p in points for c in (p.X, p.Y, p.Z)))
-
-
-def _edges(brep: Any, face: Any, tolerance: float) -> FaceBoundary:
-    # A trim along a singular side has no edge; a seam has two trims.
-    trims = [face.Loops[i].Trims for i in range(len(face.Loops))]
-    numbers = {loop[k].EdgeIndex for loop in trims for k in range(len(loop))} - {-1}
-    parts = []
-    for number in sorted(numbers):
-        curve = brep.Edges[number].ToNurbsCurve()
-        knots = np.array([curve.Knots[i] for i in range(len(curve.Knots))])
-        breaks = np.unique(np.clip(knots, curve.Domain.T0, curve.Domain.T1))
-        parts.append((*cubic_pieces(_evaluator(curve), breaks, tolerance), ""))
-    return joined(parts)
 
 
 def _evaluator(curve: Any) -> Callable[[FloatArray], tuple[FloatArray, FloatArray]]:
