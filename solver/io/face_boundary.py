@@ -24,6 +24,8 @@ _INSIDE = 1e-9
 _OPPOSITE = {"u0": "u1", "u1": "u0", "v0": "v1", "v1": "v0"}
 # Points on a natural edge; corners of the boundary are found from the nearest of more of them.
 _POINTS, _CHORDS = 65, 512
+# Closer looks at the largest distance, each between the neighbours of the place where the last one found it.
+_CLOSER = 2
 _NODES = np.linspace(0, 1, 5)
 # Numbers held at a time.
 _BLOCK = 4_000_000
@@ -130,6 +132,7 @@ def edge_offset(surface: Surface, edge: str, boundary: FaceBoundary) -> EdgeOffs
     """
     # On the other side of a seam the same curve in space is another edge of the surface.
     counted = boundary.side != _OPPOSITE[edge]
+    counted |= not counted.any()
     boundary = FaceBoundary(boundary.pieces[counted], boundary.tolerance[counted], boundary.side[counted])
     low, high = surface.domain[1 if edge[0] == "u" else 0]
     # The middles between corners besides: no gap between two of them is passed by, however short it is.
@@ -137,7 +140,15 @@ def edge_offset(surface: Surface, edge: str, boundary: FaceBoundary) -> EdgeOffs
     at = np.unique(np.concatenate([np.linspace(low, high, _POINTS), (between[1:] + between[:-1]) / 2]))
     distance, is_own = distances(_along(surface, edge, at), boundary)
     # The ends touch the boundary where a neighbouring edge is the face's own.
-    return EdgeOffset(float(distance[~is_own].max(initial=0.0)), bool(is_own[1:-1].any()))
+    in_part = bool(is_own[1:-1].any())
+    off = np.where(is_own, 0.0, distance)
+    for _ in range(_CLOSER if off.any() else 0):
+        k = int(off.argmax())
+        # The place itself is looked at again: what was found is never lost.
+        at = np.unique(np.append(np.linspace(at[max(k - 1, 0)], at[min(k + 1, len(at) - 1)], _POINTS), at[k]))
+        distance, is_own = distances(_along(surface, edge, at), boundary)
+        off = np.where(is_own, 0.0, distance)
+    return EdgeOffset(float(off.max()), in_part)
 
 
 def natural_boundary(surface: Surface) -> FaceBoundary:
