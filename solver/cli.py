@@ -7,20 +7,20 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from math import isfinite, isnan
 from typing import TYPE_CHECKING, Annotated, Any, cast
 
 import typer
 
-from semispline.solver.errors import ContactError, EdgeError, OptionError
+from semispline.solver.errors import ContactError, EdgeError, OptionError, TrimError
 from semispline.solver.exit_status import ANSWER_IS_NO, reports_errors
 from semispline.solver.option_flags import takes_blend_options
 from semispline.solver.options import BlendOptions, Continuity, continuity_name
 
 if TYPE_CHECKING:
     from semispline.solver.blending import BlendResult
-    from semispline.solver.io import SurfaceEntry
+    from semispline.solver.io import LoadedSurface, SurfaceEntry
     from semispline.solver.judge import Contact
 
 app = typer.Typer(no_args_is_help=True, add_completion=False, pretty_exceptions_enable=False)
@@ -64,11 +64,15 @@ def blend_command(
         raise OptionError(f"--report: found {report!r}, the file of the surface; give another name")
     with _progress("reading"):
         first, second = read_surfaces([a, b])
+    trims = _trim_warnings((a, edge_a, first), (b, edge_b, second))
+    if options.strict and trims:
+        raise TrimError(f"{'; '.join(trims)}; name another edge, give the untrimmed surface, or leave out --strict")
     with _progress("blending"):
         from semispline.solver.blending import blend
         from semispline.solver.judge import Base
 
         result = blend(Base(first.surface, cast(Any, edge_a)), Base(second.surface, cast(Any, edge_b)), options)
+    result = replace(result, warnings=(*trims, *result.warnings))
     with ExitStack() as stack:
         # The report first, into its temporary file: neither file is touched unless both can be written.
         if report is not None:
@@ -105,8 +109,10 @@ def check_command(
         contact = measure_contact(Base(first.surface, cast(Any, edge_a)), Base(second.surface, cast(Any, edge_b)))
     misses = _misses(contact, required)
     doubts = _doubts(contact, required, misses)
+    warnings = _trim_warnings((a, edge_a, first), (b, edge_b, second))
     if json_file is not None:
         record = {"a": a, "edge_a": edge_a, "b": b, "edge_b": edge_b, "unit": first.unit, **contact_record(contact)}
+        record["warnings"] = list(warnings)
         if require is not None:
             record |= {"require": required, "meets": not misses, "misses": misses, "doubts": doubts}
         _write_json(json_file, {"format": "semispline/1", "kind": "contact", **record})
@@ -115,6 +121,7 @@ def check_command(
         if require is not None:
             reasons = "; ".join([*misses, *doubts])
             typer.echo(f"{required}: " + ("no: " if misses else "yes, but " if doubts else "yes") + reasons)
+    _print_warnings(warnings)
     if misses:
         raise typer.Exit(ANSWER_IS_NO)
 
@@ -259,6 +266,14 @@ def _write_json(path: str, record: dict[str, Any]) -> None:
         write_text(path, to_text(record))
 
 
+def _trim_warnings(*edges: tuple[str, str, LoadedSurface]) -> tuple[str, ...]:
+    """Return a warning for each edge that is not an edge of the face that the file holds."""
+    from semispline.solver.io import trimmed_edge_warning
+
+    found = (trimmed_edge_warning(*edge) for edge in edges)
+    return tuple(warning for warning in found if warning)
+
+
 def _misses(contact: Contact, require: Continuity | None) -> list[str]:
     """Return, of each measure that falls short, its name, value and limit."""
     if require is None:
@@ -348,7 +363,11 @@ def _print_result(result: BlendResult) -> None:
         )
         rows.append((f"{name} (allowed)", ", ".join(figures)))
     _print_table(rows)
-    for warning in result.warnings:
+    _print_warnings(result.warnings)
+
+
+def _print_warnings(warnings: Sequence[str]) -> None:
+    for warning in warnings:
         typer.echo(f"warning: {warning}", err=True)
 
 

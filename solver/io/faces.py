@@ -10,6 +10,7 @@ import numpy as np
 
 from semispline.solver.arrays import FloatArray
 from semispline.solver.errors import FileError, InputError
+from semispline.solver.io.face_boundary import FaceBoundary
 from semispline.solver.splines import MERGE_TOLERANCE, BSplineSurface, SemiStructuredSurface, Surface, clamped_surface
 
 # Weights that agree to this relative tolerance (rounding of a product and a quotient) are one weight.
@@ -41,6 +42,12 @@ class Face(Protocol):
 
     def trimmed(self) -> bool | None:
         """Whether curves cut the face out of its surface; None if the format does not tell."""
+
+    def boundary(self) -> FaceBoundary | None:
+        """Return the edges that bound the face; None where it is the whole surface that `surface` returns.
+
+        A reader in a process of its own knows them of those faces only whose numbers `open_model` was given.
+        """
 
     def surface(self) -> Surface:
         """Return the exact, clamped (rational) B-spline surface, without trimming."""

@@ -19,7 +19,9 @@ import numpy as np
 from semispline.solver.arrays import FloatArray
 from semispline.solver.errors import FileError, SemisplineError
 from semispline.solver.io.disk import require_file
+from semispline.solver.io.face_boundary import FaceBoundary, joined
 from semispline.solver.io.faces import MILLIMETRES, Model, surface_from_net, without_equal_weights
+from semispline.solver.io.occ_boundary import ON_EDGE, distance_to_ends, edges_of, occ_boundary, pcurve_points
 from semispline.solver.io.occ_kernel import first_line, require_kernel, system_unit
 from semispline.solver.io.silence import silenced
 from semispline.solver.splines import BSplineSurface
@@ -47,8 +49,6 @@ _KINDS = {
     "Geom_SurfaceOfLinearExtrusion": "extrusion",
     "Geom_OffsetSurface": "offset",
 }
-# A trimming curve follows the edge of its surface if it stays within this fraction of the parameter range.
-_ON_EDGE = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,26 +77,24 @@ class OccFace:
 
     def _is_trimmed(self) -> bool:
         from OCP.BRep import BRep_Tool
-        from OCP.BRepAdaptor import BRepAdaptor_Curve2d
-        from OCP.TopAbs import TopAbs_ShapeEnum
-        from OCP.TopExp import TopExp_Explorer
-        from OCP.TopoDS import TopoDS
 
         if BRep_Tool.NaturalRestriction_s(self.face):
             return False
-        low_u, high_u, low_v, high_v = self._range()
-        edges = TopExp_Explorer(self.face, TopAbs_ShapeEnum.TopAbs_EDGE)
-        while edges.More():
-            curve = BRepAdaptor_Curve2d(TopoDS.Edge(edges.Current()), self.face)
-            t = np.linspace(curve.FirstParameter(), curve.LastParameter(), 7)
-            points = [curve.Value(float(x)) for x in t]
-            u, v = np.array([p.X() for p in points]), np.array([p.Y() for p in points])
-            off_u = np.minimum(abs(u - low_u), abs(u - high_u)) / (high_u - low_u)
-            off_v = np.minimum(abs(v - low_v), abs(v - high_v)) / (high_v - low_v)
-            if np.minimum(off_u, off_v).max() > _ON_EDGE:
-                return True
-            edges.Next()
-        return False
+        ends = self._range()
+        return any(
+            distance_to_ends(pcurve_points(edge, self.face), ends).min(axis=1).max() > ON_EDGE
+            for edge in edges_of(self.face)
+        )
+
+    def boundary(self) -> FaceBoundary | None:
+        """Return the edges of the face, as `Face` says."""
+        if self.trimmed() is False:
+            return None
+        try:
+            return occ_boundary(self.face, self._range())
+        except Exception:
+            # Each failure of the kernel has a class of its own.
+            return joined([])
 
     def surface(self) -> BSplineSurface:
         """Return the exact, clamped (rational) B-spline surface, without trimming.

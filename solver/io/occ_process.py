@@ -11,12 +11,14 @@ import pickle
 import subprocess
 import sys
 import tempfile
+from collections.abc import Collection
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from semispline.solver.errors import FileError, InputError
 from semispline.solver.io.disk import require_file
+from semispline.solver.io.face_boundary import FaceBoundary
 from semispline.solver.io.faces import Model
 from semispline.solver.io.occ_kernel import require_kernel
 from semispline.solver.splines import BSplineSurface
@@ -31,10 +33,14 @@ class _ReadFace:
 
     kind: str
     is_trimmed: bool | None
+    edges: FaceBoundary | None
     content: tuple[Any, ...] | InputError
 
     def trimmed(self) -> bool | None:
         return self.is_trimmed
+
+    def boundary(self) -> FaceBoundary | None:
+        return self.edges
 
     def surface(self) -> BSplineSurface:
         if isinstance(self.content, InputError):
@@ -42,8 +48,8 @@ class _ReadFace:
         return BSplineSurface(*self.content)
 
 
-def open_occ(path: str | Path) -> Model:
-    """Open a STEP, IGES or BREP file.
+def open_occ(path: str | Path, bounded: Collection[int] = ()) -> Model:
+    """Open a STEP, IGES or BREP file; `bounded` are the numbers of the faces whose boundaries are wanted.
 
     Raises
     ------
@@ -57,6 +63,7 @@ def open_occ(path: str | Path) -> Model:
         # The other process finds its modules where this one does, and not in the folder that it is started in (-P).
         environment = os.environ | {"PYTHONPATH": os.pathsep.join(entry for entry in sys.path if entry)}
         command = [sys.executable, "-P", "-m", "semispline.solver.io.occ_process", str(path), str(result)]
+        command += map(str, bounded)
         seconds = _SECONDS + os.path.getsize(path) / _BYTES_PER_SECOND
         try:
             ended = subprocess.run(command, env=environment, capture_output=True, check=False, timeout=seconds)
@@ -75,14 +82,17 @@ def open_occ(path: str | Path) -> Model:
     return Model(str(path), unit, [_ReadFace(*face) for face in faces])
 
 
-def main(path: str, result: str) -> None:
+def main(path: str, result: str, *bounded: str) -> None:
     """Read the file at `path` and leave unit and faces, or the error, in the file `result`."""
     from semispline.solver.io.occ import read_occ
 
     found: Any
     try:
         model = read_occ(path)
-        found = (model.unit, [(face.kind, face.trimmed(), _content(face)) for face in model.faces])
+        # A boundary takes as long as many surfaces: only of the faces for which it is wanted.
+        edges = {int(n): model.faces[int(n)].boundary() for n in bounded if int(n) < len(model.faces)}
+        faces = [(face.kind, face.trimmed(), edges.get(n), _content(face)) for n, face in enumerate(model.faces)]
+        found = (model.unit, faces)
     except InputError as error:
         found = error
     Path(result).write_bytes(pickle.dumps(found))

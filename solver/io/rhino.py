@@ -6,7 +6,7 @@ unclamped surfaces are common. Coordinates stay in the unit of the file.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -17,6 +17,14 @@ import numpy as np
 from semispline.solver.arrays import FloatArray
 from semispline.solver.errors import FileError, SemisplineError
 from semispline.solver.io.disk import require_file
+from semispline.solver.io.face_boundary import (
+    FaceBoundary,
+    cubic_pieces,
+    distances,
+    joined,
+    natural_boundary,
+    points_on,
+)
 from semispline.solver.io.faces import Model, surface_from_net, without_equal_weights
 from semispline.solver.splines import BSplineSurface
 
@@ -32,19 +40,20 @@ _UNITS = {
     "Centimeters": "cm",
     "Microinches": "uin",
 }
-# An edge of a face follows the edge of its surface if it stays within this fraction of the size: rhino3dm shows no
-# curves in parameter space, so points in space are compared with a polygon of _CHORDS chords.
-_ON_EDGE = 1e-4
-_CHORDS = 256
+# An edge of a face follows the edge of its surface if it stays within this fraction of the size. rhino3dm shows no
+# tolerances of edges, which other programs leave far above that of the file; nor curves in parameter space, so that
+# nothing tells on which side of a seam the face lies.
+_ON_EDGE = 3e-4
 
 
 @dataclass(frozen=True, eq=False)
 class RhinoFace:
-    """A surface of a 3dm file; `loops` are points on the edges that bound the face, None where it has no face."""
+    """A surface of a 3dm file, and the face of a Brep that lies on it; None where there is none."""
 
     source: Any
     where: str
-    loops: FloatArray | None = None
+    brep: Any = None
+    face: Any = None
 
     @property
     def kind(self) -> str:
@@ -55,19 +64,31 @@ class RhinoFace:
 
     def trimmed(self) -> bool | None:
         """Whether curves cut the face out of its surface."""
-        if self.loops is None:
+        if self.face is None:
             return False
         try:
-            surface = self.surface()
+            edges, natural = self._edges, natural_boundary(self.surface())
         except SemisplineError:
             return None
-        (u0, u1), (v0, v1) = surface.domain
-        size = float(np.ptp(surface.control_points.reshape(-1, 3), axis=0).max())
-        u, v = np.linspace(u0, u1, _CHORDS + 1), np.linspace(v0, v1, _CHORDS + 1)
-        sides = [surface.evaluate(u, np.full_like(u, v_end)) for v_end in (v0, v1)]
-        sides += [surface.evaluate(np.full_like(v, u_end), v) for u_end in (u0, u1)]
-        distance = np.min([_distance_to_polygon(self.loops, side) for side in sides], axis=0)
-        return bool(distance.max() > _ON_EDGE * size)
+        return bool((distances(points_on(edges), natural)[0] > edges.tolerance.max(initial=0.0)).any())
+
+    def boundary(self) -> FaceBoundary | None:
+        """Return the edges of the face, as `Face` says."""
+        return self._edges if self.trimmed() else None
+
+    @cached_property
+    def _edges(self) -> FaceBoundary:
+        size = float(np.ptp(self.surface().control_points.reshape(-1, 3), axis=0).max())
+        # A trim along a singular side has no edge; a seam has two trims.
+        trims = [self.face.Loops[i].Trims for i in range(len(self.face.Loops))]
+        numbers = {loop[k].EdgeIndex for loop in trims for k in range(len(loop))} - {-1}
+        parts = []
+        for number in sorted(numbers):
+            curve = self.brep.Edges[number].ToNurbsCurve()
+            knots = np.array([curve.Knots[i] for i in range(len(curve.Knots))])
+            breaks = np.unique(np.clip(knots, curve.Domain.T0, curve.Domain.T1))
+            parts.append((*cubic_pieces(_evaluator(curve), breaks, _ON_EDGE * size), ""))
+        return joined(parts)
 
     def surface(self) -> BSplineSurface:
         """Return the exact, clamped (rational) B-spline surface, without trimming.
@@ -100,8 +121,10 @@ class RhinoFace:
         return surface_from_net(spline.Degree(0), spline.Degree(1), knots_u, knots_v, net[..., :3], weights)
 
 
-def open_3dm(path: str | Path) -> Model:
+def open_3dm(path: str | Path, bounded: Collection[int] = ()) -> Model:
     """Open a 3dm file: objects in file order, inside a Brep its surfaces; other objects are left out.
+
+    Boundaries are read when they are asked for, whichever faces are `bounded`.
 
     Raises
     ------
@@ -113,14 +136,14 @@ def open_3dm(path: str | Path) -> Model:
     file = rhino3dm.File3dm.Read(str(path))
     if file is None:
         raise FileError(f"{path}: not a 3dm file that openNURBS can read")
-    found: list[tuple[Any, FloatArray | None]] = []
+    found: list[tuple[Any, Any, Any]] = []
     for item in file.Objects:
         geometry = item.Geometry
         if isinstance(geometry, rhino3dm.Brep):
             found += _brep_surfaces(geometry)
         elif isinstance(geometry, rhino3dm.Surface):
-            found.append((geometry, None))
-    faces = [RhinoFace(source, f"{path}#{number}", loops) for number, (source, loops) in enumerate(found)]
+            found.append((geometry, None, None))
+    faces = [RhinoFace(source, f"{path}#{number}", *face) for number, (source, *face) in enumerate(found)]
     return Model(str(path), _UNITS.get(file.Settings.ModelUnitSystem.name), faces)
 
 
@@ -169,23 +192,21 @@ def _with_ends(knots: Sequence[float]) -> FloatArray:
     return np.array([inner[0], *inner, inner[-1]])
 
 
-def _brep_surfaces(brep: Any) -> list[tuple[Any, FloatArray | None]]:
-    """Return surfaces of a Brep with points on the edges of the face that lies on each.
+def _brep_surfaces(brep: Any) -> list[tuple[Any, Any, Any]]:
+    """Return surfaces of a Brep, itself, and the face that lies on each.
 
     rhino3dm does not say which face lies on which surface: they are matched by domain and by a few points.
     """
     faces = [brep.Faces[i] for i in range(len(brep.Faces))]
     waiting = {i: _fingerprint(face.UnderlyingSurface()) for i, face in enumerate(faces)}
-    found: list[tuple[Any, FloatArray | None]] = []
+    found: list[tuple[Any, Any, Any]] = []
     for k in range(len(brep.Surfaces)):
         surface = brep.Surfaces[k]
         wanted = _fingerprint(surface)
         match = next((i for i, other in waiting.items() if other == wanted), None)
-        loops = None
         if match is not None:
             del waiting[match]
-            loops = _edge_points(brep, faces[match])
-        found.append((surface, loops))
+        found.append((surface, brep, None if match is None else faces[match]))
     return found
 
 
@@ -195,21 +216,10 @@ def _fingerprint(surface: Any) -> tuple[float, ...]:
     return (u.T0, u.T1, v.T0, v.T1, *(c for p in points for c in (p.X, p.Y, p.Z)))
 
 
-def _edge_points(brep: Any, face: Any) -> FloatArray:
-    points = []
-    for i in range(len(face.Loops)):
-        trims = face.Loops[i].Trims
-        for k in range(len(trims)):
-            # A trim along a singular side has no edge.
-            if trims[k].EdgeIndex >= 0:
-                edge = brep.Edges[trims[k].EdgeIndex]
-                at = np.linspace(edge.Domain.T0, edge.Domain.T1, 9)
-                points += [edge.PointAt(float(t)) for t in at]
-    return np.array([(p.X, p.Y, p.Z) for p in points]).reshape(-1, 3)
+def _evaluator(curve: Any) -> Callable[[FloatArray], tuple[FloatArray, FloatArray]]:
+    def evaluate(parameters: FloatArray) -> tuple[FloatArray, FloatArray]:
+        found = [(curve.PointAt(t), curve.DerivativeAt(t, 1)[1]) for t in parameters.tolist()]
+        values = np.array([(p.X, p.Y, p.Z, d.X, d.Y, d.Z) for p, d in found]).reshape(-1, 6)
+        return values[:, :3], values[:, 3:]
 
-
-def _distance_to_polygon(points: FloatArray, polygon: FloatArray) -> FloatArray:
-    start, step = polygon[:-1], np.diff(polygon, axis=0)
-    length = np.maximum(np.sum(step**2, axis=1), np.finfo(np.float64).tiny)
-    t = np.clip(np.einsum("ksd,sd->ks", points[:, None] - start, step) / length, 0, 1)
-    return np.asarray(np.linalg.norm(points[:, None] - start - t[..., None] * step, axis=2).min(axis=1))
+    return evaluate
