@@ -14,8 +14,8 @@ import semispline
 
 ROOT = Path(__file__).parents[1]
 HALLS = ("derivations", "papers", "solver")
-# They need not be installed, so their imports may stand where they are used.
-EXTRAS = ("OCP", "pyvista", "rhino3dm", "smlibpy", "vtkmodules")
+# Not installed everywhere or not on every system, so their imports may stand where they are used.
+EXTRAS = ("OCP", "fcntl", "pyvista", "resource", "rhino3dm", "smlibpy", "vtkmodules")
 
 
 def module_name(path):
@@ -55,7 +55,7 @@ def unexplained_imports(name):
     for function in ast.walk(tree):
         if not isinstance(function, ast.FunctionDef):
             continue
-        said = re.search(r"# [^\n]*\bwaits?\b", ast.get_source_segment(text, function))
+        said = re.search(r"# [^\n]*\bwaits?\b", ast.get_source_segment(text, function), re.IGNORECASE)
         for node in ast.walk(function):
             if isinstance(node, ast.Import | ast.ImportFrom) and not said:
                 top = (node.module if isinstance(node, ast.ImportFrom) else node.names[0].name).partition(".")[0]
