@@ -168,8 +168,15 @@ def distances(points: FloatArray, boundary: FaceBoundary) -> tuple[FloatArray, N
     found, inside = [], []
     for block in np.array_split(points, 1 + 3 * len(points) * len(start) // _BLOCK):
         to_chords, t = _to_chords(block, start, step)
-        # A few of the nearest chords: of two that are nearly as near, either may belong to the nearer piece.
-        near = np.argpartition(to_chords - np.repeat(boundary.tolerance, each), 3, axis=1)[:, :4]
+        # A few of the nearest chords: of two that are nearly as near, either may belong to the nearer piece. Those
+        # nearest against their tolerance may be others.
+        near = np.concatenate(
+            [
+                np.argpartition(to_chords - lower, 3, axis=1)[:, :4]
+                for lower in (0.0, np.repeat(boundary.tolerance, each))
+            ],
+            axis=1,
+        )
         piece = near // each
         first_guess = (near % each + np.take_along_axis(t, near, axis=1)) / each
         distance = _polished(block, boundary.pieces[piece], first_guess)

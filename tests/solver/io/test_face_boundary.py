@@ -248,6 +248,14 @@ def test_a_boundary_that_cannot_be_read_is_said():
     assert "whether the edge u1 of x.brep is an edge of the face cannot be told" in warning
 
 
+def test_the_nearest_edge_counts_however_loose_others_are():
+    """A boundary 2 from the edge u0 and loose ones 4 from it; when they are looser still, one of them may be it."""
+    lines = np.stack([np.linspace([x, 0.0, 0.0], [x, 30.0, 0.0], 4) for x in (2.0, 4.0, 4.0)])
+    for loose, off in ((3.9, 2.0), (4.1, 0.0)):
+        boundary = FaceBoundary(lines, np.array([1e-7, loose, loose]), np.array(["", "", ""]))
+        assert edge_offset(sheet(), "u0", boundary).distance == pytest.approx(off)
+
+
 def closed_sheet():
     """A sheet rolled into a roof that closes: u0 and u1 are one line."""
     row = np.array([[0.0, 0.0, 0.0], [0.0, 30.0, 0.0]])
