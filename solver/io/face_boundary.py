@@ -130,10 +130,7 @@ def edge_offset(surface: Surface, edge: str, boundary: FaceBoundary) -> EdgeOffs
 
     Source: distance to a cubic piece by Gauss-Newton steps from the nearest of sampled points.
     """
-    # On the other side of a seam the same curve in space is another edge of the surface.
-    counted = boundary.side != _OPPOSITE[edge]
-    counted |= not counted.any()
-    boundary = FaceBoundary(boundary.pieces[counted], boundary.tolerance[counted], boundary.side[counted])
+    boundary = _this_side(surface, edge, boundary)
     low, high = surface.domain[1 if edge[0] == "u" else 0]
     # The middles between corners besides: no gap between two of them is passed by, however short it is.
     between = np.unique(np.concatenate([[low], _corners_on(surface, edge, boundary), [high]]))
@@ -171,8 +168,15 @@ def distances(points: FloatArray, boundary: FaceBoundary) -> tuple[FloatArray, N
     found, inside = [], []
     for block in np.array_split(points, 1 + 3 * len(points) * len(start) // _BLOCK):
         to_chords, t = _to_chords(block, start, step)
-        # A few of the nearest chords: of two that are nearly as near, either may belong to the nearer piece.
-        near = np.argpartition(to_chords - np.repeat(boundary.tolerance, each), 3, axis=1)[:, :4]
+        # A few of the nearest chords: of two that are nearly as near, either may belong to the nearer piece. Those
+        # nearest against their tolerance may be others.
+        near = np.concatenate(
+            [
+                np.argpartition(to_chords - lower, 3, axis=1)[:, :4]
+                for lower in (0.0, np.repeat(boundary.tolerance, each))
+            ],
+            axis=1,
+        )
         piece = near // each
         first_guess = (near % each + np.take_along_axis(t, near, axis=1)) / each
         distance = _polished(block, boundary.pieces[piece], first_guess)
@@ -201,6 +205,16 @@ def _to_chords(points: FloatArray, start: FloatArray, step: FloatArray) -> tuple
     offset = points[:, None] - start
     t = np.clip(np.einsum("ksd,sd->ks", offset, step) / length, 0, 1)
     return np.asarray(np.linalg.norm(offset - t[..., None] * step, axis=2)), t
+
+
+def _this_side(surface: Surface, edge: str, boundary: FaceBoundary) -> FaceBoundary:
+    """Return the boundary without what lies along the other side of a seam, the same curve in space."""
+    at = np.linspace(*surface.domain[1 if edge[0] == "u" else 0], _POINTS)
+    here, there = _along(surface, edge, at), _along(surface, _OPPOSITE[edge], at)
+    counted = boundary.side != _OPPOSITE[edge]
+    if np.abs(here - there).max() > _CLOSE * np.ptp(here, axis=0).max() or not counted.any():
+        return boundary
+    return FaceBoundary(boundary.pieces[counted], boundary.tolerance[counted], boundary.side[counted])
 
 
 def _corners_on(surface: Surface, edge: str, boundary: FaceBoundary) -> FloatArray:

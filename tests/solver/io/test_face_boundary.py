@@ -23,6 +23,7 @@ from semispline import BSplineSurface
 from semispline.solver.cli import app
 from semispline.solver.io.face_boundary import FaceBoundary, edge_offset, joined
 from semispline.solver.io.occ import read_occ
+from semispline.solver.io.occ_boundary import edges_of
 from semispline.solver.io.occ_writing import occ_surface
 from semispline.solver.io.rhino import open_3dm
 from semispline.solver.io.surface_files import (
@@ -152,6 +153,14 @@ def test_a_notch_between_two_samples_is_seen(tmp_path):
     assert offsets(face) == ([0.0, 0.0, 0.02, 0.0], [True] * 4)
 
 
+@pytest.mark.parametrize(("tolerance", "off"), [(1e-7, 0.008), (0.0079, 0.008), (0.0081, 0.0)])
+def test_edges_are_where_their_tolerance_says(tmp_path, tolerance, off):
+    face = rectangle(sheet(), 0.0, 1 - 2e-4, 0.0, 1.0)
+    for edge in edges_of(face):
+        BRep_Builder().UpdateEdge(edge, tolerance)
+    assert offsets(read(write(tmp_path / "cut.brep", face)))[0] == [0.0, off, off, off]
+
+
 @pytest.mark.parametrize("suffix", [".step", ".brep"])
 @pytest.mark.parametrize("periodic", [False, True])
 def test_of_a_seam_each_side_is_an_edge(tmp_path, suffix, periodic):
@@ -197,6 +206,20 @@ def test_faces_of_a_trimmed_plane_of_rhino(tmp_path):
     assert [side.boundary() for side in sides] == [None] * 6
 
 
+@pytest.mark.parametrize(("part", "trimmed"), [(2.5e-4, False), (3.5e-4, True)])
+def test_edges_of_rhino_count_as_natural_up_to_a_part_of_the_size(tmp_path, part, trimmed):
+    # A square of side 40 with one corner pulled in along its diagonal, by that part of 40 from both sides.
+    inner = 40.0 * (1 - part)
+    corners = [(0, 0), (40, 0), (inner, inner), (0, 40), (0, 0)]
+    curve = rhino3dm.PolylineCurve(rhino3dm.Point3dList([rhino3dm.Point3d(x, y, 0) for x, y in corners]))
+    file = rhino3dm.File3dm()
+    file.Objects.AddBrep(rhino3dm.Brep.CreateTrimmedPlane(rhino3dm.Plane.WorldXY(), curve))
+    assert file.Write(str(tmp_path / "s.3dm"), 0)
+    (face,) = open_3dm(tmp_path / "s.3dm").faces
+    assert face.trimmed() is trimmed
+    assert (face.boundary() is None) is not trimmed
+
+
 def test_the_boundary_comes_out_of_the_process_that_reads(tmp_path):
     whole, cut = rectangle(sheet(start=100.0), 0.0, 1.0, 0.0, 1.0), rectangle(sheet(), 0.0, 0.7, 0.0, 1.0)
     path = write(tmp_path / "two.step", whole, cut)
@@ -225,10 +248,30 @@ def test_a_boundary_that_cannot_be_read_is_said():
     assert "whether the edge u1 of x.brep is an edge of the face cannot be told" in warning
 
 
-def test_a_boundary_on_the_other_side_of_a_seam_alone_is_no_crash():
-    line = np.linspace([40.0, 0, 0], [40.0, 30.0, 0], 4)[None]
-    boundary = FaceBoundary(line, np.full(1, 1e-7), np.array(["u1"]))
-    assert edge_offset(sheet(), "u0", boundary).distance == pytest.approx(40.0)
+def test_the_nearest_edge_counts_however_loose_others_are():
+    """A boundary 2 from the edge u0 and loose ones 4 from it; when they are looser still, one of them may be it."""
+    lines = np.stack([np.linspace([x, 0.0, 0.0], [x, 30.0, 0.0], 4) for x in (2.0, 4.0, 4.0)])
+    for loose, off in ((3.9, 2.0), (4.1, 0.0)):
+        boundary = FaceBoundary(lines, np.array([1e-7, loose, loose]), np.array(["", "", ""]))
+        assert edge_offset(sheet(), "u0", boundary).distance == pytest.approx(off)
+
+
+def closed_sheet():
+    """A sheet rolled into a roof that closes: u0 and u1 are one line."""
+    row = np.array([[0.0, 0.0, 0.0], [0.0, 30.0, 0.0]])
+    net = np.stack([row, row + np.array([10.0, 0, 0]), row + np.array([10.0, 0, 10.0]), row])
+    return BSplineSurface(1, 1, [0, 0, 1, 2, 3, 3], [0, 0, 1, 1], net)
+
+
+@pytest.mark.parametrize(("surface", "side", "off"), [(sheet(), "u1", 0.0), (closed_sheet(), "u1", 5.0)])
+def test_only_a_seam_has_another_side(surface, side, off):
+    """The line at u = 0, and one 5 apart from it that is nearest to the seam where the first does not count."""
+    lines = np.stack([np.linspace([x, 0.0, 0.0], [x, 30.0, 0.0], 4) for x in (0.0, 5.0)])
+    boundary = FaceBoundary(lines, np.full(2, 1e-7), np.array([side, ""]))
+    assert edge_offset(surface, "u0", boundary).distance == pytest.approx(off)
+    # What is left of a boundary that lies on the other side alone is the boundary.
+    alone = FaceBoundary(lines[:1], np.full(1, 1e-7), np.array([side]))
+    assert edge_offset(surface, "u0", alone).distance == 0.0
 
 
 def run(*words):
