@@ -43,7 +43,8 @@ class BlendResult:
     creases : tuple of Crease
         Knots of full multiplicity, across which (11) counts nothing, and how far the normal turns there.
     warnings : tuple of str
-        What a user should look at: folds, creases, shape parameters out of their bounds.
+        What a user should look at: folds, creases, shape parameters out of their bounds, contact of which rounding
+        hides a part, bases without a normal somewhere.
     iterations : int
         Of the nonlinear solver; 0 where there is none.
     status : str or None
