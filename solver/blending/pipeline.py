@@ -80,7 +80,7 @@ def blend(
     ComputationError
         The solver failed.
     ContactError
-        The referee found the contact worse than its limits.
+        The referee found the contact worse than its limits, or rounding hides whether it is.
     FoldError
         With `strict`: the blend has warnings.
 

@@ -73,7 +73,7 @@ def measure_contact(a: Base, b: Base, flip: Flip = "auto", correspondence: Corre
     speeds = np.min([part.speeds for part in parts], axis=0).tolist()
     noises = [_noises(base, origin) for base in (a, b)]
     # Flat: what bends by the size of the model is the measure; and nearly so, as of curvatures.
-    bent = first**2 / size
+    bent = first * first / size
     second = bent if second <= noises[0][2] + noises[1][2] else max(second, _STRAIGHT * bent)
     geometric = [_geometric_noise(noise, speed, largest) for noise, speed in zip(noises, speeds, strict=True)]
     rounding = {
@@ -244,7 +244,7 @@ def _noises(base: Base, origin: FloatArray) -> list[float]:
 def _geometric_noise(noises: list[float], speed: float, largest_curvature: float) -> tuple[float, float]:
     """Bound what that rounding may do to the angle (radians) and to the curvature across the edge (1/length)."""
     angle = noises[1] / speed
-    return angle, noises[2] / speed**2 + 2 * largest_curvature * angle
+    return angle, noises[2] / speed / speed + 2 * largest_curvature * angle
 
 
 def _derivative_factor(base: Base, order: int) -> float:

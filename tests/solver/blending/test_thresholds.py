@@ -6,7 +6,7 @@ import casadi as ca
 import numpy as np
 import pytest
 
-from helpers.bases import facing_pair, moved, tube
+from helpers.bases import facing_pair, moved, patch, tube
 from semispline import (
     Base,
     BSplineCurve,
@@ -72,6 +72,7 @@ def test_an_area_element_of_a_thousandth_is_a_pinch(part, pinched):
     ("box", "active"),
     [
         ((1 / 8, 1.0), ("alpha2 upper", "beta2 upper")),
+        ((1 / 8, 1.2), ()),
         ((1.1, 8.0), ()),
         ((1.25, 8.0), ("alpha2 lower", "beta2 lower")),
     ],
@@ -118,18 +119,43 @@ def test_seams_are_closed_up_to_a_billionth_and_rounding(times, order, largest, 
     assert (seam_order(along, rows, largest) >= 0) is (order == 0)
 
 
-def test_a_closed_pair_far_away_keeps_its_seam_smooth():
+@pytest.mark.parametrize("distance", [1e3, 1e5, 1e7])
+def test_a_closed_pair_far_away_keeps_its_seam_smooth(distance):
     rng = np.random.default_rng(0)
     a, b = tube(rng, 8, noise=0.0), tube(rng, 7, noise=0.0, radius=1.5, heights=(4.0, 3.0), phase=0.7)
-    near = blend(Base(a, "u1"), Base(b, "u1"), v_scale="length")
-    # Rounding by 1e-10 of the size parts the ends of the rows and their derivatives.
-    offset = np.array([1e6, -3e6, 2e6]) / 3
-    far = blend(Base(moved(a, offset=offset), "u1"), Base(moved(b, offset=offset), "u1"), v_scale="length")
-    assert far.seam_shift == pytest.approx(near.seam_shift, rel=1e-6)
-    for one, other in zip(near.surface.control_curves, far.surface.control_curves, strict=True):
-        np.testing.assert_allclose(other.knots, one.knots, atol=1e-6)
-        np.testing.assert_allclose(other.control_points - offset, one.control_points, atol=1e-5)
-    assert far.seam.angle_degrees < 1e-4
+    # Rounding parts the ends of derivatives, by more than a billionth of them.
+    offset = distance * np.array([1 / 3, -1.0, 2 / 3])
+    near, far = ([Base(moved(surface, offset=x), "u1") for surface in (a, b)] for x in (np.zeros(3), offset))
+    assert state_problem(*far).problem.seam_order == state_problem(*near).problem.seam_order == 2
+    one, other = blend(*near, v_scale="length"), blend(*far, v_scale="length")
+    assert other.seam_shift == pytest.approx(one.seam_shift, rel=1e-6)
+    for first, second in zip(one.surface.control_curves, other.surface.control_curves, strict=True):
+        np.testing.assert_allclose(second.knots, first.knots, atol=1e-6)
+        np.testing.assert_allclose(second.control_points - offset, first.control_points, atol=1e-11 * distance)
+
+
+@pytest.mark.parametrize("closed", [False, True])
+def test_far_away_the_blend_is_rounded_once(closed):
+    # The first base is raised by two degrees, and the second one turned until its seam faces the first one's.
+    rng = np.random.default_rng(4)
+    if closed:
+        pair = tube(rng, 6, degree=2), tube(rng, 7, degree=4, radius=1.5, heights=(4.0, 3.0), phase=0.7)
+    else:
+        pair = patch(rng, degrees=(3, 2), counts=(4, 6)), patch(rng, degrees=(3, 4), counts=(4, 7))
+        pair = pair[0], moved(pair[1], np.diag([-1.0, 1, 1]), (-1.0, 0.1, 0.3))
+    # Coordinates in steps of 2^-20: moved by 2^30 they lose nothing, and what is worked out loses one rounding.
+    near = [
+        BSplineSurface(s.degree_u, s.degree_v, s.knots_u, s.knots_v, np.round(s.control_points * 2**20) / 2**20)
+        for s in pair
+    ]
+    offset = 2.0**30
+    one, other = (
+        state_problem(*(Base(moved(s, offset=[x] * 3), "u1" if closed else "u0") for s in near)) for x in (0.0, offset)
+    )
+    for first, second in zip(one.sides, other.sides, strict=True):
+        # Spacing of floats at the distance, and some of those near the origin.
+        most = offset * EPS / 2 + 1e-13
+        assert np.abs((second.rows - offset) - first.rows).max() <= most
 
 
 def test_spans_within_a_billionth_are_equally_long():

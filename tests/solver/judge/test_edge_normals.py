@@ -56,6 +56,17 @@ def test_a_thousandth_of_the_mean_counts_as_none(surface, part, found):
     assert len(places_without_normal(Base(surface(0.43, part * 0.088), "u0"), "a")) == found
 
 
+@pytest.mark.parametrize(("part", "refused"), [(1e-11, True), (5e-10, True), (2e-9, False), (5e-4, False)])
+def test_only_what_vanishes_altogether_is_refused(part, refused):
+    base = Base(fan(0.4375, part * 0.088), "u0")
+    assert len(places_without_normal(base, "a")) == 1
+    if refused:
+        with pytest.raises(EdgeError, match="no normal at parameter"):
+            check_regular_edge(base)
+    else:
+        check_regular_edge(base)
+
+
 def test_sines_of_a_thousandth_count_as_none():
     for sine, found in ((0.7e-3, 1), (1.4e-3, 0)):
         net = [[[0.0, 0, 0], [0, 1, 0]], [[sine, 1.0, 0], [1, 1, 0]]]
