@@ -266,7 +266,7 @@ def _reader(suffix: str) -> Callable[[str | Path], Model] | None:
 
         return open_3dm
     if suffix in _OCC:
-        from semispline.solver.io.occ_process import open_occ
+        from semispline.solver.io.occ import open_occ
 
         return open_occ
     return None
@@ -289,11 +289,12 @@ def _scaled(surface: Surface, factor: float) -> Surface:
 def _check_written(written: Path, surface: BSplineSurface, where: str) -> None:
     """Read a CAD file back: kernels drop or merge what is small against their tolerances, and do not say so."""
     from semispline.solver.io.occ import read_occ
+    from semispline.solver.io.rhino import read_3dm
 
     try:
         # What this process wrote, it can read without a process of its own.
-        model = read_occ(written) if written.suffix.lower() in _OCC else open_model(written)
-        found = picked(model, None).surface()
+        read = read_occ if written.suffix.lower() in _OCC else read_3dm
+        found = picked(read(written), None).surface()
         same = isinstance(found, BSplineSurface) and _agree(found, surface)
     except FileError:
         same = False
