@@ -30,7 +30,7 @@ import sys
 import threading
 import time
 import traceback
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterator, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager, suppress
@@ -74,9 +74,12 @@ class WorkerError(ComputationError):
     """A worker ended without a result; `end` says why, `detail` the signal or the exception."""
 
     def __init__(self, end: End, detail: str) -> None:
-        super().__init__(f"the process that worked on it ended without a result: {_SAID[end].format(detail)}")
+        super().__init__(end, detail)
         self.end = end
         self.detail = detail
+
+    def __str__(self) -> str:
+        return f"the process that worked on it ended without a result: {_SAID[self.end].format(self.detail)}"
 
 
 _SAID = {
@@ -132,6 +135,8 @@ def call(module: str, arguments: Sequence[str], seconds: float, megabytes: float
                 raise WorkerError(End.TIME, "") from None
             except BaseException:
                 process.kill()
+                # After Ctrl-C the block's end does not wait.
+                process.wait()
                 raise
     finally:
         os.close(held)
@@ -146,8 +151,8 @@ def call(module: str, arguments: Sequence[str], seconds: float, megabytes: float
 
 def in_pool(
     tasks: Sequence[Callable[[], _T]], processes: int, seconds: float, megabytes: float
-) -> Iterator[tuple[int, _T]]:
-    """Yield number and result of each task as it is done, by some processes.
+) -> Generator[tuple[int, _T], None, None]:
+    """Yield number and result of each task as it is done, by some processes; closed, it ends them.
 
     Parameters
     ----------
