@@ -28,7 +28,7 @@ from semispline.papers.report import (
 )
 from semispline.papers.reproduction import Comparison, Comparisons, Drawing, Example, Study, Table, run
 from semispline.solver.errors import FileError
-from semispline.solver.io import check_output, pyvista_module, to_text, write_text
+from semispline.solver.io import check_output, pyvista_module, shown, to_text, write_text
 from semispline.solver.workers import in_pool
 
 # (what is done, how many steps) -> a context that gives a function to be told of each step
@@ -194,7 +194,8 @@ def _folder(out: str) -> Path:
     folder = Path(out)
     try:
         folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise FileError(f"{out}: cannot be made: {error.strerror or error}; give another folder") from error
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or error
+        raise FileError(f"{shown(out)}: cannot be made: {reason}; give another folder") from None
     check_output(folder / "index.html")
     return folder

@@ -65,3 +65,5 @@ from .solver.splines.refinement import clamp_knots as clamp_knots
 from .solver.splines.surfaces import BSplineCurve as BSplineCurve
 from .solver.splines.surfaces import BSplineSurface as BSplineSurface
 from .solver.splines.surfaces import SemiStructuredSurface as SemiStructuredSurface
+
+__version__: str

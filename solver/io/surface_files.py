@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -11,7 +11,7 @@ import numpy as np
 
 from semispline.solver.arrays import FloatArray
 from semispline.solver.errors import FileError, InputError
-from semispline.solver.io.disk import atomic_path, check_output, require_file
+from semispline.solver.io.disk import atomic_path, check_output, require_file, shown
 from semispline.solver.io.faces import MILLIMETRES, Model, SurfaceEntry, describe, picked, without_equal_weights
 from semispline.solver.splines import BSplineSurface, SemiStructuredSurface, Surface
 
@@ -137,7 +137,19 @@ def list_surfaces(path: str | Path) -> list[SurfaceEntry]:
     FileError
         Missing, broken, or of an unknown format.
     """
-    return [describe(number, face) for number, face in enumerate(open_model(path).faces)]
+    return list_file(path)[0]
+
+
+def list_file(path: str | Path) -> tuple[list[SurfaceEntry], Mapping[str, int]]:
+    """Return every surface of a file, and what else it holds, from which no surface is taken: kind -> how many.
+
+    Raises
+    ------
+    FileError
+        As `list_surfaces`.
+    """
+    model = open_model(path)
+    return [describe(number, face) for number, face in enumerate(model.faces)], model.others
 
 
 def write_surface(path: str | Path, surface: Surface, unit: str | None = None) -> None:
@@ -192,7 +204,9 @@ def check_surface_output(path: str | Path) -> str:
     """
     suffix = Path(path).suffix.lower()
     if suffix not in _WRITABLE:
-        raise FileError(f"{path}: suffix {suffix!r} cannot be written, expected one of {' '.join(_WRITABLE)}")
+        raise FileError(
+            f"{shown(path)}: suffix {shown(suffix)!r} cannot be written, expected one of {' '.join(_WRITABLE)}"
+        )
     check_output(path)
     return suffix
 
@@ -211,7 +225,9 @@ def open_model(path: str | Path) -> Model:
     suffix = Path(path).suffix.lower()
     reader = _reader(suffix)
     if reader is None:
-        raise FileError(f"{path}: suffix {suffix!r} cannot be read, expected one of {' '.join(_READABLE)}")
+        raise FileError(
+            f"{shown(path)}: suffix {shown(suffix)!r} cannot be read, expected one of {' '.join(_READABLE)}"
+        )
     return reader(path)
 
 

@@ -43,12 +43,11 @@ def run_out():
 
 def print_and_return():
     os.write(1, b"noise")
-    print("more noise")
+    sys.stdout.write("more noise")
     return {"numbers": list(range(100000))}
 
 
 def end_by(number):
-    signal.signal(number, signal.SIG_DFL) if number not in (signal.SIGKILL, signal.SIGSTOP) else None
     os.kill(os.getpid(), number)
     time.sleep(60)
 

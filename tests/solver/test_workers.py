@@ -32,7 +32,7 @@ def test_a_result_comes_back_whole_and_prints_are_dropped(capfd):
 
 
 def test_an_error_of_ours_comes_back():
-    with pytest.raises(FileError, match="^bad file$"):
+    with pytest.raises(FileError, match=r"^bad file$"):
         ask("refuse")
 
 
