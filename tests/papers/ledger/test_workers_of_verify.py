@@ -48,7 +48,9 @@ def work():
 if sys.argv[2] == "main":
     work()
 else:
-    threading.Thread(target=work).start()
+    thread = threading.Thread(target=work)
+    thread.start()
+    thread.join()
 """
 
 
@@ -77,7 +79,7 @@ def test_ctrl_c_ends_it_with_130_and_no_traceback(made_up_paper):
         os.kill(process, signal.SIGINT)
     assert command.communicate() == ("", "interrupted\n")
     assert command.returncode == 130
-    assert all(map(is_gone, workers))
+    wait_until(lambda: all(map(is_gone, workers)), "the workers end with the command")
 
 
 def test_a_worker_that_is_killed_is_a_failed_computation(made_up_paper):
@@ -87,4 +89,4 @@ def test_a_worker_that_is_killed_is_a_failed_computation(made_up_paper):
     assert command.returncode == 3
     assert "killed from outside (SIGKILL)" in said
     assert said.count("\n") == 1
-    assert all(map(is_gone, workers))
+    wait_until(lambda: all(map(is_gone, workers)), "the workers end with the command")
