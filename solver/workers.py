@@ -4,16 +4,12 @@ A worker watches a pipe whose other end only its parent holds; the pipe closes w
 What compiled code does inside one call (Open CASCADE holds the interpreter's lock all the while) no thread of Python
 can stop, so the system does it:
 
-========  ==========================================  ==========================  =====================
-system    the parent ended                            processor time              memory
-========  ==========================================  ==========================  =====================
-Linux     SIGKILL by the pipe (`F_SETSIG`, `O_ASYNC`)  RLIMIT_CPU, then SIGXCPU    RLIMIT_DATA
-          and, if the parent's main thread started
-          the worker, by PR_SET_PDEATHSIG
-macOS     a thread; in a compiled call only RLIMIT_CPU RLIMIT_CPU, then SIGXCPU    none: it keeps no limit
-Windows   a thread; in a compiled call nothing         the parent ends the worker  none
-                                                       (wall-clock time)
-========  ==========================================  ==========================  =====================
+- Linux: SIGKILL by the pipe (`F_SETSIG`, `O_ASYNC`), and by PR_SET_PDEATHSIG if the parent's main thread started the
+  worker; RLIMIT_CPU ends it by SIGXCPU; RLIMIT_DATA limits its memory.
+- macOS: a thread waits for the pipe, so that within a compiled call only RLIMIT_CPU ends a worker whose parent is gone;
+  no limit of memory is kept.
+- Windows: a thread waits for the pipe, and within a compiled call nothing ends a worker whose parent is gone; the parent
+  ends a worker that takes too long by the clock; no limit of memory is kept.
 
 Only Linux is tested.
 """
