@@ -8,8 +8,8 @@ can stop, so the system does it:
   worker; RLIMIT_CPU ends it by SIGXCPU; RLIMIT_DATA limits its memory.
 - macOS: a thread waits for the pipe, so that within a compiled call only RLIMIT_CPU ends a worker whose parent is gone;
   no limit of memory is kept.
-- Windows: a thread waits for the pipe, and within a compiled call nothing ends a worker whose parent is gone; the parent
-  ends a worker that takes too long by the clock; no limit of memory is kept.
+- Windows: a thread waits for the pipe, and within a compiled call nothing ends a worker whose parent is gone; a parent
+  ends a reader that takes too long by the clock; no limit of memory is kept.
 
 Only Linux is tested.
 """

@@ -1,7 +1,7 @@
 """What the process of its own does that reads a 3dm file: openNURBS's numbers as plain arrays.
 
 It is started for every file, so it loads rhino3dm and NumPy and nothing else; `rhino` makes surfaces of the arrays.
-openNURBS gives the memory back and no file where one byte is wrong and it gets less than it asks for.
+Where one byte is wrong openNURBS asks for gigabytes; refused, it returns no file and does not say why.
 """
 
 from __future__ import annotations
