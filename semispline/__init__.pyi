@@ -69,3 +69,5 @@ from .solver.splines.rows import set_row_continuity as set_row_continuity
 from .solver.splines.surfaces import BSplineCurve as BSplineCurve
 from .solver.splines.surfaces import BSplineSurface as BSplineSurface
 from .solver.splines.surfaces import SemiStructuredSurface as SemiStructuredSurface
+
+__version__: str

@@ -5,7 +5,7 @@ Heavy imports wait inside the functions, so that `--help` answers fast.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
 from dataclasses import asdict, replace
 from math import isfinite, isnan
@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Annotated, Any, cast
 
 import typer
 
-from semispline.solver.errors import ContactError, EdgeError, OptionError, TrimError
+from semispline.solver.errors import ContactError, EdgeError, TrimError
 from semispline.solver.exit_status import ANSWER_IS_NO, reports_errors
 from semispline.solver.option_flags import takes_blend_options
 from semispline.solver.options import BlendOptions, Continuity, continuity_name
@@ -49,19 +49,11 @@ def blend_command(
     report: Annotated[str | None, typer.Option(metavar="FILE", help="JSON with energy, alpha, beta, contact.")] = None,
 ) -> None:
     """Join an edge of A and an edge of B by a semi-structured surface of least energy."""
-    from semispline.solver.io import (
-        atomic_path,
-        check_output,
-        check_surface_output,
-        read_surfaces,
-        to_text,
-        write_surface,
-    )
+    from semispline.solver.io import atomic_path, check_surface_output, read_surfaces, to_text, write_surface
 
     _check_edges(edge_a, edge_b)
     check_surface_output(out)
-    if report is not None and check_output(report) == check_output(out):
-        raise OptionError(f"--report: found {report!r}, the file of the surface; give another name")
+    _check_outputs({"--out": out, "--report": report}, [a, b])
     with _progress("reading"):
         first, second = read_surfaces([a, b])
     trims = _trim_warnings((a, edge_a, first), (b, edge_b, second))
@@ -102,7 +94,7 @@ def check_command(
 
     _check_edges(edge_a, edge_b)
     required = None if require is None else continuity_name(require, "--require")
-    _check_json_output(json_file)
+    _check_outputs({"--json": _file(json_file)}, [a, b])
     with _progress("reading"):
         first, second = read_surfaces([a, b])
     with _progress("measuring"):
@@ -135,16 +127,16 @@ def list_command(
     ] = None,
 ) -> None:
     """List the surfaces of a file: number, kind, degrees, control points, rational, trimmed, closed."""
-    from semispline.solver.io import list_surfaces
+    from semispline.solver.io import check_outputs, list_file
 
-    _check_json_output(json_file)
+    check_outputs({"--json": _file(json_file)}, [file])
     with _progress("reading"):
-        entries = list_surfaces(file)
+        entries, others = list_file(file)
     if json_file is not None:
-        record = {"path": file, "surfaces": [asdict(entry) for entry in entries]}
+        record = {"path": file, "surfaces": [asdict(entry) for entry in entries], "others": dict(others)}
         _write_json(json_file, {"format": "semispline/1", "kind": "surface_list", **record})
     if json_file != "-":
-        _print_entries(entries)
+        _print_entries(entries, others)
 
 
 @app.command("show")
@@ -161,12 +153,12 @@ def show_command(
     ] = False,
 ) -> None:
     """Draw surfaces into a PNG file, whole, without the trimming of their faces; needs no display."""
-    from semispline.solver.io import check_output, in_one_unit, read_all
+    from semispline.solver.io import in_one_unit, read_all
     from semispline.solver.pictures import check_picture, render
     from semispline.solver.splines import SemiStructuredSurface
 
     check_picture(out, color)
-    check_output(out)
+    _check_outputs({"--out": out}, files)
     with _progress("reading"):
         loaded, problems = read_all(files)
     for problem in problems:
@@ -190,6 +182,7 @@ def convert_command(
     from semispline.solver.io import check_surface_output, read_surfaces, write_surface
 
     check_surface_output(target)
+    _check_outputs({"OUT": target}, [source])
     with _progress("converting"):
         (loaded,) = read_surfaces([source])
         write_surface(target, loaded.surface, loaded.unit)
@@ -250,11 +243,15 @@ def _check_edges(edge_a: str, edge_b: str) -> None:
             raise EdgeError(f"{name}: found {edge!r}, expected one of {', '.join(_EDGES)}")
 
 
-def _check_json_output(path: str | None) -> None:
-    from semispline.solver.io import check_output
+def _check_outputs(outputs: Mapping[str, str | None], specs: Sequence[str]) -> None:
+    from semispline.solver.io import check_outputs, split_spec
 
-    if path is not None and path != "-":
-        check_output(path)
+    check_outputs(outputs, [split_spec(spec)[0] for spec in specs])
+
+
+def _file(path: str | None) -> str | None:
+    """Return the path of an option that may be - for standard output, where it is a file."""
+    return None if path == "-" else path
 
 
 def _write_json(path: str, record: dict[str, Any]) -> None:
@@ -371,7 +368,13 @@ def _print_warnings(warnings: Sequence[str]) -> None:
         typer.echo(f"warning: {warning}", err=True)
 
 
-def _print_entries(entries: Sequence[SurfaceEntry]) -> None:
+def _print_entries(entries: Sequence[SurfaceEntry], others: Mapping[str, int]) -> None:
+    from semispline.solver.io import counted, without_surfaces
+
+    if not entries:
+        typer.echo(without_surfaces(others))
+        return
+
     def word(value: bool | None, yes: str) -> str:
         return "?" if value is None else yes if value else "-"
 
@@ -388,6 +391,8 @@ def _print_entries(entries: Sequence[SurfaceEntry]) -> None:
     _print_table(rows)
     for note in notes:
         typer.echo(f"cannot be used: {note}")
+    if others:
+        typer.echo(f"cannot be used: {counted(others)}")
 
 
 def _print_table(rows: Sequence[Sequence[str]]) -> None:

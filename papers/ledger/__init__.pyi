@@ -19,6 +19,7 @@ from .exact import net_ring as net_ring
 from .exact import rational_points as rational_points
 from .exact import spline_basis as spline_basis
 from .loading import collected as collected
+from .loading import paper_files as paper_files
 from .loading import paper_names as paper_names
 from .mutation import explained as explained
 from .mutation import mutants as mutants

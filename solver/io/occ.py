@@ -9,18 +9,20 @@ Source: ISO 10303-42; IGES 5.3, entity 128; reference documentation of Open CASC
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from semispline.solver.arrays import FloatArray
-from semispline.solver.errors import FileError, SemisplineError
+from semispline.solver.errors import FileError, InputError, SemisplineError
 from semispline.solver.io.disk import require_file
 from semispline.solver.io.face_boundary import FaceBoundary, joined
 from semispline.solver.io.faces import MILLIMETRES, Model, surface_from_net, without_equal_weights
+from semispline.solver.io.foreign import read_apart
 from semispline.solver.io.occ_boundary import ON_EDGE, distance_to_ends, edges_of, occ_boundary, pcurve_points
 from semispline.solver.io.occ_kernel import first_line, require_kernel, system_unit
 from semispline.solver.io.silence import silenced
@@ -169,8 +171,45 @@ class OccFace:
         return GeomConvert.SurfaceToBSplineSurface_s(geometry)
 
 
+@dataclass(frozen=True, eq=False)
+class _ReadFace:
+    """A face as the other process converted it: arguments of `BSplineSurface`, or the error."""
+
+    kind: str
+    is_trimmed: bool | None
+    edges: FaceBoundary | None
+    content: tuple[Any, ...] | InputError
+
+    def trimmed(self) -> bool | None:
+        return self.is_trimmed
+
+    def boundary(self) -> FaceBoundary | None:
+        return self.edges
+
+    def surface(self) -> BSplineSurface:
+        if isinstance(self.content, InputError):
+            raise self.content
+        return BSplineSurface(*self.content)
+
+
+def open_occ(path: str | Path, bounded: Collection[int] = ()) -> Model:
+    """Open a STEP, IGES or BREP file, read by a process of its own; `bounded` are the faces whose edges are wanted.
+
+    Raises
+    ------
+    FileError
+        As `foreign.read_apart`, or the extra `cad` is not installed.
+    ComputationError
+        As `foreign.read_apart`.
+    """
+    require_file(path)
+    require_kernel(path)
+    unit, faces, others = read_apart(path, "occ_worker", "Open CASCADE", map(str, bounded))
+    return Model(str(path), unit, [_ReadFace(*face) for face in faces], others)
+
+
 def read_occ(path: str | Path) -> Model:
-    """Read a STEP, IGES or BREP file in this process; `occ_process.open_occ` survives what is damaged.
+    """Read a STEP, IGES or BREP file in this process; `open_occ` survives what is damaged.
 
     Raises
     ------
@@ -184,13 +223,14 @@ def read_occ(path: str | Path) -> Model:
     try:
         with silenced(1, 2):
             shape, unit = read(str(path))
-            faces = [] if shape is None or shape.IsNull() else list(_faces(shape))
-    except SemisplineError:
+            found = shape is not None and not shape.IsNull()
+            faces, others = (list(_faces(shape)), _others(shape)) if found else ([], {})
+    except (SemisplineError, MemoryError):
         raise
     except Exception as error:
         # The kernel raises a class of its own for each of its failures.
         raise FileError(f"{path}: Open CASCADE cannot read it ({first_line(error)})") from None
-    return Model(str(path), unit, [OccFace(face, f"{path}#{number}") for number, face in enumerate(faces)])
+    return Model(str(path), unit, [OccFace(face, f"{path}#{number}") for number, face in enumerate(faces)], others)
 
 
 def _read_step(path: str) -> tuple[Any, str | None]:
@@ -248,6 +288,26 @@ def _faces(shape: Any) -> Iterator[Any]:
     while explorer.More():
         yield TopoDS.Face(explorer.Current())
         explorer.Next()
+
+
+def _others(shape: Any) -> dict[str, int]:
+    """Count wires, edges and vertices that bound nothing larger."""
+    from OCP.TopAbs import TopAbs_ShapeEnum
+    from OCP.TopExp import TopExp_Explorer
+
+    kinds = ("FACE", "WIRE", "EDGE", "VERTEX")
+    found = {}
+    for larger, kind in pairwise(kinds):
+        explorer = TopExp_Explorer(
+            shape, getattr(TopAbs_ShapeEnum, f"TopAbs_{kind}"), getattr(TopAbs_ShapeEnum, f"TopAbs_{larger}")
+        )
+        count = 0
+        while explorer.More():
+            count += 1
+            explorer.Next()
+        if count:
+            found[kind.lower()] = count
+    return found
 
 
 def _read_out(spline: Any) -> BSplineSurface:

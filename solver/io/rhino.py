@@ -6,7 +6,7 @@ unclamped surfaces are common. Coordinates stay in the unit of the file.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -26,7 +26,8 @@ from semispline.solver.io.face_boundary import (
     points_on,
 )
 from semispline.solver.io.faces import Model, surface_from_net, without_equal_weights
-from semispline.solver.splines import BSplineSurface
+from semispline.solver.io.foreign import read_apart
+from semispline.solver.splines import BSplineSurface, basis_matrix, derivative_points
 
 _UNITS = {
     "Inches": "in",
@@ -48,23 +49,19 @@ _ON_EDGE = 3e-4
 
 @dataclass(frozen=True, eq=False)
 class RhinoFace:
-    """A surface of a 3dm file, and the face of a Brep that lies on it; None where there is none."""
+    """A surface of a 3dm file.
 
-    source: Any
+    `net` as `rhino_worker` has it; `curves` lie along the edges that bound the face, None where it has no face.
+    """
+
+    kind: str
+    net: tuple[Any, ...] | None
+    curves: Sequence[tuple[int, FloatArray, FloatArray]] | None
     where: str
-    brep: Any = None
-    face: Any = None
-
-    @property
-    def kind(self) -> str:
-        """What the file holds; rhino3dm tells no more of the surfaces of a Brep."""
-        return {"NurbsSurface": "B-spline", "Extrusion": "extrusion", "Surface": "surface"}.get(
-            type(self.source).__name__, type(self.source).__name__
-        )
 
     def trimmed(self) -> bool | None:
         """Whether curves cut the face out of its surface."""
-        if self.face is None:
+        if self.curves is None:
             return False
         try:
             edges, natural = self._edges, natural_boundary(self.surface())
@@ -79,15 +76,10 @@ class RhinoFace:
     @cached_property
     def _edges(self) -> FaceBoundary:
         size = float(np.ptp(self.surface().control_points.reshape(-1, 3), axis=0).max())
-        # A trim along a singular side has no edge; a seam has two trims.
-        trims = [self.face.Loops[i].Trims for i in range(len(self.face.Loops))]
-        numbers = {loop[k].EdgeIndex for loop in trims for k in range(len(loop))} - {-1}
         parts = []
-        for number in sorted(numbers):
-            curve = self.brep.Edges[number].ToNurbsCurve()
-            knots = np.array([curve.Knots[i] for i in range(len(curve.Knots))])
-            breaks = np.unique(np.clip(knots, curve.Domain.T0, curve.Domain.T1))
-            parts.append((*cubic_pieces(_evaluator(curve), breaks, _ON_EDGE * size), ""))
+        for degree, knots, net in self.curves or ():
+            breaks = np.unique(knots[degree : len(knots) - degree])
+            parts.append((*cubic_pieces(_evaluator(degree, knots, net), breaks, _ON_EDGE * size), ""))
         return joined(parts)
 
     def surface(self) -> BSplineSurface:
@@ -107,44 +99,53 @@ class RhinoFace:
 
     @cached_property
     def _surface(self) -> BSplineSurface:
-        spline = self.source.ToNurbsSurface()
-        if spline is None:
+        if self.net is None:
             raise FileError("openNURBS knows no B-spline form of it; convert it to NURBS where it was drawn")
-        n_u, n_v = spline.Points.CountU, spline.Points.CountV
-        points = [spline.Points[(i, j)] for i in range(n_u) for j in range(n_v)]
-        net = np.array([(p.X, p.Y, p.Z, p.W) for p in points]).reshape(n_u, n_v, 4)
+        degree_u, degree_v, knots_u, knots_v, net, rational = self.net
         weights: FloatArray | None = None
-        if spline.IsRational:
+        if rational:
             weights = without_equal_weights(net[..., 3])
             net = net[..., :3] / net[..., 3:]
-        knots_u, knots_v = _with_ends(spline.KnotsU), _with_ends(spline.KnotsV)
-        return surface_from_net(spline.Degree(0), spline.Degree(1), knots_u, knots_v, net[..., :3], weights)
+        return surface_from_net(degree_u, degree_v, knots_u, knots_v, net[..., :3], weights)
 
 
 def open_3dm(path: str | Path, bounded: Collection[int] = ()) -> Model:
-    """Open a 3dm file: objects in file order, inside a Brep its surfaces; other objects are left out.
+    """Open a 3dm file, read by a process of its own: objects in file order, inside a Brep its surfaces.
 
     Boundaries are read when they are asked for, whichever faces are `bounded`.
 
     Raises
     ------
     FileError
-        Missing, not a 3dm file, or the extra `cad` is not installed.
+        As `foreign.read_apart`, or the extra `cad` is not installed.
+    ComputationError
+        As `foreign.read_apart`.
     """
     require_file(path)
-    rhino3dm = _library(path)
-    file = rhino3dm.File3dm.Read(str(path))
-    if file is None:
-        raise FileError(f"{path}: not a 3dm file that openNURBS can read")
-    found: list[tuple[Any, Any, Any]] = []
-    for item in file.Objects:
-        geometry = item.Geometry
-        if isinstance(geometry, rhino3dm.Brep):
-            found += _brep_surfaces(geometry)
-        elif isinstance(geometry, rhino3dm.Surface):
-            found.append((geometry, None, None))
-    faces = [RhinoFace(source, f"{path}#{number}", *face) for number, (source, *face) in enumerate(found)]
-    return Model(str(path), _UNITS.get(file.Settings.ModelUnitSystem.name), faces)
+    _library(path)
+    return _model(path, read_apart(path, "rhino_worker", "openNURBS"))
+
+
+def read_3dm(path: str | Path) -> Model:
+    """Read a 3dm file in this process, as `open_3dm`, which survives what is damaged.
+
+    Raises
+    ------
+    FileError
+        Missing, not readable by openNURBS, or the extra `cad` is not installed.
+    """
+    require_file(path)
+    _library(path)
+    # rhino3dm waits until a 3dm file is read in this process.
+    from semispline.solver.io.rhino_worker import work
+
+    return _model(path, work(str(path)))
+
+
+def _model(path: str | Path, found: tuple[str, Sequence[Any], Mapping[str, int]]) -> Model:
+    unit, found_faces, others = found
+    faces = [RhinoFace(kind, net, curves, f"{path}#{k}") for k, (kind, net, curves) in enumerate(found_faces)]
+    return Model(str(path), _UNITS.get(unit), faces, others)
 
 
 def write_3dm(path: Path, surface: BSplineSurface, unit: str) -> None:
@@ -186,40 +187,16 @@ def _library(what: str | Path) -> Any:
     return rhino3dm
 
 
-def _with_ends(knots: Sequence[float]) -> FloatArray:
-    """Return the full vector; the two knots that openNURBS leaves out take part in no span of the domain."""
-    inner = [knots[i] for i in range(len(knots))]
-    return np.array([inner[0], *inner, inner[-1]])
+def _evaluator(
+    degree: int, knots: FloatArray, net: FloatArray
+) -> Callable[[FloatArray], tuple[FloatArray, FloatArray]]:
+    """Return a function to points and derivatives of a rational curve with control points (w x, w y, w z, w)."""
+    slopes = derivative_points(degree, knots, net)
 
-
-def _brep_surfaces(brep: Any) -> list[tuple[Any, Any, Any]]:
-    """Return surfaces of a Brep, itself, and the face that lies on each.
-
-    rhino3dm does not say which face lies on which surface: they are matched by domain and by a few points.
-    """
-    faces = [brep.Faces[i] for i in range(len(brep.Faces))]
-    waiting = {i: _fingerprint(face.UnderlyingSurface()) for i, face in enumerate(faces)}
-    found: list[tuple[Any, Any, Any]] = []
-    for k in range(len(brep.Surfaces)):
-        surface = brep.Surfaces[k]
-        wanted = _fingerprint(surface)
-        match = next((i for i, other in waiting.items() if other == wanted), None)
-        if match is not None:
-            del waiting[match]
-        found.append((surface, brep, None if match is None else faces[match]))
-    return found
-
-
-def _fingerprint(surface: Any) -> tuple[float, ...]:
-    u, v = surface.Domain(0), surface.Domain(1)
-    points = [surface.PointAt(u.T0 + s * (u.T1 - u.T0), v.T0 + t * (v.T1 - v.T0)) for s, t in ((0.2, 0.3), (0.7, 0.6))]
-    return (u.T0, u.T1, v.T0, v.T1, *(c for p in points for c in (p.X, p.Y, p.Z)))
-
-
-def _evaluator(curve: Any) -> Callable[[FloatArray], tuple[FloatArray, FloatArray]]:
     def evaluate(parameters: FloatArray) -> tuple[FloatArray, FloatArray]:
-        found = [(curve.PointAt(t), curve.DerivativeAt(t, 1)[1]) for t in parameters.tolist()]
-        values = np.array([(p.X, p.Y, p.Z, d.X, d.Y, d.Z) for p, d in found]).reshape(-1, 6)
-        return values[:, :3], values[:, 3:]
+        value = basis_matrix(degree, knots, parameters) @ net
+        slope = basis_matrix(degree - 1, knots[1:-1], parameters) @ slopes
+        points = value[:, :3] / value[:, 3:]
+        return points, (slope[:, :3] - points * slope[:, 3:]) / value[:, 3:]
 
     return evaluate

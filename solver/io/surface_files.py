@@ -6,7 +6,7 @@ The module of a format waits inside the functions until a file of that format is
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -14,7 +14,7 @@ import numpy as np
 
 from semispline.solver.arrays import FloatArray
 from semispline.solver.errors import FileError, InputError
-from semispline.solver.io.disk import atomic_path, check_output, require_file
+from semispline.solver.io.disk import atomic_path, check_output, require_file, shown
 from semispline.solver.io.face_boundary import FaceBoundary, edge_offset
 from semispline.solver.io.faces import MILLIMETRES, Model, SurfaceEntry, describe, picked, without_equal_weights
 from semispline.solver.splines import BSplineSurface, SemiStructuredSurface, Surface
@@ -191,7 +191,19 @@ def list_surfaces(path: str | Path) -> list[SurfaceEntry]:
     FileError
         Missing, broken, or of an unknown format.
     """
-    return [describe(number, face) for number, face in enumerate(open_model(path).faces)]
+    return list_file(path)[0]
+
+
+def list_file(path: str | Path) -> tuple[list[SurfaceEntry], Mapping[str, int]]:
+    """Return every surface of a file, and what else it holds, from which no surface is taken: kind -> how many.
+
+    Raises
+    ------
+    FileError
+        As `list_surfaces`.
+    """
+    model = open_model(path)
+    return [describe(number, face) for number, face in enumerate(model.faces)], model.others
 
 
 def write_surface(path: str | Path, surface: Surface, unit: str | None = None) -> None:
@@ -246,7 +258,9 @@ def check_surface_output(path: str | Path) -> str:
     """
     suffix = Path(path).suffix.lower()
     if suffix not in _WRITABLE:
-        raise FileError(f"{path}: suffix {suffix!r} cannot be written, expected one of {' '.join(_WRITABLE)}")
+        raise FileError(
+            f"{shown(path)}: suffix {shown(suffix)!r} cannot be written, expected one of {' '.join(_WRITABLE)}"
+        )
     check_output(path)
     return suffix
 
@@ -265,7 +279,9 @@ def open_model(path: str | Path, bounded: Sequence[int] = ()) -> Model:
     suffix = Path(path).suffix.lower()
     reader = _reader(suffix)
     if reader is None:
-        raise FileError(f"{path}: suffix {suffix!r} cannot be read, expected one of {' '.join(_READABLE)}")
+        raise FileError(
+            f"{shown(path)}: suffix {shown(suffix)!r} cannot be read, expected one of {' '.join(_READABLE)}"
+        )
     return reader(path, bounded)
 
 
@@ -323,7 +339,7 @@ def _reader(suffix: str) -> Callable[[str | Path, Sequence[int]], Model] | None:
 
         return open_3dm
     if suffix in _OCC:
-        from semispline.solver.io.occ_process import open_occ
+        from semispline.solver.io.occ import open_occ
 
         return open_occ
     return None
@@ -346,11 +362,12 @@ def _scaled(surface: Surface, factor: float) -> Surface:
 def _check_written(written: Path, surface: BSplineSurface, where: str) -> None:
     """Read a CAD file back: kernels drop or merge what is small against their tolerances, and do not say so."""
     from semispline.solver.io.occ import read_occ
+    from semispline.solver.io.rhino import read_3dm
 
     try:
         # What this process wrote, it can read without a process of its own.
-        model = read_occ(written) if written.suffix.lower() in _OCC else open_model(written)
-        found = picked(model, None).surface()
+        read = read_occ if written.suffix.lower() in _OCC else read_3dm
+        found = picked(read(written), None).surface()
         same = isinstance(found, BSplineSurface) and _agree(found, surface)
     except FileError:
         same = False
