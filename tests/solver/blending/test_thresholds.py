@@ -58,6 +58,14 @@ def test_a_thousandth_of_a_degree_is_a_crease(angle, creased):
     assert any("creased at v = 0.5" in text for text in warnings) is creased
 
 
+@pytest.mark.parametrize(("creases", "more"), [(5, ""), (7, " and 2 more")])
+def test_five_creases_are_named(creases, more):
+    surface = roof(*[1.0] * creases)
+    (warning,) = _warnings(measure_regularity(surface), measure_creases(surface))
+    named = ", ".join(f"v = {i / (creases + 1):g}" for i in range(1, 6))
+    assert f"creased at {named}{more}, by up to 1 degrees" in warning
+
+
 @pytest.mark.parametrize(("part", "pinched"), [(0.5e-3, True), (0.9e-3, True), (1.1e-3, False), (2e-3, False)])
 def test_an_area_element_of_a_thousandth_is_a_pinch(part, pinched):
     # A trapezoid from 2 wide down to `width`: the area element falls evenly, so that its mean is half way.
