@@ -177,8 +177,8 @@ def in_pool(
         try:
             for number, task in enumerate(tasks):
                 waiting[pool.submit(_limited, seconds, task)] = number
-                # The first task starts all processes.
-                workers = workers or set(multiprocessing.active_children()) - before
+                # A task starts a process where none is idle.
+                workers |= set(multiprocessing.active_children()) - before
             for done in as_completed(waiting):
                 yield waiting[done], done.result()
         except BrokenProcessPool:
