@@ -1,7 +1,6 @@
 from .base import Base as Base
 from .base import local_origin as local_origin
 from .contact import Contact as Contact
-from .contact import NoNormal as NoNormal
 from .continuity import measure_contact as measure_contact
 from .continuity import model_size as model_size
 from .correspondence import Correspondence as Correspondence
@@ -19,7 +18,6 @@ from .curvature import mirror_angle as mirror_angle
 from .de_boor import curve_points as curve_points
 from .de_boor import surface_points as surface_points
 from .edge_normals import check_regular_edge as check_regular_edge
-from .edge_normals import places_without_normal as places_without_normal
 from .limits import doubtful as doubtful
 from .limits import required_limits as required_limits
 from .limits import untold as untold
