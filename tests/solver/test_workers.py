@@ -13,7 +13,7 @@ from functools import partial
 import pytest
 
 from helpers.processes import is_gone, wait_until
-from helpers.turning import TASKS, hold_the_lock, print_and_return
+from helpers.turning import hold_the_lock, print_and_return, work
 from semispline import ComputationError, FileError
 from semispline.solver.workers import End, WorkerError, call, in_pool
 
@@ -157,20 +157,16 @@ def test_a_pool_gives_each_result_with_its_number():
 )
 def test_a_pool_says_how_its_worker_ended(what, limits, end):
     # While the first process sleeps the second one works: whose end it was is not guessed.
-    tasks = [partial(time.sleep, 0.5), partial(run, what)]
+    tasks = [partial(time.sleep, 0.5), partial(work, what)]
     with pytest.raises(WorkerError) as caught:
         list(in_pool(tasks, 2, **GENEROUS | limits))
     assert caught.value.end is end
 
 
-def run(what):
-    return TASKS[what]()
-
-
 @linux
 def test_a_pool_has_a_limit_of_memory():
     with pytest.raises(MemoryError):
-        list(in_pool([partial(run, "fill")], 2, 600, 300))
+        list(in_pool([partial(work, "fill")], 2, 600, 300))
 
 
 @linux

@@ -5,7 +5,8 @@ import pytest
 
 from helpers.bases import patch, turned
 from semispline import Base, BSplineSurface, EdgeError, insert_knots, measure_contact
-from semispline.solver.judge import check_regular_edge, places_without_normal
+from semispline.solver.judge import check_regular_edge
+from semispline.solver.judge.edge_normals import places_without_normal
 
 K1, K3 = [0, 0, 1, 1], [0, 0, 0, 0, 1, 1, 1, 1]
 
