@@ -19,7 +19,8 @@ from semispline import (
 )
 from semispline.solver.blending import nlp, reduced
 from semispline.solver.blending.closing import seam_order, with_least_size
-from semispline.solver.blending.pipeline import _warnings, state_problem
+from semispline.solver.blending.pipeline import state_problem
+from semispline.solver.blending.warnings import shape_warnings
 from semispline.solver.judge import measure_creases, measure_regularity
 from semispline.solver.judge.correspondence import Correspondence, correspond, is_closed, snapped_seam
 from semispline.solver.splines.knots import clamped
@@ -48,7 +49,7 @@ def flat(x, y=(0.0, 1.0), z=0.0):
 )
 def test_a_turn_of_60_degrees_is_steep_and_a_right_angle_a_fold(angle, said):
     # Were the roof no crease it would be a fold.
-    warnings = _warnings(measure_regularity(roof(angle)), ())
+    warnings = shape_warnings(measure_regularity(roof(angle)), ())
     assert [word for word in ("folds", "turns steeply") for text in warnings if word in text] == said
     assert all(f"by {angle:.0f} degrees" in text for text in warnings)
     assert len(warnings) == len(said)
@@ -57,14 +58,14 @@ def test_a_turn_of_60_degrees_is_steep_and_a_right_angle_a_fold(angle, said):
 @pytest.mark.parametrize(("angle", "creased"), [(0.5e-3, False), (0.9e-3, False), (1.1e-3, True), (2e-3, True)])
 def test_a_thousandth_of_a_degree_is_a_crease(angle, creased):
     surface = roof(angle)
-    warnings = _warnings(measure_regularity(surface), measure_creases(surface))
+    warnings = shape_warnings(measure_regularity(surface), measure_creases(surface))
     assert any("creased at v = 0.5" in text for text in warnings) is creased
 
 
 @pytest.mark.parametrize(("creases", "more"), [(5, ""), (7, " and 2 more")])
 def test_five_creases_are_named(creases, more):
     surface = roof(*[1.0] * creases)
-    (warning,) = _warnings(measure_regularity(surface), measure_creases(surface))
+    (warning,) = shape_warnings(measure_regularity(surface), measure_creases(surface))
     named = ", ".join(f"v = {i / (creases + 1):g}" for i in range(1, 6))
     assert f"creased at {named}{more}, by up to 1 degrees" in warning
 
@@ -76,7 +77,7 @@ def test_an_area_element_of_a_thousandth_is_a_pinch(part, pinched):
     surface = BSplineSurface(1, 1, K1, K1, [[[0, 0, 0], [0, 2, 0]], [[1, 0, 0], [1, width, 0]]])
     found = measure_regularity(surface)
     assert found.least_area_ratio == pytest.approx(part, rel=1e-9)
-    assert any("pinched" in text for text in _warnings(found, ())) is pinched
+    assert any("pinched" in text for text in shape_warnings(found, ())) is pinched
 
 
 @pytest.mark.parametrize(
