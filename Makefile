@@ -4,8 +4,11 @@ VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 LEFT_OUT := compiler or browser or slow
+# Two minutes of processor time, as measured folder by folder; not derivations (48 s), pictures, commands, and papers but their engine.
+QUICK := tests/test_documents.py tests/test_readme.py tests/test_rooms.py tests/papers/ledger \
+	$(addprefix tests/solver/,splines generated proof judge blending io c_export)
 
-.PHONY: report test test-left-out test-kernels lint types fresh bench clean
+.PHONY: report check quick test test-left-out test-kernels mutants lint types layers fresh bench clean
 
 $(STAMP): pyproject.toml constraints.txt
 	$(PYTHON) -m venv $(VENV)
@@ -20,13 +23,23 @@ test: $(STAMP)
 	@echo "Left out here, run by .ci/run: tests marked compiler (a C compiler), browser (Chromium) or slow (long sweeps):"
 	@$(BIN)/python -m pytest --collect-only --quiet -m '$(LEFT_OUT)' 2>/dev/null | tail -n 1
 
+# The loop while working.
+check: lint types layers quick
+
+quick: $(STAMP)
+	$(BIN)/python -m pytest -n 2 --quiet -m 'not ($(LEFT_OUT))' $(QUICK)
+
 # pytest leaves with 5 when nothing carries these marks.
 test-left-out: $(STAMP)
 	$(BIN)/python -m pytest -n 2 --quiet -m '$(LEFT_OUT)' || [ $$? -eq 5 ]
 
-# Under each kernel of OpenBLAS that the processor has; KERNELS=another takes one that is not the default.
+# Under each kernel of OpenBLAS that the processor has; KERNELS=another takes any one that is not the default.
 test-kernels: $(STAMP)
 	$(BIN)/python tests/kernels.py $(KERNELS)
+
+# A night's work that goes on where it was interrupted; see tests/mutants/__init__.py.
+mutants: $(STAMP)
+	PYTHONPATH=tests PYTHONHASHSEED=0 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m mutants
 
 lint: $(STAMP)
 	$(BIN)/ruff check .
@@ -34,6 +47,9 @@ lint: $(STAMP)
 
 types: $(STAMP)
 	$(BIN)/mypy
+
+layers: $(STAMP)
+	$(BIN)/lint-imports --no-cache --no-logo
 
 fresh: $(STAMP)
 	$(BIN)/semispline generate --check

@@ -8,11 +8,13 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from copy import copy
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from semispline import __version__
 from semispline.derivations import cli as derivations_cli
 from semispline.solver import cli as solver_cli
 from semispline.solver.exit_status import ANSWER_IS_NO, FAILED, reports_errors
@@ -27,7 +29,23 @@ app = typer.Typer(
     help="Verified blending of B-spline surfaces, and what the paper behind it claims.",
 )
 
+
+def _show_version(asked: bool) -> None:
+    if asked:
+        typer.echo(f"semispline {__version__}")
+        raise typer.Exit
+
+
 Name = Annotated[str, typer.Argument(metavar="PAPER", help="A paper of this package, or a folder with printed.py.")]
+
+
+@app.callback()
+def _options(
+    version: Annotated[
+        bool, typer.Option("--version", is_eager=True, callback=_show_version, help="Show the version and exit.")
+    ] = False,
+) -> None:
+    pass
 
 
 @app.command("verify")
@@ -43,12 +61,11 @@ def verify_command(
     ] = None,
 ) -> None:
     """Decide every claim of a paper anew; exit status 1 if a verdict is not the recorded one, 3 if one is missing."""
+    from semispline.papers.ledger import paper_files
     from semispline.papers.report import ledger_markdown, ledger_record, with_study_kept
-    from semispline.solver.io import check_output, to_text, write_text
+    from semispline.solver.io import check_outputs, to_text, write_text
 
-    for path in (json_file, markdown):
-        if path is not None and path != "-":
-            check_output(path)
+    check_outputs({"--json": None if json_file == "-" else json_file, "--markdown": markdown}, paper_files(paper))
     ledger = decided(paper)
     if json_file == "-":
         typer.echo(to_text(ledger_record(ledger)), nl=False)
@@ -157,9 +174,12 @@ def _progress(doing: str, total: int) -> Iterator[Callable[[str], None]]:
         yield lambda step: bar.update(task, advance=1, description=step)
 
 
-# `generate` above stands for the one of `derivations`, which may not know of `solver`.
-for _mounted in (solver_cli.app, derivations_cli.app):
-    app.registered_commands += [c for c in _mounted.registered_commands if c.callback is not derivations_cli.generate]
+app.registered_commands += solver_cli.app.registered_commands
+# `derivations` may not know of `solver`: how its commands end is said here, and `generate` above stands for its own.
+for _command in map(copy, derivations_cli.app.registered_commands):
+    if _command.callback not in (None, derivations_cli.generate):
+        _command.callback = reports_errors(_command.callback)
+        app.registered_commands.append(_command)
 
 
 def main() -> None:

@@ -5,9 +5,8 @@ from __future__ import annotations
 import importlib
 import os
 from collections.abc import Callable, Iterable
-from concurrent.futures import ProcessPoolExecutor, as_completed
-from contextlib import AbstractContextManager
-from multiprocessing import get_context
+from contextlib import AbstractContextManager, closing
+from functools import partial
 from pathlib import Path
 from typing import Any, TypeAlias
 
@@ -16,13 +15,17 @@ from semispline.papers.ledger import Ledger
 from semispline.papers.report import Results, blends_table, environment, text_lines, write_report
 from semispline.papers.reproduction import Comparison, Comparisons, Drawing, Example, Study, Table, run
 from semispline.solver.errors import FileError
-from semispline.solver.io import check_output, pyvista_module
+from semispline.solver.io import check_output, pyvista_module, shown
+from semispline.solver.workers import in_pool
 
 # (what is done, how many steps) -> a context that gives a function to be told of each step
 Progress: TypeAlias = Callable[[str, int], AbstractContextManager[Callable[[str], None]]]
 
 # Our own solver's two blends, of which the terminal shows every edge.
 _EDGE_BY_EDGE = {"C2": "semistructured-c2", "G2": "semistructured-reduced"}
+
+# Of one worker; no picture takes a tenth of either.
+_DRAWING_SECONDS, _DRAWING_MEGABYTES = 3600, 8192
 
 
 def reproduce(
@@ -89,14 +92,15 @@ def collect(
 
 def draw(drawings: Iterable[Drawing], folder: Path, progress: Progress) -> dict[str, Path]:
     """Draw pictures into files of their names, some at a time; return their paths."""
+    drawings = list(drawings)
     paths = {drawing.name: folder / f"{drawing.name}.png" for drawing in drawings}
-    # A fresh interpreter for each worker: forking a process with threads is not safe.
-    pool = ProcessPoolExecutor(min(os.cpu_count() or 1, 4, max(len(paths), 1)), mp_context=get_context("spawn"))
-    with progress("drawing", len(paths)) as advance, pool:
-        waiting = {pool.submit(drawing.draw, paths[drawing.name]): drawing.name for drawing in drawings}
-        for done in as_completed(waiting):
-            done.result()
-            advance(waiting[done])
+    tasks = [partial(drawing.draw, paths[drawing.name]) for drawing in drawings]
+    with (
+        progress("drawing", len(paths)) as advance,
+        closing(in_pool(tasks, min(os.cpu_count() or 1, 4), _DRAWING_SECONDS, _DRAWING_MEGABYTES)) as results,
+    ):
+        for number, _ in results:
+            advance(drawings[number].name)
     return paths
 
 
@@ -127,7 +131,8 @@ def _folder(out: str) -> Path:
     folder = Path(out)
     try:
         folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise FileError(f"{out}: cannot be made: {error.strerror or error}; give another folder") from error
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or error
+        raise FileError(f"{shown(out)}: cannot be made: {reason}; give another folder") from None
     check_output(folder / "index.html")
     return folder

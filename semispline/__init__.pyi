@@ -15,7 +15,7 @@ from .solver.io.surface_files import list_surfaces as list_surfaces
 from .solver.io.surface_files import read_surface as read_surface
 from .solver.io.surface_files import write_surface as write_surface
 from .solver.judge.base import Base as Base
-from .solver.judge.continuity import Contact as Contact
+from .solver.judge.contact import Contact as Contact
 from .solver.judge.continuity import measure_contact as measure_contact
 from .solver.judge.curvature import LocalGeometry as LocalGeometry
 from .solver.judge.curvature import gaussian_curvature as gaussian_curvature
@@ -69,3 +69,5 @@ from .solver.splines.rows import set_row_continuity as set_row_continuity
 from .solver.splines.surfaces import BSplineCurve as BSplineCurve
 from .solver.splines.surfaces import BSplineSurface as BSplineSurface
 from .solver.splines.surfaces import SemiStructuredSurface as SemiStructuredSurface
+
+__version__: str

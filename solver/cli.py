@@ -5,22 +5,22 @@ Heavy imports wait inside the functions, so that `--help` answers fast.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
-from dataclasses import asdict
-from math import isnan
+from dataclasses import asdict, replace
+from math import isfinite, isnan
 from typing import TYPE_CHECKING, Annotated, Any, cast
 
 import typer
 
-from semispline.solver.errors import EdgeError, OptionError
+from semispline.solver.errors import ContactError, EdgeError, TrimError
 from semispline.solver.exit_status import ANSWER_IS_NO, reports_errors
 from semispline.solver.option_flags import takes_blend_options
 from semispline.solver.options import BlendOptions, Continuity, continuity_name
 
 if TYPE_CHECKING:
     from semispline.solver.blending import BlendResult
-    from semispline.solver.io import SurfaceEntry
+    from semispline.solver.io import LoadedSurface, SurfaceEntry
     from semispline.solver.judge import Contact
 
 app = typer.Typer(no_args_is_help=True, add_completion=False, pretty_exceptions_enable=False)
@@ -49,26 +49,22 @@ def blend_command(
     report: Annotated[str | None, typer.Option(metavar="FILE", help="JSON with energy, alpha, beta, contact.")] = None,
 ) -> None:
     """Join an edge of A and an edge of B by a semi-structured surface of least energy."""
-    from semispline.solver.io import (
-        atomic_path,
-        check_output,
-        check_surface_output,
-        read_surfaces,
-        to_text,
-        write_surface,
-    )
+    from semispline.solver.io import atomic_path, check_surface_output, read_surfaces, to_text, write_surface
 
     _check_edges(edge_a, edge_b)
     check_surface_output(out)
-    if report is not None and check_output(report) == check_output(out):
-        raise OptionError(f"--report: found {report!r}, the file of the surface; give another name")
+    _check_outputs({"--out": out, "--report": report}, [a, b])
     with _progress("reading"):
         first, second = read_surfaces([a, b])
+    trims = _trim_warnings((a, edge_a, first), (b, edge_b, second))
+    if options.strict and trims:
+        raise TrimError(f"{'; '.join(trims)}; name another edge, give the untrimmed surface, or leave out --strict")
     with _progress("blending"):
         from semispline.solver.blending import blend
         from semispline.solver.judge import Base
 
         result = blend(Base(first.surface, cast(Any, edge_a)), Base(second.surface, cast(Any, edge_b)), options)
+    result = replace(result, warnings=(*trims, *result.warnings))
     with ExitStack() as stack:
         # The report first, into its temporary file: neither file is touched unless both can be written.
         if report is not None:
@@ -98,21 +94,26 @@ def check_command(
 
     _check_edges(edge_a, edge_b)
     required = None if require is None else continuity_name(require, "--require")
-    _check_json_output(json_file)
+    _check_outputs({"--json": _file(json_file)}, [a, b])
     with _progress("reading"):
         first, second = read_surfaces([a, b])
     with _progress("measuring"):
         contact = measure_contact(Base(first.surface, cast(Any, edge_a)), Base(second.surface, cast(Any, edge_b)))
     misses = _misses(contact, required)
+    doubts = _doubts(contact, required, misses)
+    warnings = _trim_warnings((a, edge_a, first), (b, edge_b, second))
     if json_file is not None:
         record = {"a": a, "edge_a": edge_a, "b": b, "edge_b": edge_b, "unit": first.unit, **contact_record(contact)}
+        record["warnings"] = list(warnings)
         if require is not None:
-            record |= {"require": required, "meets": not misses, "misses": misses}
+            record |= {"require": required, "meets": not misses, "misses": misses, "doubts": doubts}
         _write_json(json_file, {"format": "semispline/1", "kind": "contact", **record})
     if json_file != "-":
         _print_contact(contact, first.unit)
         if require is not None:
-            typer.echo(f"{required}: " + ("no: " + "; ".join(misses) if misses else "yes"))
+            reasons = "; ".join([*misses, *doubts])
+            typer.echo(f"{required}: " + ("no: " if misses else "yes, but " if doubts else "yes") + reasons)
+    _print_warnings(warnings)
     if misses:
         raise typer.Exit(ANSWER_IS_NO)
 
@@ -126,16 +127,16 @@ def list_command(
     ] = None,
 ) -> None:
     """List the surfaces of a file: number, kind, degrees, control points, rational, trimmed, closed."""
-    from semispline.solver.io import list_surfaces
+    from semispline.solver.io import check_outputs, list_file
 
-    _check_json_output(json_file)
+    check_outputs({"--json": _file(json_file)}, [file])
     with _progress("reading"):
-        entries = list_surfaces(file)
+        entries, others = list_file(file)
     if json_file is not None:
-        record = {"path": file, "surfaces": [asdict(entry) for entry in entries]}
+        record = {"path": file, "surfaces": [asdict(entry) for entry in entries], "others": dict(others)}
         _write_json(json_file, {"format": "semispline/1", "kind": "surface_list", **record})
     if json_file != "-":
-        _print_entries(entries)
+        _print_entries(entries, others)
 
 
 @app.command("show")
@@ -152,12 +153,12 @@ def show_command(
     ] = False,
 ) -> None:
     """Draw surfaces into a PNG file, whole, without the trimming of their faces; needs no display."""
-    from semispline.solver.io import check_output, in_one_unit, read_all
+    from semispline.solver.io import in_one_unit, read_all
     from semispline.solver.pictures import check_picture, render
     from semispline.solver.splines import SemiStructuredSurface
 
     check_picture(out, color)
-    check_output(out)
+    _check_outputs({"--out": out}, files)
     with _progress("reading"):
         loaded, problems = read_all(files)
     for problem in problems:
@@ -181,6 +182,7 @@ def convert_command(
     from semispline.solver.io import check_surface_output, read_surfaces, write_surface
 
     check_surface_output(target)
+    _check_outputs({"OUT": target}, [source])
     with _progress("converting"):
         (loaded,) = read_surfaces([source])
         write_surface(target, loaded.surface, loaded.unit)
@@ -188,10 +190,14 @@ def convert_command(
 
 def contact_record(contact: Contact) -> dict[str, Any]:
     """Return what a JSON file holds of a measured contact."""
-    record = asdict(contact)
-    del record["rounding"]
-    # JSON knows no NaN: what cannot be measured is null.
-    return {name: None if isinstance(value, float) and isnan(value) else value for name, value in record.items()}
+    return {name: _finite(value) for name, value in asdict(contact).items()}
+
+
+def _finite(value: Any) -> Any:
+    """Return a value or record for JSON, which knows neither NaN nor infinity: what cannot be told is null."""
+    if isinstance(value, dict):
+        return {name: _finite(part) for name, part in value.items()}
+    return None if isinstance(value, float) and not isfinite(value) else value
 
 
 def report_record(result: BlendResult) -> dict[str, Any]:
@@ -237,11 +243,15 @@ def _check_edges(edge_a: str, edge_b: str) -> None:
             raise EdgeError(f"{name}: found {edge!r}, expected one of {', '.join(_EDGES)}")
 
 
-def _check_json_output(path: str | None) -> None:
-    from semispline.solver.io import check_output
+def _check_outputs(outputs: Mapping[str, str | None], specs: Sequence[str]) -> None:
+    from semispline.solver.io import check_outputs, split_spec
 
-    if path is not None and path != "-":
-        check_output(path)
+    check_outputs(outputs, [split_spec(spec)[0] for spec in specs])
+
+
+def _file(path: str | None) -> str | None:
+    """Return the path of an option that may be - for standard output, where it is a file."""
+    return None if path == "-" else path
 
 
 def _write_json(path: str, record: dict[str, Any]) -> None:
@@ -253,6 +263,14 @@ def _write_json(path: str, record: dict[str, Any]) -> None:
         write_text(path, to_text(record))
 
 
+def _trim_warnings(*edges: tuple[str, str, LoadedSurface]) -> tuple[str, ...]:
+    """Return a warning for each edge that is not an edge of the face that the file holds."""
+    from semispline.solver.io import trimmed_edge_warning
+
+    found = (trimmed_edge_warning(*edge) for edge in edges)
+    return tuple(warning for warning in found if warning)
+
+
 def _misses(contact: Contact, require: Continuity | None) -> list[str]:
     """Return, of each measure that falls short, its name, value and limit."""
     if require is None:
@@ -261,24 +279,52 @@ def _misses(contact: Contact, require: Continuity | None) -> list[str]:
 
     return [
         f"{name.replace('_', ' ')} is {value:.3g}, at most {limit:.3g} allowed"
+        if not isnan(value)
+        else f"{name.replace('_', ' ')} does not exist where there is no normal"
         for name, value, limit in required_limits(contact, require)
         if not value <= limit
     ]
 
 
+def _doubts(contact: Contact, require: Continuity | None, misses: list[str]) -> list[str]:
+    """Return what qualifies the answer: places without a normal, and measures of which rounding hides a part.
+
+    Raises
+    ------
+    ContactError
+        Rounding hides so much that there is no answer.
+    """
+    from semispline.solver.judge import doubtful, untold
+
+    if require is None:
+        return []
+    hidden = untold(contact, require)
+    if hidden and not misses:
+        raise ContactError(
+            f"{require} cannot be told: {'; '.join(hidden)}; move both surfaces nearer to the origin, in the program "
+            "that made them, or choose knots that are further apart"
+        )
+    places = contact.no_normal if require in ("G1", "G2") else ()
+    return [f"{place.surface.upper()} has {place}" for place in places] + doubtful(contact, require)
+
+
 def _print_contact(contact: Contact, unit: str | None) -> None:
     length = unit or "model units"
     bend = f"1/{unit}" if unit else "1/(model units)"
-    rows = [("measure", "worst", "unit", "at parameter", "at point")]
-    for name, value, in_unit, place in (
-        ("gap", contact.gap, length, contact.gap_at),
-        ("angle", contact.angle_degrees, "degrees", contact.angle_at),
-        ("curvature jump", contact.curvature_jump, bend, contact.curvature_at),
-        ("curvature jump, relative", contact.curvature_jump_relative, "1", contact.curvature_at),
+    rows = [("measure", "worst", "allowed", "unit", "at parameter", "at point")]
+    for name, measure, in_unit, place in (
+        ("gap", "gap", length, contact.gap_at),
+        ("angle", "angle_degrees", "degrees", contact.angle_at),
+        ("curvature jump", "curvature_jump", bend, contact.curvature_at),
+        ("curvature jump, relative", "curvature_jump_relative", "1", contact.curvature_at),
     ):
         point = ", ".join(f"{x:.5g}" for x in place.point)
-        rows.append((name, f"{value:.3g}", in_unit, f"{place.parameter:.5g}", f"({point})"))
+        value, limit = getattr(contact, measure), contact.allowed.get(measure)
+        allowed = "see below" if limit is None else f"{limit:.3g}"
+        rows.append((name, f"{value:.3g}", allowed, in_unit, f"{place.parameter:.5g}", f"({point})"))
     _print_table(rows)
+    for bare in contact.no_normal:
+        typer.echo(f"{bare.surface.upper()}: {bare}")
 
 
 def _print_result(result: BlendResult) -> None:
@@ -306,14 +352,29 @@ def _print_result(result: BlendResult) -> None:
     for name, contact in contacts:
         if contact is None:
             continue
-        figures = f"gap {contact.gap:.2g}, angle {contact.angle_degrees:.2g} degrees, "
-        rows.append((name, figures + f"relative curvature jump {contact.curvature_jump_relative:.2g}"))
+        allowed = contact.allowed
+        figures = (
+            f"gap {contact.gap:.2g} ({allowed['gap']:.2g})",
+            f"angle {contact.angle_degrees:.2g} ({allowed['angle_degrees']:.2g}) degrees",
+            f"relative curvature jump {contact.curvature_jump_relative:.2g} ({allowed['curvature_jump_relative']:.2g})",
+        )
+        rows.append((f"{name} (allowed)", ", ".join(figures)))
     _print_table(rows)
-    for warning in result.warnings:
+    _print_warnings(result.warnings)
+
+
+def _print_warnings(warnings: Sequence[str]) -> None:
+    for warning in warnings:
         typer.echo(f"warning: {warning}", err=True)
 
 
-def _print_entries(entries: Sequence[SurfaceEntry]) -> None:
+def _print_entries(entries: Sequence[SurfaceEntry], others: Mapping[str, int]) -> None:
+    from semispline.solver.io import counted, without_surfaces
+
+    if not entries:
+        typer.echo(without_surfaces(others))
+        return
+
     def word(value: bool | None, yes: str) -> str:
         return "?" if value is None else yes if value else "-"
 
@@ -330,6 +391,8 @@ def _print_entries(entries: Sequence[SurfaceEntry]) -> None:
     _print_table(rows)
     for note in notes:
         typer.echo(f"cannot be used: {note}")
+    if others:
+        typer.echo(f"cannot be used: {counted(others)}")
 
 
 def _print_table(rows: Sequence[Sequence[str]]) -> None:

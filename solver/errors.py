@@ -39,5 +39,9 @@ class ContactError(ComputationError):
     """A finished blend whose measured contact misses its limits."""
 
 
+class TrimError(ComputationError):
+    """A named edge that lies outside of its trimmed face, where that was not allowed."""
+
+
 class FoldError(ComputationError):
     """A finished blend that folds or is creased, where that was not allowed."""

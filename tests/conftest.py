@@ -48,15 +48,17 @@ def reordered(items, seed):
     return [item for tests in files for item in tests]
 
 
-@pytest.hookimpl(tryfirst=True)
+@pytest.hookimpl(trylast=True)
 def pytest_collection_modifyitems(config, items):
-    """Mark the tests that ask for the shared folder, so that `-m shared` finds them, and reorder all where asked."""
-    for item in items:
-        if "shared" in getattr(item, "fixturenames", ()):
-            item.add_marker(pytest.mark.shared)
     seed = config.getoption("order_seed")
     if seed is not None:
         items[:] = reordered(items, seed)
+
+
+def pytest_itemcollected(item):
+    """Mark the tests that ask for the folder, so that `-m shared` finds them."""
+    if "shared" in getattr(item, "fixturenames", ()):
+        item.add_marker(pytest.mark.shared)
 
 
 def pytest_terminal_summary(terminalreporter):

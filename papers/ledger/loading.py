@@ -21,6 +21,15 @@ def paper_names() -> list[str]:
     return sorted(path.parent.name for path in Path(__file__).parents[1].glob("*/printed.py"))
 
 
+def paper_files(name: str) -> list[Path]:
+    """Return the modules that a paper is read from; none where there is no such paper."""
+    folder = Path(__file__).parents[1] / name if name in paper_names() else Path(name)
+    try:
+        return sorted(folder.rglob("*.py"))
+    except (OSError, ValueError):
+        return []
+
+
 def load_paper(name: str) -> Paper:
     """Load a paper by its folder name under `papers/`, or by the path of a folder, and check every record.
 
@@ -62,11 +71,18 @@ def collected(name: str) -> Paper:
     return Paper(name, title.rstrip("."), legend, tuple(claims))
 
 
+def _is_file(path: Path) -> bool:
+    try:
+        return path.is_file()
+    except (OSError, ValueError):
+        return False
+
+
 def _package(name: str) -> ModuleType:
     if name in paper_names():
         return importlib.import_module(f"semispline.papers.{name}")
     folder = Path(name)
-    if not (folder / "printed.py").is_file():
+    if not _is_file(folder / "printed.py"):
         known = ", ".join(paper_names())
         raise LedgerError(f"paper: found {name!r}, expected one of {known}, or a folder with printed.py and claims.py")
     folder = folder.resolve()

@@ -17,7 +17,7 @@ from typing import Any
 import sympy as sp
 from sympy.core.function import AppliedUndef
 
-from semispline.papers.ledger.printed_data import Knots, Numbers, exchanges, knot_changes, near, number_changes
+from semispline.papers.ledger.number_lists import Knots, Numbers, exchanges, knot_changes, near, number_changes
 from semispline.papers.ledger.records import Case, Check, Formula, Part, decided_cases
 
 

@@ -1,6 +1,5 @@
 from .documents import write_report as write_report
 from .ledger_as_json import ledger_record as ledger_record
-from .ledger_as_markdown import STUDY_HEADING as STUDY_HEADING
 from .ledger_as_markdown import ledger_markdown as ledger_markdown
 from .ledger_as_markdown import with_study_kept as with_study_kept
 from .ledger_as_table import ledger_table as ledger_table

@@ -20,18 +20,22 @@ from semispline.solver.splines import (
 
 # Derivatives at both ends of a seam that differ by less than this, relative to the largest, count as equal.
 SEAM_TOLERANCE = 1e-9
+# Roundings of control points, in units of the spacing of floats, that may part both ends of a seam.
+_ROUNDINGS = 16
 
 
-def seam_order(along: Basis, rows: FloatArray) -> int:
+def seam_order(along: Basis, rows: FloatArray, largest: float) -> int:
     """Return how many derivatives of closed rows agree across the seam: -1 where they are open, at most the degree - 1.
 
     Parameters
     ----------
     along : Basis
     rows : ndarray, shape (K, n, 3)
+    largest : float
+        Largest coordinate that the rows were given in, whatever origin they are counted from now.
     """
     order = -1
-    rounding = 16 * np.finfo(float).eps * float(np.abs(rows).max())
+    rounding = _ROUNDINGS * np.finfo(float).eps * largest
     for d in range(along.degree):
         # The first and the last control point of a derivative are its values at the ends.
         points = derivative_points(along.degree, along.knots, rows.transpose(1, 0, 2), d)
@@ -44,7 +48,7 @@ def seam_order(along: Basis, rows: FloatArray) -> int:
     return order
 
 
-def reseamed(along: Basis, rows: FloatArray, shift: float) -> tuple[Basis, FloatArray]:
+def reseamed(along: Basis, rows: FloatArray, shift: float, largest: float) -> tuple[Basis, FloatArray]:
     """Return the same closed rows with their seam `shift` later; exact up to rounding.
 
     The old seam becomes an inner knot, of the multiplicity that the smoothness of the rows there asks for.
@@ -55,6 +59,8 @@ def reseamed(along: Basis, rows: FloatArray, shift: float) -> tuple[Basis, Float
     rows : ndarray, shape (K, n, 3)
     shift : float
         Between 0 and the length of the domain.
+    largest : float
+        As in `seam_order`.
 
     Returns
     -------
@@ -64,7 +70,7 @@ def reseamed(along: Basis, rows: FloatArray, shift: float) -> tuple[Basis, Float
     """
     start, end = float(along.knots[0]), float(along.knots[-1])
     curves = [_joined(BSplineCurve(along.degree, along.knots, row), start, end, start + shift) for row in rows]
-    for order in range(seam_order(along, rows), 0, -1):
+    for order in range(seam_order(along, rows, largest), 0, -1):
         try:
             # Each row on its own would do, but all must keep one knot vector.
             smooth = [set_curve_continuity(curve, end, order, SEAM_TOLERANCE) for curve in curves]

@@ -267,12 +267,18 @@ class EnergyForm:
                         result[self.offsets[i] : self.offsets[i + 1]] += part
         return result
 
+    def error_energies(self) -> FloatArray:
+        """Return bounds on the energy of second derivatives by vv, uv and uu of control points between -1 and 1."""
+        total = np.zeros(3)
+        for parts in self._errors():
+            total += [np.sum(weights * e**2) for weights, e in parts]
+        return total
+
     def change_by_errors(self, points: FloatArray, errors: FloatArray) -> float:
         """Bound by how much the energy changes where each coordinate of each control point may be off.
 
-        With second derivatives x and their errors e the change is the integral of 2 x e + e^2. Differences of control
-        points become sums of their errors, whatever their signs; along v the products are bounded place by place, as
-        narrow spans have large errors but little energy.
+        With second derivatives x and their errors e the change is the integral of 2 x e + e^2. Along v it is bounded
+        place by place, as narrow spans have large errors but little energy.
 
         Parameters
         ----------
@@ -284,25 +290,40 @@ class EnergyForm:
         rows = np.split(points, self.offsets[1:-1])
         nets = [[self._nets(members, rows, dv) for members in self._members] for dv in range(3)]
         total = 0.0
+        for along, parts in zip(self._along(), self._errors(), strict=True):
+            for du, (weights, e) in enumerate(parts):
+                curves = np.zeros((m + 1, 3, *weights.shape))
+                for samples, members, net in zip(along, self._members, nets[2 - du], strict=True):
+                    if net is not None:
+                        curves[members] = samples.curves(net, 2 - du).reshape(len(members), 3, *weights.shape)
+                x = self._roots[du] @ derivative_points(p, U, curves, du).reshape(m + 1 - du, -1)
+                size = np.sqrt(np.sum(x.reshape(len(x), -1, *weights.shape) ** 2, axis=(0, 1)))
+                error = np.linalg.norm(errors) * e
+                total += float(np.sum(weights * (2 * size * error + error**2)))
+        return total
+
+    def _errors(self) -> Iterator[list[tuple[FloatArray, FloatArray]]]:
+        """Bound second derivatives of control points between -1 and 1, part by part along v.
+
+        For the orders 0, 1, 2 in u: weights, with the factor of that derivative, and root mean squares over u.
+        Differences of control points become sums: no sign is taken for granted.
+        """
+        m, p, U = len(self.rows) - 1, self.u.degree, self.u.knots
+        kinds = self._kinds[0]
+        nets = [[_sums(k.degree, k.knots, np.ones(k.size), min(dv, k.degree))[None] for k in kinds] for dv in range(3)]
         for along in self._along():
             weights = along[0].weights
+            parts = []
             for du, root in enumerate(self._roots):
                 dv = 2 - du
-                # x, y, z, and errors of 1.
-                curves = np.zeros((m + 1, 4, *weights.shape))
+                curves = np.zeros((m + 1, *weights.shape))
                 for samples, members, net in zip(along, self._members, nets[dv], strict=True):
-                    if net is not None:
-                        basis = samples.basis
-                        sums = abs(derivative_matrix(basis.degree, basis.knots, dv)) @ np.ones((basis.size, 1))
-                        curves[members, :3] = samples.curves(net, dv).reshape(len(members), 3, *weights.shape)
-                        curves[members, 3] = samples.curves(sums.T, dv)
-                across = derivative_points(p, U, curves[:, :3], du).reshape(m + 1 - du, -1)
-                sums = abs(derivative_matrix(p, U, du)) @ curves[:, 3].reshape(m + 1, -1)
-                x, e = ((root @ values).reshape(len(root), -1, *weights.shape) for values in (across, sums))
-                size, error = np.sqrt(np.sum(x**2, axis=(0, 1))), np.linalg.norm(errors) * np.sqrt(np.sum(e**2, (0, 1)))
+                    if dv <= samples.basis.degree:
+                        curves[members] = samples.curves(net, dv)
+                e = (root @ _sums(p, U, curves, du).reshape(m + 1 - du, -1)).reshape(-1, *weights.shape)
                 factor = float(gram_block(*np.eye(3)[du], *np.eye(3)[dv]))
-                total += factor * float(np.sum(weights * (2 * size * error + error**2)))
-        return total
+                parts.append((factor * weights, np.sqrt(np.sum(e**2, axis=0))))
+            yield parts
 
     @cached_property
     def _members(self) -> list[list[int]]:
@@ -328,6 +349,13 @@ class EnergyForm:
             dense[:, np.arange(len(s.first)), s.local(order)] = (values * np.sqrt(s.weights)).swapaxes(0, 1)
             roots.append(np.asarray(np.linalg.qr(dense.reshape(-1, self.u.size - order), mode="r")))
         return roots
+
+
+def _sums(degree: int, knots: FloatArray, points: FloatArray, order: int) -> FloatArray:
+    """Return control points of the derivative with sums in place of differences, for points that are not negative."""
+    # Differences of alternating signs are sums, and alternate again.
+    signs = (-1.0) ** np.arange(len(points)).reshape((-1,) + (1,) * (points.ndim - 1))
+    return np.abs(derivative_points(degree, knots, signs * points, order))
 
 
 def thin_plate_energy(surface: Surface) -> float:

@@ -13,39 +13,31 @@ from semispline.solver.blending.gram import thin_plate_energy
 from semispline.solver.blending.problem import BlendProblem, make_problem
 from semispline.solver.blending.result import BlendResult
 from semispline.solver.blending.rounding import measure_energy_rounding, rounding_warning
+from semispline.solver.blending.shape_parameters import Found, active_bounds, find_shape_parameters
 from semispline.solver.blending.sides import Side, make_side, matched_sides
+from semispline.solver.blending.warnings import bound_warnings, contact_warnings, remedy, seam_warning, shape_warnings
 from semispline.solver.errors import ComputationError, ContactError, FoldError
 from semispline.solver.judge import (
     Base,
     Contact,
     Correspondence,
-    Crease,
-    Regularity,
     check_regular_edge,
     correspond,
-    is_closed,
+    local_origin,
     measure_contact,
     measure_creases,
     measure_regularity,
     required_limits,
     snapped_seam,
     tied_directions,
+    untold,
 )
-from semispline.solver.options import BlendOptions, Continuity, Flip, Method, named_options
-from semispline.solver.proof import Certificate, check_certificate
+from semispline.solver.options import BlendOptions, Continuity, Flip, named_options
+from semispline.solver.proof import check_certificate
 from semispline.solver.splines import BSplineCurve, SemiStructuredSurface
 
-# A normal that turns this far between neighbouring samples has met a fold; well before it, it is too coarse to tell.
-FOLD_TURN = 90.0
-STEEP_TURN = 60.0
-# An area element this far below its mean is as good as a fold.
-PINCH = 1e-3
 # Blends in two directions whose normals turn alike to this many degrees turn equally.
 _EQUAL_TURNS = 1e-3
-# A normal that turns this far across a knot of full multiplicity, in degrees, makes a crease: well below what CAD
-# systems take for tangent (0.01 and more), well above the rounding of a surface that is smooth there.
-SHARP = 1e-3
-_NAMED = 5
 
 
 def blend(
@@ -74,7 +66,7 @@ def blend(
     ComputationError
         The solver failed.
     ContactError
-        The referee found the contact worse than its limits.
+        The referee found the contact worse than its limits, or rounding hides whether it is.
     FoldError
         With `strict`: the blend has warnings.
 
@@ -94,10 +86,10 @@ def blend(
     chosen = named_options(options, named)
     if len(tied := _tied(a, b, chosen.flip)) > 1:
         return _strictly(_less_turning(a, b, tied, replace(chosen, strict=False)), chosen.strict)
-    stated = state_problem(a, b, chosen)
+    stated = state_problem(a, b, replace(chosen, flip=tied[0]))
     problem, sides, frame, matched = stated.problem, stated.sides, stated.frame, stated.matched
     # The one or two numbers that are not linear, then everything that is.
-    found = _shape_parameters(problem, chosen.method)
+    found = find_shape_parameters(problem, chosen.method)
     surface = _surface(problem, found, sides, frame)
     energy = thin_plate_energy(surface)
     seconds = time.perf_counter() - started
@@ -110,10 +102,11 @@ def blend(
     regularity = measure_regularity(surface)
     creases = measure_creases(surface)
     warnings = (
-        _warnings(regularity, creases)
-        + _bound_warnings(problem, found)
+        shape_warnings(regularity, creases)
+        + bound_warnings(problem, found)
         + rounding_warning(rounding, surface, energy)
-        + _seam_warning(a, b)
+        + seam_warning(a, b)
+        + contact_warnings(surface, (contact_a, contact_b), chosen.continuities, found)
     )
     result = BlendResult(
         surface=surface,
@@ -125,7 +118,7 @@ def blend(
         beta2=None if sides[1].order == 0 else found.b,
         alpha2_bounds=problem.bounds[0] if problem.free[0] else None,
         beta2_bounds=problem.bounds[1] if problem.free[1] else None,
-        active_bounds=_active_bounds(problem, found),
+        active_bounds=active_bounds(problem, found),
         flipped=matched.flipped,
         seam_shift=matched.shift,
         contact_a=contact_a,
@@ -178,10 +171,13 @@ def state_problem(a: Base, b: Base, options: BlendOptions | None = None, **named
     # The bases as the blend sees them: contact at w = 0, one parameter v, coordinates of size 1.
     sides = make_side(a, at_a, "base a"), make_side(b, at_b, "base b")
     matched = snapped_seam(a, b, correspond(a, b, chosen.flip))
-    sides = matched_sides(*sides, matched)
-    frame = _frame(*sides)
-    problem = make_problem(sides[0].moved(*frame), sides[1].moved(*frame), chosen)
-    return StatedProblem(problem, sides, frame, matched)
+    # Far from the origin each operation would round by the distance: there is but one rounding, of the result.
+    origin = local_origin(a.surface, b.surface)
+    local = matched_sides(sides[0].moved(origin, 1.0), sides[1].moved(origin, 1.0), matched)
+    sides = local[0].moved(-origin, 1.0), local[1].moved(-origin, 1.0)
+    centre, size = _frame(*sides)
+    problem = make_problem(local[0].moved(centre - origin, size), local[1].moved(centre - origin, size), chosen)
+    return StatedProblem(problem, sides, (centre, size), matched)
 
 
 def _tied(a: Base, b: Base, flip: Flip) -> tuple[Flip, ...]:
@@ -218,22 +214,6 @@ def _strictly(result: BlendResult, strict: bool) -> BlendResult:
     return result
 
 
-@dataclass(frozen=True)
-class _Found:
-    """Shape parameters, and how they were found."""
-
-    a: float
-    b: float
-    method: str
-    iterations: int = 0
-    kkt_residual: float | None = None
-    certificate: Certificate | None = None
-    proven_gap: float | None = None
-    constraint_rank: tuple[int, int] | None = None
-    status: str | None = None
-    search_excess: float | None = None
-
-
 def _frame(a: Side, b: Side) -> tuple[FloatArray, float]:
     """Centre and size of the control points that contact reads: the solve works in coordinates of size 1."""
     points = np.concatenate([a.rows.reshape(-1, 3), b.rows.reshape(-1, 3)])
@@ -241,37 +221,8 @@ def _frame(a: Side, b: Side) -> tuple[FloatArray, float]:
     return (low + high) / 2, float((high - low).max()) or 1.0
 
 
-def _shape_parameters(problem: BlendProblem, method: Method) -> _Found:
-    """Find alpha^2 and beta^2 of least energy; where both are fixed there is nothing to find."""
-    if not any(problem.free):
-        return _Found(*problem.start, method="linear")
-    # Each method waits until it is asked for: CasADi alone takes longer to load than a blend to solve.
-    if method == "reduced":
-        from semispline.solver.blending.reduced import solve_reduced
-
-        proved = solve_reduced(problem)
-        return _Found(proved.a, proved.b, method, certificate=proved.certificate, proven_gap=proved.gap)
-    if method == "casadi":
-        from semispline.solver.blending.nlp import solve_constrained
-
-        local = solve_constrained(problem)
-        return _Found(
-            local.a,
-            local.b,
-            method,
-            local.iterations,
-            local.kkt_residual,
-            constraint_rank=local.constraint_rank,
-            status=local.status,
-        )
-    from semispline.solver.blending.quasi_newton import solve_quasi_newton
-
-    rough = solve_quasi_newton(problem)
-    return _Found(rough.a, rough.b, method, rough.iterations, status=rough.status, search_excess=rough.excess)
-
-
 def _surface(
-    problem: BlendProblem, found: _Found, sides: tuple[Side, Side], frame: tuple[FloatArray, float]
+    problem: BlendProblem, found: Found, sides: tuple[Side, Side], frame: tuple[FloatArray, float]
 ) -> SemiStructuredSurface:
     """Set the prescribed rows anew from alpha and beta, solve for the free ones, and go back to model units."""
     centre, size = frame
@@ -286,32 +237,13 @@ def _surface(
     return SemiStructuredSurface(problem.form.u.degree, problem.form.u.knots, tuple(curves))
 
 
-def _shape_unknowns(problem: BlendProblem, found: _Found) -> list[tuple[str, float, float, float]]:
-    """Return name, value found and admissible ends of each shape parameter that was searched."""
-    return [
-        (name, value, *ends)
-        for name, is_free, value, ends in zip(
-            ("alpha2", "beta2"), problem.free, (found.a, found.b), problem.bounds, strict=True
-        )
-        if is_free
-    ]
-
-
-def _active_bounds(problem: BlendProblem, found: _Found) -> tuple[str, ...]:
-    active = []
-    for name, value, low, high in _shape_unknowns(problem, found):
-        # 1e-9: what the ways there and back between alpha and alpha^2 in natural units may round.
-        active += [f"{name} lower"] * (value <= low * (1 + 1e-9)) + [f"{name} upper"] * (value >= high * (1 - 1e-9))
-    return tuple(active)
-
-
 def _checked_contacts(
     a: Base,
     b: Base,
     surface: SemiStructuredSurface,
     continuity: tuple[Continuity, Continuity],
     matched: Correspondence,
-    found: _Found,
+    found: Found,
 ) -> tuple[Contact, Contact]:
     """Let the referee measure both contacts, and refuse a result that misses its limits."""
     contact_a = measure_contact(a, Base(surface, "u0"), correspondence=Correspondence(flipped=False))
@@ -320,13 +252,17 @@ def _checked_contacts(
         ("a", a, contact_a, continuity[0], found.a),
         ("b", b, contact_b, continuity[1], found.b),
     ):
-        for measure, value, limit in required_limits(contact, wanted):
-            if np.isnan(value):
-                check_regular_edge(base)
-                raise ContactError(
-                    f"contact {name}: the blend is degenerate where it meets the base, its shape parameter is "
-                    f"{shape:.1e}; try a larger alpha, or a box that begins higher"
-                )
+        measured = required_limits(contact, wanted)
+        if any(np.isnan(value) for _, value, _ in measured):
+            check_regular_edge(base)
+            raise ContactError(
+                f"contact {name}: the blend is degenerate where it meets the base, its shape parameter is "
+                f"{shape:.1e}; try a larger alpha, or a box that begins higher"
+            )
+        hidden = untold(contact, wanted)
+        if hidden:
+            raise ContactError(f"contact {name}: {'; '.join(hidden)} for {wanted}; {remedy(surface, shape)}")
+        for measure, value, limit in measured:
             if not value <= limit:
                 raise ContactError(
                     f"contact {name}: {measure} is {value:.3g}, expected at most {limit:.3g} for {wanted}; "
@@ -339,56 +275,3 @@ def _seam(surface: SemiStructuredSurface, problem: BlendProblem) -> Contact | No
     if problem.seam_order < 0:
         return None
     return measure_contact(Base(surface, "v1"), Base(surface, "v0"), flip="no")
-
-
-def _warnings(regularity: Regularity, creases: tuple[Crease, ...]) -> tuple[str, ...]:
-    """Return what a user should look at before the blend is used."""
-    found = []
-    sharpest = max((crease.angle_degrees for crease in creases), default=0.0)
-    turn = regularity.largest_turn_degrees
-    # A turn that a crease explains is no fold.
-    if turn - sharpest >= FOLD_TURN:
-        found.append(f"the blend folds: its normal turns by {turn:.0f} degrees between samples")
-    elif turn - sharpest > STEEP_TURN:
-        found.append(
-            f"the blend turns steeply: its normal turns by {turn:.0f} degrees between samples, above "
-            f"{STEEP_TURN:.0f} a fold may be missed"
-        )
-    if turn - sharpest < FOLD_TURN and regularity.least_area_ratio < PINCH:
-        found.append(f"the blend is pinched: its area element falls to {regularity.least_area_ratio:.1e} of the mean")
-    sharp = [crease for crease in creases if crease.angle_degrees >= SHARP]
-    if sharp:
-        places = ", ".join(f"{crease.parameter} = {crease.at:g}" for crease in sharp[:_NAMED])
-        more = f" and {len(sharp) - _NAMED} more" if len(sharp) > _NAMED else ""
-        found.append(
-            f"the blend is creased at {places}{more}, by up to {sharpest:.2g} degrees: knots of full multiplicity, "
-            "across which the energy counts nothing"
-        )
-    return tuple(found)
-
-
-def _bound_warnings(problem: BlendProblem, found: _Found) -> tuple[str, ...]:
-    """Return a warning for each shape parameter that a bound stopped, or that is beyond: method bfgs knows none."""
-    warnings = []
-    active = _active_bounds(problem, found)
-    for name, value, low, high in _shape_unknowns(problem, found):
-        if not low <= value <= high:
-            warnings.append(
-                f"{name} is {value:.3g}, outside of the admissible {low:.3g} to {high:.3g}: "
-                f"method {found.method} knows no bounds"
-            )
-        elif f"{name} lower" in active or f"{name} upper" in active:
-            which, bound = ("lower", low) if f"{name} lower" in active else ("upper", high)
-            warnings.append(
-                f"{name} is at its {which} bound {bound:.3g}: beyond it the energy may fall further; widen the box, or "
-                "set alpha"
-            )
-    return tuple(warnings)
-
-
-def _seam_warning(a: Base, b: Base) -> tuple[str, ...]:
-    """Return a warning where one contact curve is closed and the other is open."""
-    if is_closed(a) == is_closed(b):
-        return ()
-    which = "a" if is_closed(a) else "b"
-    return (f"contact curve {which} is closed, the other is open: the blend is open along the seam of {which}",)

@@ -248,7 +248,7 @@ def make_problem(a: Side, b: Side, options: BlendOptions) -> BlendProblem:
         The contact curves coincide, one of them is a point, or a cross derivative that contact needs vanishes.
     """
     u = blend_u_basis(options.degree_u, options.middle_curves, options.u_knots)
-    orders = [seam_order(side.along, side.rows[: side.order + 1]) for side in (a, b)]
+    orders = [seam_order(side.along, side.rows[: side.order + 1], side.largest) for side in (a, b)]
     closed = min(orders)
     middle = middle_bases(a.along, b.along, options.middle_curves, options.middle_knots, closed=closed >= 0)
     if closed >= 0 and options.middle_knots is None:

@@ -47,7 +47,7 @@ class BlendResult:
         Knots of full multiplicity, across which (11) counts nothing, and how far the normal turns there.
     warnings : tuple of str
         What a user should look at: folds, steep turns, creases, shape parameters at their bounds or beyond, an energy
-        that is rounding.
+        that is rounding, contact of which rounding hides a part, bases without a normal somewhere.
     iterations : int
         Of the nonlinear solver; 0 where there is none.
     status : str or None

@@ -59,19 +59,37 @@ def measure_energy_rounding(
     # Prescribed rows are combinations of those of the bases, and are as coarse as these.
     errors = np.finfo(float).eps * np.maximum(np.abs(points).max(axis=0), np.abs(sides).max(axis=0))
     own = problem.form if problem.form.rows is problem.rows else EnergyForm(problem.form.u, problem.rows)
+    # Of the surface as it is, and with v stretched as in the energy that is minimised; vv, uv, uu stretch unlike.
+    stretch = (_length(problem.form) / _length(own)) ** np.array([-3.0, -1.0, 1.0])
+    parts = own.error_energies() * float(np.sum(errors**2))
+    least = energy * float(stretch.min())
+    floor, minimised_floor = (_ZERO_ENERGY * _bent(form) * size**2 for form in (own, problem.form))
+    change = _change(energy, float(parts.sum()))
+    share = max(change / max(energy, floor), _change(least, float(parts @ stretch)) / max(least, minimised_floor))
+    if share <= ROUNDING_SHARE:
+        return EnergyRounding(change, share)
+    # Only where that is not enough: place by place.
     change = own.change_by_errors(points - centre, errors)
-    share = change / max(energy, _ZERO_ENERGY * _bent(own) * size**2)
+    share = change / max(energy, floor)
     if own is not problem.form:
         minimised = float(problem.form.products(points[None] - centre)[0, 0])
-        floor = _ZERO_ENERGY * _bent(problem.form) * size**2
-        share = max(share, problem.form.change_by_errors(points - centre, errors) / max(minimised, floor))
+        change_there = problem.form.change_by_errors(points - centre, errors)
+        share = max(share, change_there / max(minimised, minimised_floor))
     return EnergyRounding(change, share)
+
+
+def _change(energy: float, errors: float) -> float:
+    """Bound the change of an energy by errors of an energy of their own: its root is a norm."""
+    return float(2 * np.sqrt(energy * errors) + errors)
+
+
+def _length(form: EnergyForm) -> float:
+    return float(form.rows[0].knots[-1] - form.rows[0].knots[0])
 
 
 def _bent(form: EnergyForm) -> float:
     """Return the energy of a surface all of whose second derivatives over the unit square are 1."""
-    knots = form.rows[0].knots
-    length = float(knots[-1] - knots[0])
+    length = _length(form)
     return length + 2 / length + 1 / length**3
 
 

@@ -34,6 +34,8 @@ class Side:
         Degree and knots along the edge, in the parameter v of the blend.
     rows : ndarray, shape (3, n, 3)
         Control rows from the edge inwards; a base with fewer rows repeats its last one, which contact does not read.
+    largest : float
+        Largest coordinate of the rows as they were given, in today's units: their rounding goes with it.
     """
 
     continuity: Continuity
@@ -41,6 +43,7 @@ class Side:
     spans: tuple[float, float]
     along: Basis
     rows: FloatArray
+    largest: float
 
     @property
     def order(self) -> int:
@@ -81,7 +84,7 @@ class Side:
 
     def moved(self, centre: FloatArray, size: float) -> Side:
         """Return the same side in coordinates (x - centre) / size."""
-        return replace(self, rows=(self.rows - centre) / size)
+        return replace(self, rows=(self.rows - centre) / size, largest=self.largest / size)
 
 
 def make_side(base: Base, continuity: Continuity, name: str = "base") -> Side:
@@ -112,7 +115,7 @@ def make_side(base: Base, continuity: Continuity, name: str = "base") -> Side:
         steps = knots - knots[0]
     rows = net[[min(i, len(net) - 1) for i in range(_ROWS)]]
     spans = (float(steps[degree + 1]), float(steps[min(degree + 2, len(steps) - 1)]))
-    return Side(continuity, degree, spans, Basis(*along), rows)
+    return Side(continuity, degree, spans, Basis(*along), rows, float(np.abs(rows).max()))
 
 
 def matched_sides(a: Side, b: Side, matched: Correspondence) -> tuple[Side, Side]:
@@ -122,7 +125,7 @@ def matched_sides(a: Side, b: Side, matched: Correspondence) -> tuple[Side, Side
     """
     along, rows = b.along, b.rows
     if matched.shift:
-        along, rows = reseamed(along, rows, matched.shift)
+        along, rows = reseamed(along, rows, matched.shift, b.largest)
     knots = along.knots
     if matched.flipped:
         rows, knots = rows[:, ::-1], reversed_knots(knots)

@@ -24,7 +24,7 @@ from semispline.solver.blending import (
     state_problem,
 )
 from semispline.solver.c_export.readme import readme
-from semispline.solver.io import check_folder, read_problem, read_surfaces, write_texts
+from semispline.solver.io import check_folder, check_outputs, read_problem, read_surfaces, split_spec, write_texts
 from semispline.solver.judge import Base
 
 NAME = "blend"
@@ -58,7 +58,12 @@ def write_c(folder: str | Path, problem_file: str | Path) -> list[Path]:
     surfaces = [next(read).surface if isinstance(base, str) else base for base in bases]
     edges: list[Any] = [stored.edge_a, stored.edge_b]
     a, b = (Base(surface, edge) for surface, edge in zip(surfaces, edges, strict=True))
-    return write_texts(folder, c_files(state_problem(a, b, stored.options)))
+    texts = c_files(state_problem(a, b, stored.options))
+    if Path(folder).is_dir():
+        check_outputs(
+            {name: Path(folder) / name for name in texts}, [problem_file, *(split_spec(spec)[0] for spec in specs)]
+        )
+    return write_texts(folder, texts)
 
 
 def c_files(stated: StatedProblem) -> dict[str, str]:

@@ -1,9 +1,13 @@
 from .disk import atomic_path as atomic_path
 from .disk import check_folder as check_folder
 from .disk import check_output as check_output
+from .disk import check_outputs as check_outputs
+from .disk import shown as shown
 from .disk import write_text as write_text
 from .disk import write_texts as write_texts
 from .faces import SurfaceEntry as SurfaceEntry
+from .faces import counted as counted
+from .faces import without_surfaces as without_surfaces
 from .json_files import StoredProblem as StoredProblem
 from .json_files import read_problem as read_problem
 from .json_files import write_problem as write_problem
@@ -13,9 +17,12 @@ from .meshes import sampled as sampled
 from .meshes import triangle_mesh as triangle_mesh
 from .occ_kernel import require_kernel as require_kernel
 from .occ_writing import occ_surface as occ_surface
+from .surface_files import LoadedSurface as LoadedSurface
 from .surface_files import check_surface_output as check_surface_output
 from .surface_files import in_one_unit as in_one_unit
-from .surface_files import list_surfaces as list_surfaces
+from .surface_files import list_file as list_file
 from .surface_files import read_all as read_all
 from .surface_files import read_surfaces as read_surfaces
+from .surface_files import split_spec as split_spec
+from .surface_files import trimmed_edge_warning as trimmed_edge_warning
 from .surface_files import write_surface as write_surface

@@ -5,7 +5,8 @@ from __future__ import annotations
 import os
 import secrets
 import shutil
-from collections.abc import Iterator, Mapping
+import stat
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
@@ -22,16 +23,75 @@ def check_output(path: str | Path) -> Path:
     FileError
         No such folder, no right to write, or a folder or device of that name.
     """
-    target = Path(os.path.realpath(path))
-    if target.is_dir():
-        raise FileError(f"{path}: is a folder; give the name of a file")
-    if target.exists() and not target.is_file():
-        raise FileError(f"{path}: is not a regular file; give the name of a file")
+    try:
+        target = Path(os.path.realpath(path))
+        mode = _mode(target)
+    except (OSError, ValueError) as error:
+        raise FileError(f"{shown(path)}: cannot be written: {_reason(error)}; give another name") from None
+    if mode is not None and stat.S_ISDIR(mode):
+        raise FileError(f"{shown(path)}: is a folder; give the name of a file")
+    if mode is not None and not stat.S_ISREG(mode):
+        raise FileError(f"{shown(path)}: is not a regular file; give the name of a file")
     if not target.parent.is_dir():
-        raise FileError(f"{path}: folder {target.parent} does not exist; create it first")
+        problem = "is not a folder; choose one" if target.parent.exists() else "does not exist; create it first"
+        raise FileError(f"{shown(path)}: folder {shown(target.parent)} {problem}")
     if not os.access(target.parent, os.W_OK):
-        raise FileError(f"{path}: folder {target.parent} may not be written to; choose another")
+        raise FileError(f"{shown(path)}: folder {shown(target.parent)} may not be written to; choose another")
     return target
+
+
+def check_outputs(outputs: Mapping[str, str | Path | None], inputs: Iterable[str | Path]) -> None:
+    """Refuse an output that cannot be written, is one of the inputs, or is another output.
+
+    What counts is the file: links of both kinds are followed, and `./` before a name changes nothing.
+
+    Parameters
+    ----------
+    outputs : mapping
+        Option -> path; None where it was not given.
+    inputs : iterable of str or Path
+
+    Raises
+    ------
+    FileError
+        With the option.
+    """
+    taken = [(f"the input {shown(path)}", path) for path in inputs]
+    for option, path in outputs.items():
+        if path is None:
+            continue
+        check_output(path)
+        same = next((what for what, other in taken if _same_file(path, other)), None)
+        if same is not None:
+            raise FileError(f"{option}: {shown(path)} is {same}; give another name")
+        taken.append((f"the file of {option}", path))
+
+
+def shown(path: str | Path) -> str:
+    """Return a path as a message can hold it."""
+    text = str(path)
+    text = text if len(text) <= 300 else f"{text[:140]}...{text[-140:]}"
+    return text if text.isprintable() else repr(text)
+
+
+def _same_file(a: str | Path, b: str | Path) -> bool:
+    try:
+        return os.path.realpath(a) == os.path.realpath(b) or os.path.samefile(a, b)
+    except (OSError, ValueError):
+        # One of them does not exist, or cannot.
+        return False
+
+
+def _mode(path: Path) -> int | None:
+    """Return kind and rights of a file; None where there is none."""
+    try:
+        return path.stat().st_mode
+    except (FileNotFoundError, NotADirectoryError):
+        return None
+
+
+def _reason(error: OSError | ValueError) -> str:
+    return (error.strerror if isinstance(error, OSError) else None) or str(error)
 
 
 @contextmanager
@@ -51,14 +111,14 @@ def atomic_path(path: str | Path) -> Iterator[Path]:
     try:
         yield temporary
         if not temporary.is_file():
-            raise FileError(f"{path}: the writer produced no file")
+            raise FileError(f"{shown(path)}: the writer produced no file")
         with temporary.open("rb+") as file:
             os.fsync(file.fileno())
         if target.exists():
             shutil.copymode(target, temporary)
         os.replace(temporary, target)
     except OSError as error:
-        raise FileError(f"{path}: cannot be written: {error.strerror or error}") from error
+        raise FileError(f"{shown(path)}: cannot be written: {error.strerror or error}") from error
     finally:
         temporary.unlink(missing_ok=True)
 
@@ -94,14 +154,18 @@ def check_folder(path: str | Path) -> Path:
     FileError
         A file of that name, no such parent folder, or no right to write.
     """
-    folder = Path(os.path.realpath(path))
-    if folder.is_dir():
-        if not os.access(folder, os.W_OK):
-            raise FileError(f"{path}: may not be written to; choose another folder")
-        return folder
-    if folder.exists():
-        raise FileError(f"{path}: is not a folder; give the name of a folder")
-    return check_output(path)
+    try:
+        folder = Path(os.path.realpath(path))
+        mode = _mode(folder)
+    except (OSError, ValueError) as error:
+        raise FileError(f"{shown(path)}: cannot be a folder: {_reason(error)}; give another name") from None
+    if mode is None:
+        return check_output(path)
+    if not stat.S_ISDIR(mode):
+        raise FileError(f"{shown(path)}: is not a folder; give the name of a folder")
+    if not os.access(folder, os.W_OK):
+        raise FileError(f"{shown(path)}: may not be written to; choose another folder")
+    return folder
 
 
 def write_texts(path: str | Path, texts: Mapping[str, str]) -> list[Path]:
@@ -125,7 +189,7 @@ def write_texts(path: str | Path, texts: Mapping[str, str]) -> list[Path]:
             shutil.rmtree(folder, ignore_errors=True)
         if isinstance(error, FileError):
             raise
-        raise FileError(f"{path}: cannot be written: {error.strerror or error}") from error
+        raise FileError(f"{shown(path)}: cannot be written: {error.strerror or error}") from error
     return [folder / name for name in texts]
 
 
@@ -141,7 +205,7 @@ def read_bytes(path: str | Path) -> bytes:
     try:
         return Path(path).read_bytes()
     except OSError as error:
-        raise FileError(f"{path}: cannot be read: {error.strerror or error}") from None
+        raise FileError(f"{shown(path)}: cannot be read: {error.strerror or error}") from None
 
 
 def require_file(path: str | Path) -> None:
@@ -153,10 +217,12 @@ def require_file(path: str | Path) -> None:
         With the reason.
     """
     try:
-        found, regular = Path(path).exists(), Path(path).is_file()
+        mode = _mode(Path(path))
     except (OSError, ValueError) as error:
-        raise FileError(f"{str(path)[:80]!r}: not a path: {error}") from None
-    if not found:
-        raise FileError(f"{path}: no such file; check the path")
-    if not regular:
-        raise FileError(f"{path}: not a regular file; give the name of a file")
+        raise FileError(f"{shown(path)}: cannot be read: {_reason(error)}; check the path") from None
+    if mode is None:
+        raise FileError(f"{shown(path)}: no such file; check the path")
+    if not stat.S_ISREG(mode):
+        raise FileError(f"{shown(path)}: not a regular file; give the name of a file")
+    if not os.access(path, os.R_OK):
+        raise FileError(f"{shown(path)}: may not be read; change its rights")

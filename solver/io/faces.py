@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import Protocol
 
 import numpy as np
 
 from semispline.solver.arrays import FloatArray
 from semispline.solver.errors import FileError, InputError
+from semispline.solver.io.face_boundary import FaceBoundary
 from semispline.solver.splines import MERGE_TOLERANCE, BSplineSurface, SemiStructuredSurface, Surface, clamped_surface
 
 # Weights that agree to this relative tolerance (rounding of a product and a quotient) are one weight.
@@ -42,6 +43,12 @@ class Face(Protocol):
     def trimmed(self) -> bool | None:
         """Whether curves cut the face out of its surface; None if the format does not tell."""
 
+    def boundary(self) -> FaceBoundary | None:
+        """Return the edges that bound the face; None where it is the whole surface that `surface` returns.
+
+        A reader in a process of its own knows them of those faces only whose numbers `open_model` was given.
+        """
+
     def surface(self) -> Surface:
         """Return the exact, clamped (rational) B-spline surface, without trimming."""
 
@@ -57,11 +64,14 @@ class Model:
         Key of `MILLIMETRES`: the unit of the coordinates; None where the file does not say.
     faces : sequence of Face
         In the order of their numbers.
+    others : mapping
+        What else the file holds, from which no surface is taken: kind ("mesh", "edge", ...) -> how many.
     """
 
     path: str
     unit: str | None
     faces: Sequence[Face]
+    others: Mapping[str, int] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -141,7 +151,7 @@ def picked(model: Model, number: int | None) -> Face:
     """
     count = len(model.faces)
     if count == 0:
-        raise FileError(f"{model.path}: holds no surface; give a file that has one")
+        raise FileError(f"{model.path}: holds {without_surfaces(model.others)}")
     if number is None:
         if count > 1:
             raise FileError(
@@ -152,6 +162,31 @@ def picked(model: Model, number: int | None) -> Face:
     if number >= count:
         raise FileError(f"{model.path}#{number}: no such surface; the file holds {count}, numbered 0 to {count - 1}")
     return model.faces[number]
+
+
+def counted(others: Mapping[str, int]) -> str:
+    """Return what a file holds besides surfaces, in words.
+
+    Examples
+    --------
+    >>> counted({"mesh": 2, "SubD": 1})
+    '2 meshes, 1 SubD'
+    """
+    plural = {"mesh": "meshes", "vertex": "vertices"}
+    return ", ".join(f"{n} {kind if n == 1 else plural.get(kind, f'{kind}s')}" for kind, n in others.items())
+
+
+def without_surfaces(others: Mapping[str, int]) -> str:
+    """Return what is said of a file without surfaces.
+
+    Examples
+    --------
+    >>> without_surfaces({"mesh": 2, "SubD": 1})
+    'no surfaces: 2 meshes, 1 SubD; only surfaces, faces of Breps and extrusions can be used'
+    """
+    if not others:
+        return "no surfaces, and nothing else that is known here"
+    return f"no surfaces: {counted(others)}; only surfaces, faces of Breps and extrusions can be used"
 
 
 def without_equal_weights(weights: FloatArray) -> FloatArray | None:

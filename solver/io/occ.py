@@ -9,17 +9,21 @@ Source: ISO 10303-42; IGES 5.3, entity 128; reference documentation of Open CASC
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from semispline.solver.arrays import FloatArray
-from semispline.solver.errors import FileError, SemisplineError
+from semispline.solver.errors import FileError, InputError, SemisplineError
 from semispline.solver.io.disk import require_file
+from semispline.solver.io.face_boundary import FaceBoundary, joined
 from semispline.solver.io.faces import MILLIMETRES, Model, surface_from_net, without_equal_weights
+from semispline.solver.io.foreign import read_apart
+from semispline.solver.io.occ_boundary import ON_EDGE, distance_to_ends, edges_of, occ_boundary, pcurve_points
 from semispline.solver.io.occ_kernel import first_line, require_kernel, system_unit
 from semispline.solver.io.silence import silenced
 from semispline.solver.splines import BSplineSurface
@@ -47,8 +51,6 @@ _KINDS = {
     "Geom_SurfaceOfLinearExtrusion": "extrusion",
     "Geom_OffsetSurface": "offset",
 }
-# A trimming curve follows the edge of its surface if it stays within this fraction of the parameter range.
-_ON_EDGE = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,26 +79,24 @@ class OccFace:
 
     def _is_trimmed(self) -> bool:
         from OCP.BRep import BRep_Tool
-        from OCP.BRepAdaptor import BRepAdaptor_Curve2d
-        from OCP.TopAbs import TopAbs_ShapeEnum
-        from OCP.TopExp import TopExp_Explorer
-        from OCP.TopoDS import TopoDS
 
         if BRep_Tool.NaturalRestriction_s(self.face):
             return False
-        low_u, high_u, low_v, high_v = self._range()
-        edges = TopExp_Explorer(self.face, TopAbs_ShapeEnum.TopAbs_EDGE)
-        while edges.More():
-            curve = BRepAdaptor_Curve2d(TopoDS.Edge(edges.Current()), self.face)
-            t = np.linspace(curve.FirstParameter(), curve.LastParameter(), 7)
-            points = [curve.Value(float(x)) for x in t]
-            u, v = np.array([p.X() for p in points]), np.array([p.Y() for p in points])
-            off_u = np.minimum(abs(u - low_u), abs(u - high_u)) / (high_u - low_u)
-            off_v = np.minimum(abs(v - low_v), abs(v - high_v)) / (high_v - low_v)
-            if np.minimum(off_u, off_v).max() > _ON_EDGE:
-                return True
-            edges.Next()
-        return False
+        ends = self._range()
+        return any(
+            distance_to_ends(pcurve_points(edge, self.face), ends).min(axis=1).max() > ON_EDGE
+            for edge in edges_of(self.face)
+        )
+
+    def boundary(self) -> FaceBoundary | None:
+        """Return the edges of the face, as `Face` says."""
+        if self.trimmed() is False:
+            return None
+        try:
+            return occ_boundary(self.face, self._range())
+        except Exception:
+            # Each failure of the kernel has a class of its own.
+            return joined([])
 
     def surface(self) -> BSplineSurface:
         """Return the exact, clamped (rational) B-spline surface, without trimming.
@@ -171,8 +171,45 @@ class OccFace:
         return GeomConvert.SurfaceToBSplineSurface_s(geometry)
 
 
+@dataclass(frozen=True, eq=False)
+class _ReadFace:
+    """A face as the other process converted it: arguments of `BSplineSurface`, or the error."""
+
+    kind: str
+    is_trimmed: bool | None
+    edges: FaceBoundary | None
+    content: tuple[Any, ...] | InputError
+
+    def trimmed(self) -> bool | None:
+        return self.is_trimmed
+
+    def boundary(self) -> FaceBoundary | None:
+        return self.edges
+
+    def surface(self) -> BSplineSurface:
+        if isinstance(self.content, InputError):
+            raise self.content
+        return BSplineSurface(*self.content)
+
+
+def open_occ(path: str | Path, bounded: Collection[int] = ()) -> Model:
+    """Open a STEP, IGES or BREP file, read by a process of its own; `bounded` are the faces whose edges are wanted.
+
+    Raises
+    ------
+    FileError
+        As `foreign.read_apart`, or the extra `cad` is not installed.
+    ComputationError
+        As `foreign.read_apart`.
+    """
+    require_file(path)
+    require_kernel(path)
+    unit, faces, others = read_apart(path, "occ_worker", "Open CASCADE", map(str, bounded))
+    return Model(str(path), unit, [_ReadFace(*face) for face in faces], others)
+
+
 def read_occ(path: str | Path) -> Model:
-    """Read a STEP, IGES or BREP file in this process; `occ_process.open_occ` survives what is damaged.
+    """Read a STEP, IGES or BREP file in this process; `open_occ` survives what is damaged.
 
     Raises
     ------
@@ -186,13 +223,14 @@ def read_occ(path: str | Path) -> Model:
     try:
         with silenced(1, 2):
             shape, unit = read(str(path))
-            faces = [] if shape is None or shape.IsNull() else list(_faces(shape))
-    except SemisplineError:
+            found = shape is not None and not shape.IsNull()
+            faces, others = (list(_faces(shape)), _others(shape)) if found else ([], {})
+    except (SemisplineError, MemoryError):
         raise
     except Exception as error:
         # The kernel raises a class of its own for each of its failures.
         raise FileError(f"{path}: Open CASCADE cannot read it ({first_line(error)})") from None
-    return Model(str(path), unit, [OccFace(face, f"{path}#{number}") for number, face in enumerate(faces)])
+    return Model(str(path), unit, [OccFace(face, f"{path}#{number}") for number, face in enumerate(faces)], others)
 
 
 def _read_step(path: str) -> tuple[Any, str | None]:
@@ -250,6 +288,26 @@ def _faces(shape: Any) -> Iterator[Any]:
     while explorer.More():
         yield TopoDS.Face(explorer.Current())
         explorer.Next()
+
+
+def _others(shape: Any) -> dict[str, int]:
+    """Count wires, edges and vertices that bound nothing larger."""
+    from OCP.TopAbs import TopAbs_ShapeEnum
+    from OCP.TopExp import TopExp_Explorer
+
+    kinds = ("FACE", "WIRE", "EDGE", "VERTEX")
+    found = {}
+    for larger, kind in pairwise(kinds):
+        explorer = TopExp_Explorer(
+            shape, getattr(TopAbs_ShapeEnum, f"TopAbs_{kind}"), getattr(TopAbs_ShapeEnum, f"TopAbs_{larger}")
+        )
+        count = 0
+        while explorer.More():
+            count += 1
+            explorer.Next()
+        if count:
+            found[kind.lower()] = count
+    return found
 
 
 def _read_out(spline: Any) -> BSplineSurface:

@@ -6,7 +6,7 @@ unclamped surfaces are common. Coordinates stay in the unit of the file.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -17,8 +17,17 @@ import numpy as np
 from semispline.solver.arrays import FloatArray
 from semispline.solver.errors import FileError, SemisplineError
 from semispline.solver.io.disk import require_file
+from semispline.solver.io.face_boundary import (
+    FaceBoundary,
+    cubic_pieces,
+    distances,
+    joined,
+    natural_boundary,
+    points_on,
+)
 from semispline.solver.io.faces import Model, surface_from_net, without_equal_weights
-from semispline.solver.splines import BSplineSurface
+from semispline.solver.io.foreign import read_apart
+from semispline.solver.splines import BSplineSurface, basis_matrix, derivative_points
 
 _UNITS = {
     "Inches": "in",
@@ -32,42 +41,46 @@ _UNITS = {
     "Centimeters": "cm",
     "Microinches": "uin",
 }
-# An edge of a face follows the edge of its surface if it stays within this fraction of the size: rhino3dm shows no
-# curves in parameter space, so points in space are compared with a polygon of _CHORDS chords.
-_ON_EDGE = 1e-4
-_CHORDS = 256
+# An edge of a face follows the edge of its surface if it stays within this fraction of the size. rhino3dm shows no
+# tolerances of edges, which other programs leave far above that of the file; nor curves in parameter space, so that
+# nothing tells on which side of a seam the face lies.
+_ON_EDGE = 3e-4
 
 
 @dataclass(frozen=True, eq=False)
 class RhinoFace:
-    """A surface of a 3dm file; `loops` are points on the edges that bound the face, None where it has no face."""
+    """A surface of a 3dm file.
 
-    source: Any
+    `net` as `rhino_worker` has it; `curves` lie along the edges that bound the face, None where it has no face.
+    """
+
+    kind: str
+    net: tuple[Any, ...] | None
+    curves: Sequence[tuple[int, FloatArray, FloatArray]] | None
     where: str
-    loops: FloatArray | None = None
-
-    @property
-    def kind(self) -> str:
-        """What the file holds; rhino3dm tells no more of the surfaces of a Brep."""
-        return {"NurbsSurface": "B-spline", "Extrusion": "extrusion", "Surface": "surface"}.get(
-            type(self.source).__name__, type(self.source).__name__
-        )
 
     def trimmed(self) -> bool | None:
         """Whether curves cut the face out of its surface."""
-        if self.loops is None:
+        if self.curves is None:
             return False
         try:
-            surface = self.surface()
+            edges, natural = self._edges, natural_boundary(self.surface())
         except SemisplineError:
             return None
-        (u0, u1), (v0, v1) = surface.domain
-        size = float(np.ptp(surface.control_points.reshape(-1, 3), axis=0).max())
-        u, v = np.linspace(u0, u1, _CHORDS + 1), np.linspace(v0, v1, _CHORDS + 1)
-        sides = [surface.evaluate(u, np.full_like(u, v_end)) for v_end in (v0, v1)]
-        sides += [surface.evaluate(np.full_like(v, u_end), v) for u_end in (u0, u1)]
-        distance = np.min([_distance_to_polygon(self.loops, side) for side in sides], axis=0)
-        return bool(distance.max() > _ON_EDGE * size)
+        return bool((distances(points_on(edges), natural)[0] > edges.tolerance.max(initial=0.0)).any())
+
+    def boundary(self) -> FaceBoundary | None:
+        """Return the edges of the face, as `Face` says."""
+        return self._edges if self.trimmed() else None
+
+    @cached_property
+    def _edges(self) -> FaceBoundary:
+        size = float(np.ptp(self.surface().control_points.reshape(-1, 3), axis=0).max())
+        parts = []
+        for degree, knots, net in self.curves or ():
+            breaks = np.unique(knots[degree : len(knots) - degree])
+            parts.append((*cubic_pieces(_evaluator(degree, knots, net), breaks, _ON_EDGE * size), ""))
+        return joined(parts)
 
     def surface(self) -> BSplineSurface:
         """Return the exact, clamped (rational) B-spline surface, without trimming.
@@ -86,42 +99,53 @@ class RhinoFace:
 
     @cached_property
     def _surface(self) -> BSplineSurface:
-        spline = self.source.ToNurbsSurface()
-        if spline is None:
+        if self.net is None:
             raise FileError("openNURBS knows no B-spline form of it; convert it to NURBS where it was drawn")
-        n_u, n_v = spline.Points.CountU, spline.Points.CountV
-        points = [spline.Points[(i, j)] for i in range(n_u) for j in range(n_v)]
-        net = np.array([(p.X, p.Y, p.Z, p.W) for p in points]).reshape(n_u, n_v, 4)
+        degree_u, degree_v, knots_u, knots_v, net, rational = self.net
         weights: FloatArray | None = None
-        if spline.IsRational:
+        if rational:
             weights = without_equal_weights(net[..., 3])
             net = net[..., :3] / net[..., 3:]
-        knots_u, knots_v = _with_ends(spline.KnotsU), _with_ends(spline.KnotsV)
-        return surface_from_net(spline.Degree(0), spline.Degree(1), knots_u, knots_v, net[..., :3], weights)
+        return surface_from_net(degree_u, degree_v, knots_u, knots_v, net[..., :3], weights)
 
 
-def open_3dm(path: str | Path) -> Model:
-    """Open a 3dm file: objects in file order, inside a Brep its surfaces; other objects are left out.
+def open_3dm(path: str | Path, bounded: Collection[int] = ()) -> Model:
+    """Open a 3dm file, read by a process of its own: objects in file order, inside a Brep its surfaces.
+
+    Boundaries are read when they are asked for, whichever faces are `bounded`.
 
     Raises
     ------
     FileError
-        Missing, not a 3dm file, or the extra `cad` is not installed.
+        As `foreign.read_apart`, or the extra `cad` is not installed.
+    ComputationError
+        As `foreign.read_apart`.
     """
     require_file(path)
-    rhino3dm = _library(path)
-    file = rhino3dm.File3dm.Read(str(path))
-    if file is None:
-        raise FileError(f"{path}: not a 3dm file that openNURBS can read")
-    found: list[tuple[Any, FloatArray | None]] = []
-    for item in file.Objects:
-        geometry = item.Geometry
-        if isinstance(geometry, rhino3dm.Brep):
-            found += _brep_surfaces(geometry)
-        elif isinstance(geometry, rhino3dm.Surface):
-            found.append((geometry, None))
-    faces = [RhinoFace(source, f"{path}#{number}", loops) for number, (source, loops) in enumerate(found)]
-    return Model(str(path), _UNITS.get(file.Settings.ModelUnitSystem.name), faces)
+    _library(path)
+    return _model(path, read_apart(path, "rhino_worker", "openNURBS"))
+
+
+def read_3dm(path: str | Path) -> Model:
+    """Read a 3dm file in this process, as `open_3dm`, which survives what is damaged.
+
+    Raises
+    ------
+    FileError
+        Missing, not readable by openNURBS, or the extra `cad` is not installed.
+    """
+    require_file(path)
+    _library(path)
+    # rhino3dm waits until a 3dm file is read in this process.
+    from semispline.solver.io.rhino_worker import work
+
+    return _model(path, work(str(path)))
+
+
+def _model(path: str | Path, found: tuple[str, Sequence[Any], Mapping[str, int]]) -> Model:
+    unit, found_faces, others = found
+    faces = [RhinoFace(kind, net, curves, f"{path}#{k}") for k, (kind, net, curves) in enumerate(found_faces)]
+    return Model(str(path), _UNITS.get(unit), faces, others)
 
 
 def write_3dm(path: Path, surface: BSplineSurface, unit: str) -> None:
@@ -163,53 +187,16 @@ def _library(what: str | Path) -> Any:
     return rhino3dm
 
 
-def _with_ends(knots: Sequence[float]) -> FloatArray:
-    """Return the full vector; the two knots that openNURBS leaves out take part in no span of the domain."""
-    inner = [knots[i] for i in range(len(knots))]
-    return np.array([inner[0], *inner, inner[-1]])
+def _evaluator(
+    degree: int, knots: FloatArray, net: FloatArray
+) -> Callable[[FloatArray], tuple[FloatArray, FloatArray]]:
+    """Return a function to points and derivatives of a rational curve with control points (w x, w y, w z, w)."""
+    slopes = derivative_points(degree, knots, net)
 
+    def evaluate(parameters: FloatArray) -> tuple[FloatArray, FloatArray]:
+        value = basis_matrix(degree, knots, parameters) @ net
+        slope = basis_matrix(degree - 1, knots[1:-1], parameters) @ slopes
+        points = value[:, :3] / value[:, 3:]
+        return points, (slope[:, :3] - points * slope[:, 3:]) / value[:, 3:]
 
-def _brep_surfaces(brep: Any) -> list[tuple[Any, FloatArray | None]]:
-    """Return surfaces of a Brep with points on the edges of the face that lies on each.
-
-    rhino3dm does not say which face lies on which surface: they are matched by domain and by a few points.
-    """
-    faces = [brep.Faces[i] for i in range(len(brep.Faces))]
-    waiting = {i: _fingerprint(face.UnderlyingSurface()) for i, face in enumerate(faces)}
-    found: list[tuple[Any, FloatArray | None]] = []
-    for k in range(len(brep.Surfaces)):
-        surface = brep.Surfaces[k]
-        wanted = _fingerprint(surface)
-        match = next((i for i, other in waiting.items() if other == wanted), None)
-        loops = None
-        if match is not None:
-            del waiting[match]
-            loops = _edge_points(brep, faces[match])
-        found.append((surface, loops))
-    return found
-
-
-def _fingerprint(surface: Any) -> tuple[float, ...]:
-    u, v = surface.Domain(0), surface.Domain(1)
-    points = [surface.PointAt(u.T0 + s * (u.T1 - u.T0), v.T0 + t * (v.T1 - v.T0)) for s, t in ((0.2, 0.3), (0.7, 0.6))]
-    return (u.T0, u.T1, v.T0, v.T1, *(c for p in points for c in (p.X, p.Y, p.Z)))
-
-
-def _edge_points(brep: Any, face: Any) -> FloatArray:
-    points = []
-    for i in range(len(face.Loops)):
-        trims = face.Loops[i].Trims
-        for k in range(len(trims)):
-            # A trim along a singular side has no edge.
-            if trims[k].EdgeIndex >= 0:
-                edge = brep.Edges[trims[k].EdgeIndex]
-                at = np.linspace(edge.Domain.T0, edge.Domain.T1, 9)
-                points += [edge.PointAt(float(t)) for t in at]
-    return np.array([(p.X, p.Y, p.Z) for p in points]).reshape(-1, 3)
-
-
-def _distance_to_polygon(points: FloatArray, polygon: FloatArray) -> FloatArray:
-    start, step = polygon[:-1], np.diff(polygon, axis=0)
-    length = np.maximum(np.sum(step**2, axis=1), np.finfo(np.float64).tiny)
-    t = np.clip(np.einsum("ksd,sd->ks", points[:, None] - start, step) / length, 0, 1)
-    return np.asarray(np.linalg.norm(points[:, None] - start - t[..., None] * step, axis=2).min(axis=1))
+    return evaluate

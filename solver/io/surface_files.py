@@ -6,7 +6,7 @@ The module of a format waits inside the functions until a file of that format is
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -14,7 +14,8 @@ import numpy as np
 
 from semispline.solver.arrays import FloatArray
 from semispline.solver.errors import FileError, InputError
-from semispline.solver.io.disk import atomic_path, check_output, require_file
+from semispline.solver.io.disk import atomic_path, check_output, require_file, shown
+from semispline.solver.io.face_boundary import FaceBoundary, edge_offset
 from semispline.solver.io.faces import MILLIMETRES, Model, SurfaceEntry, describe, picked, without_equal_weights
 from semispline.solver.splines import BSplineSurface, SemiStructuredSurface, Surface
 
@@ -30,10 +31,20 @@ _ROUNDING = 16 * float(np.finfo(np.float64).eps)
 
 @dataclass(frozen=True, eq=False)
 class LoadedSurface:
-    """A surface and the unit of its coordinates (a key of `MILLIMETRES`; None where the file does not say)."""
+    """A surface as a file holds it.
+
+    Attributes
+    ----------
+    surface : BSplineSurface or SemiStructuredSurface
+    unit : str or None
+        Of the coordinates, a key of `MILLIMETRES`; None where the file does not say.
+    boundary : FaceBoundary or None
+        The edges of the face that the file cuts out of it; None where that is the whole surface.
+    """
 
     surface: Surface
     unit: str | None
+    boundary: FaceBoundary | None = None
 
 
 def read_surface(spec: str | Path) -> Surface:
@@ -69,15 +80,51 @@ def read_surfaces(specs: Sequence[str | Path]) -> list[LoadedSurface]:
     FileError, KnotError, ControlPointError
         As `read_surface`.
     """
+    wanted = [split_spec(spec) for spec in specs]
     models: dict[str, Model] = {}
     loaded = []
-    for spec in specs:
-        path, number = split_spec(spec)
+    for path, number in wanted:
         if path not in models:
-            models[path] = open_model(path)
+            # Without a number there is but one face, or none will be picked.
+            models[path] = open_model(path, sorted({n or 0 for other, n in wanted if other == path}))
         model = models[path]
-        loaded.append(LoadedSurface(picked(model, number).surface(), model.unit))
+        face = picked(model, number)
+        loaded.append(LoadedSurface(face.surface(), model.unit, face.boundary()))
     return in_one_unit(loaded)
+
+
+def trimmed_edge_warning(spec: str | Path, edge: str, loaded: LoadedSurface) -> str | None:
+    """Return a warning where a natural edge of a surface is not an edge of its face.
+
+    Parameters
+    ----------
+    spec : str
+        What the user calls the surface.
+    edge : {"u0", "u1", "v0", "v1"}
+    loaded : LoadedSurface
+        As `read_surfaces` returned it.
+
+    Examples
+    --------
+    >>> square = BSplineSurface(1, 1, [0, 0, 1, 1], [0, 0, 1, 1], [[[0, 0, 0], [0, 1, 0]], [[1, 0, 0], [1, 1, 0]]])
+    >>> trimmed_edge_warning("square.json", "u1", LoadedSurface(square, None)) is None
+    True
+    """
+    if loaded.boundary is None:
+        return None
+    if not len(loaded.boundary.pieces):
+        return (
+            f"whether the edge {edge} of {spec} is an edge of the face cannot be told: its own boundary is unreadable"
+        )
+    offset = edge_offset(loaded.surface, edge, loaded.boundary)
+    if not offset.distance:
+        return None
+    unit = loaded.unit or "model units"
+    part = "in part, by up to" if offset.in_part else "up to"
+    return (
+        f"the edge {edge} of {spec} lies outside of the face, {part} {offset.distance:.3g} {unit} from the face's own "
+        "boundary: the face is trimmed, its surface goes on"
+    )
 
 
 def read_all(specs: Sequence[str | Path]) -> tuple[list[LoadedSurface], list[str]]:
@@ -128,7 +175,11 @@ def in_one_unit(loaded: Sequence[LoadedSurface]) -> list[LoadedSurface]:
     same = []
     for item in loaded:
         factor = MILLIMETRES[item.unit or unit] / MILLIMETRES[unit]
-        same.append(LoadedSurface(item.surface if factor == 1 else _scaled(item.surface, factor), unit))
+        if factor == 1:
+            same.append(replace(item, unit=unit))
+            continue
+        boundary = None if item.boundary is None else item.boundary.scaled(factor)
+        same.append(LoadedSurface(_scaled(item.surface, factor), unit, boundary))
     return same
 
 
@@ -140,7 +191,19 @@ def list_surfaces(path: str | Path) -> list[SurfaceEntry]:
     FileError
         Missing, broken, or of an unknown format.
     """
-    return [describe(number, face) for number, face in enumerate(open_model(path).faces)]
+    return list_file(path)[0]
+
+
+def list_file(path: str | Path) -> tuple[list[SurfaceEntry], Mapping[str, int]]:
+    """Return every surface of a file, and what else it holds, from which no surface is taken: kind -> how many.
+
+    Raises
+    ------
+    FileError
+        As `list_surfaces`.
+    """
+    model = open_model(path)
+    return [describe(number, face) for number, face in enumerate(model.faces)], model.others
 
 
 def write_surface(path: str | Path, surface: Surface, unit: str | None = None) -> None:
@@ -195,13 +258,15 @@ def check_surface_output(path: str | Path) -> str:
     """
     suffix = Path(path).suffix.lower()
     if suffix not in _WRITABLE:
-        raise FileError(f"{path}: suffix {suffix!r} cannot be written, expected one of {' '.join(_WRITABLE)}")
+        raise FileError(
+            f"{shown(path)}: suffix {shown(suffix)!r} cannot be written, expected one of {' '.join(_WRITABLE)}"
+        )
     check_output(path)
     return suffix
 
 
-def open_model(path: str | Path) -> Model:
-    """Open a file of any readable format.
+def open_model(path: str | Path, bounded: Sequence[int] = ()) -> Model:
+    """Open a file of any readable format; `bounded` are the numbers of the faces whose boundaries are wanted.
 
     Raises
     ------
@@ -214,8 +279,10 @@ def open_model(path: str | Path) -> Model:
     suffix = Path(path).suffix.lower()
     reader = _reader(suffix)
     if reader is None:
-        raise FileError(f"{path}: suffix {suffix!r} cannot be read, expected one of {' '.join(_READABLE)}")
-    return reader(path)
+        raise FileError(
+            f"{shown(path)}: suffix {shown(suffix)!r} cannot be read, expected one of {' '.join(_READABLE)}"
+        )
+    return reader(path, bounded)
 
 
 def split_spec(spec: str | Path) -> tuple[str, int | None]:
@@ -251,17 +318,20 @@ class _JsonFace:
     def trimmed(self) -> bool:
         return False
 
+    def boundary(self) -> None:
+        return None
+
     def surface(self) -> Surface:
         return self.content
 
 
-def _open_json(path: str | Path) -> Model:
+def _open_json(path: str | Path, bounded: Sequence[int]) -> Model:
     from semispline.solver.io.json_files import read_json_surface
 
     return Model(str(path), None, [_JsonFace(read_json_surface(path))])
 
 
-def _reader(suffix: str) -> Callable[[str | Path], Model] | None:
+def _reader(suffix: str) -> Callable[[str | Path, Sequence[int]], Model] | None:
     if suffix == ".json":
         return _open_json
     if suffix == ".3dm":
@@ -269,7 +339,7 @@ def _reader(suffix: str) -> Callable[[str | Path], Model] | None:
 
         return open_3dm
     if suffix in _OCC:
-        from semispline.solver.io.occ_process import open_occ
+        from semispline.solver.io.occ import open_occ
 
         return open_occ
     return None
@@ -292,11 +362,12 @@ def _scaled(surface: Surface, factor: float) -> Surface:
 def _check_written(written: Path, surface: BSplineSurface, where: str) -> None:
     """Read a CAD file back: kernels drop or merge what is small against their tolerances, and do not say so."""
     from semispline.solver.io.occ import read_occ
+    from semispline.solver.io.rhino import read_3dm
 
     try:
         # What this process wrote, it can read without a process of its own.
-        model = read_occ(written) if written.suffix.lower() in _OCC else open_model(written)
-        found = picked(model, None).surface()
+        read = read_occ if written.suffix.lower() in _OCC else read_3dm
+        found = picked(read(written), None).surface()
         same = isinstance(found, BSplineSurface) and _agree(found, surface)
     except FileError:
         same = False

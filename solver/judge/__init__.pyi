@@ -1,6 +1,6 @@
 from .base import Base as Base
-from .continuity import Contact as Contact
-from .continuity import check_regular_edge as check_regular_edge
+from .base import local_origin as local_origin
+from .contact import Contact as Contact
 from .continuity import measure_contact as measure_contact
 from .continuity import model_size as model_size
 from .correspondence import Correspondence as Correspondence
@@ -17,7 +17,10 @@ from .curvature import local_geometry_grid as local_geometry_grid
 from .curvature import mirror_angle as mirror_angle
 from .de_boor import curve_points as curve_points
 from .de_boor import surface_points as surface_points
+from .edge_normals import check_regular_edge as check_regular_edge
+from .limits import doubtful as doubtful
 from .limits import required_limits as required_limits
+from .limits import untold as untold
 from .parametric import ParametricSurface as ParametricSurface
 from .parametric import geometry as geometry
 from .parametric import geometry_grid as geometry_grid

@@ -8,67 +8,21 @@ import numpy as np
 
 from semispline.solver.arrays import FloatArray
 from semispline.solver.errors import EdgeError
-from semispline.solver.judge.base import Base
+from semispline.solver.judge.base import Base, local_origin
+from semispline.solver.judge.contact import Contact, Place
 from semispline.solver.judge.correspondence import Correspondence, correspond, corresponding_samples
+from semispline.solver.judge.de_boor import EdgeCurves, edge_curves
+from semispline.solver.judge.edge_normals import places_without_normal
+from semispline.solver.judge.limits import allowed_measures
 from semispline.solver.options import Flip
 from semispline.solver.splines import BSplineSurface, Surface, bounding_box
 
 # Samples that are measured at once.
 _AT_ONCE = 8192
-
-
-@dataclass(frozen=True)
-class Place:
-    """Where a measure is worst: the parameter along edge a, and the point."""
-
-    parameter: float
-    point: tuple[float, float, float]
-
-
-@dataclass(frozen=True)
-class Contact:
-    """How two surfaces meet along an edge; the worst over samples in every span of both.
-
-    Angle and curvature are not a number where a side has no normal somewhere along the edge.
-
-    Attributes
-    ----------
-    gap : float
-        Largest distance, model units.
-    angle_degrees : float
-        Largest angle by which the surface turns at the edge, from |n1 x n2|: 0 where the tangent planes agree, 180
-        where one side folds back over the other.
-    curvature_jump : float
-        Largest difference of normal curvature across the edge, 1/length.
-    curvature_jump_relative : float
-        The same over the largest such curvature of either side, not below 1e-3 / size.
-    c1_residual, c2_residual : float
-        Largest difference of first and second cross derivative (one side leaving backwards), over the largest such
-        derivative of either side; absolute where both vanish.
-    size : float
-        Largest extent of the control points of both surfaces.
-    rounding : dict
-        What rounding of the input alone may do to each measure above.
-    gap_at, angle_at, curvature_at : Place
-    flipped : bool
-        The two edges run in opposite directions.
-    shift : float
-        Closed edges: how far edge b's seam is from edge a's, in b's parameter.
-    """
-
-    gap: float
-    angle_degrees: float
-    curvature_jump: float
-    curvature_jump_relative: float
-    c1_residual: float
-    c2_residual: float
-    size: float
-    rounding: dict[str, float]
-    gap_at: Place
-    angle_at: Place
-    curvature_at: Place
-    flipped: bool
-    shift: float
+# A curvature below this, over the size of the model, is none.
+_STRAIGHT = 1e-3
+# The bound on rounding counts each control point once; a few operations follow before it is measured.
+_ROUNDINGS = 8.0
 
 
 def measure_contact(a: Base, b: Base, flip: Flip = "auto", correspondence: Correspondence | None = None) -> Contact:
@@ -89,7 +43,7 @@ def measure_contact(a: Base, b: Base, flip: Flip = "auto", correspondence: Corre
     Raises
     ------
     EdgeError
-        `flip` is not one of auto, yes, no.
+        `flip` is not one of auto, yes, no; or both surfaces are one point.
 
     Examples
     --------
@@ -100,34 +54,46 @@ def measure_contact(a: Base, b: Base, flip: Flip = "auto", correspondence: Corre
     >>> round(measure_contact(Base(left, "u1"), Base(right, "u0")).angle_degrees, 12)
     45.0
     """
+    size = model_size(a.surface, b.surface)
+    if not size > 0:
+        raise EdgeError("surfaces: all control points are one point, expected surfaces")
     matched = correspondence or correspond(a, b, flip)
+    # Far from the origin each operation would round by the distance, and hide what the surfaces themselves do.
+    origin = local_origin(a.surface, b.surface)
+    edges = _Edges(a, b, matched.flipped, origin)
     s_a, s_b = corresponding_samples(a, b, matched)
     # Part by part: a long edge has more samples than memory should hold at once.
     starts = range(0, len(s_a), _AT_ONCE)
-    parts = [_measured(a, b, matched, s_a[i : i + _AT_ONCE], s_b[i : i + _AT_ONCE]) for i in starts]
-    size = model_size(a.surface, b.surface)
+    parts = [edges.measured(s_a[i : i + _AT_ONCE], s_b[i : i + _AT_ONCE]) for i in starts]
     gap, angle, jump = (_first_worst([getattr(part, name) for part in parts]) for name in ("gap", "angle", "jump"))
-    largest = float(np.maximum(np.max([part.curvature for part in parts]), 1e-3 / size))
-    differences, derivatives = (np.max([getattr(x, name) for x in parts], 0) for name in ("differences", "derivatives"))
+    largest = float(np.maximum(np.max([part.curvature for part in parts]), _STRAIGHT / size))
+    (c1, c2), (first, second) = (
+        np.max([getattr(part, name) for part in parts], 0).tolist() for name in ("differences", "derivatives")
+    )
     speeds = np.min([part.speeds for part in parts], axis=0).tolist()
-    noises = [_noises(base) for base in (a, b)]
-    c1, c2 = (_relative(differences[d], derivatives[d], noises[0][d + 1] + noises[1][d + 1]) for d in (0, 1))
+    noises = [_noises(base, origin) for base in (a, b)]
+    # Flat: what bends by the size of the model is the measure; and nearly so, as of curvatures.
+    bent = first * first / size
+    second = bent if second <= noises[0][2] + noises[1][2] else max(second, _STRAIGHT * bent)
     geometric = [_geometric_noise(noise, speed, largest) for noise, speed in zip(noises, speeds, strict=True)]
+    rounding = {
+        "gap": noises[0][0] + noises[1][0],
+        "angle_degrees": float(np.degrees(geometric[0][0] + geometric[1][0])),
+        "curvature_jump_relative": (geometric[0][1] + geometric[1][1]) / largest,
+        "c1_residual": _over(noises[0][1] + noises[1][1], first),
+        "c2_residual": _over(noises[0][2] + noises[1][2], second),
+    }
     return Contact(
         gap=gap.value,
         angle_degrees=angle.value,
         curvature_jump=jump.value,
         curvature_jump_relative=jump.value / largest,
-        c1_residual=c1[0],
-        c2_residual=c2[0],
+        c1_residual=_over(c1, first),
+        c2_residual=_over(c2, second),
         size=size,
-        rounding={
-            "gap": noises[0][0] + noises[1][0],
-            "angle_degrees": float(np.degrees(geometric[0][0] + geometric[1][0])),
-            "curvature_jump_relative": (geometric[0][1] + geometric[1][1]) / largest,
-            "c1_residual": c1[1],
-            "c2_residual": c2[1],
-        },
+        rounding=rounding,
+        allowed=allowed_measures(size, rounding),
+        no_normal=(*places_without_normal(a, "a"), *places_without_normal(b, "b")),
         gap_at=gap.place,
         angle_at=angle.place,
         curvature_at=jump.place,
@@ -168,50 +134,41 @@ class _Part:
     speeds: tuple[float, float]
 
 
-def _measured(a: Base, b: Base, matched: Correspondence, s_a: FloatArray, s_b: FloatArray) -> _Part:
-    side_a, side_b = _Side(a, s_a, 1.0), _Side(b, s_b, 1.0 if matched.flipped else -1.0)
+class _Edges:
+    """Both edges, their points counted from an origin."""
 
-    def worst(values: FloatArray) -> _Worst:
-        i = int(values.argmax())
-        x, y, z = side_a.point[i].tolist()
-        return _Worst(float(values[i]), Place(float(s_a[i]), (x, y, z)))
+    def __init__(self, a: Base, b: Base, flipped: bool, origin: FloatArray) -> None:
+        self.a, self.b, self.flipped, self.origin = a, b, flipped, origin
+        self.curves_a, self.curves_b = (edge_curves(base.surface, base.edge, origin=origin) for base in (a, b))
 
-    sine = np.linalg.norm(_cross(side_a.normal, side_b.normal), axis=1)
-    angle = np.degrees(np.arctan2(sine, np.sum(side_a.normal * side_b.normal, axis=1)))
-    k_a, k_b = side_a.curvature(), side_b.curvature()
-    # One side is left backwards: odd derivatives change sign unless the edges are at opposite ends.
-    sign = -1.0 if a.edge[1] == b.edge[1] else 1.0
-    return _Part(
-        gap=worst(np.linalg.norm(side_a.point - side_b.point, axis=1)),
-        angle=worst(angle),
-        jump=worst(np.abs(k_a - k_b)),
-        curvature=float(np.max(np.abs([k_a, k_b]))),
-        differences=(_longest(side_a.x_w - sign * side_b.x_w), _longest(side_a.x_ww - side_b.x_ww)),
-        derivatives=(_longest(side_a.x_w, side_b.x_w), _longest(side_a.x_ww, side_b.x_ww)),
-        speeds=(side_a.least_cross_speed(), side_b.least_cross_speed()),
-    )
+    def measured(self, s_a: FloatArray, s_b: FloatArray) -> _Part:
+        """Measure at parameters along a and along b that correspond."""
+        side_a = _Side(self.curves_a, self.a.edge, s_a, 1.0)
+        side_b = _Side(self.curves_b, self.b.edge, s_b, 1.0 if self.flipped else -1.0)
+
+        def worst(values: FloatArray) -> _Worst:
+            i = int(values.argmax())
+            x, y, z = (side_a.point[i] + self.origin).tolist()
+            return _Worst(float(values[i]), Place(float(s_a[i]), (x, y, z)))
+
+        sine = np.linalg.norm(_cross(side_a.normal, side_b.normal), axis=1)
+        angle = np.degrees(np.arctan2(sine, np.sum(side_a.normal * side_b.normal, axis=1)))
+        k_a, k_b = side_a.curvature(), side_b.curvature()
+        # One side is left backwards: odd derivatives change sign unless the edges are at opposite ends.
+        sign = -1.0 if self.a.edge[1] == self.b.edge[1] else 1.0
+        return _Part(
+            gap=worst(np.linalg.norm(side_a.point - side_b.point, axis=1)),
+            angle=worst(angle),
+            jump=worst(np.abs(k_a - k_b)),
+            curvature=float(np.max(np.abs([k_a, k_b]))),
+            differences=(_longest(side_a.x_w - sign * side_b.x_w), _longest(side_a.x_ww - side_b.x_ww)),
+            derivatives=(_longest(side_a.x_w, side_b.x_w), _longest(side_a.x_ww, side_b.x_ww)),
+            speeds=(side_a.least_cross_speed(), side_b.least_cross_speed()),
+        )
 
 
 def _first_worst(found: list[_Worst]) -> _Worst:
     return found[int(np.argmax([one.value for one in found]))]
-
-
-def check_regular_edge(base: Base) -> None:
-    """Refuse an edge along which a surface has no normal.
-
-    Raises
-    ------
-    EdgeError
-        Naming the first place.
-    """
-    start, end = base.range_along
-    s = start + (end - start) * np.arange(65) / 64
-    missing = np.isnan(_Side(base, s, 1.0).normal[:, 0])
-    if missing.any():
-        raise EdgeError(
-            f"edge {base.edge}: no normal at parameter {s[missing][0]:.6g} along it (the edge is a point there, or the "
-            "cross derivative vanishes or is parallel to the edge); choose an edge where the surface is regular"
-        )
 
 
 class _Side:
@@ -221,14 +178,14 @@ class _Side:
     that continue each other, one taken with the opposite sign, have one normal, and a fold back turns it over.
     """
 
-    def __init__(self, base: Base, s: FloatArray, sign: float) -> None:
-        at = base.referee.points(s)
+    def __init__(self, curves: EdgeCurves, edge: str, s: FloatArray, sign: float) -> None:
+        at = curves.points(s)
         self.point, self.x_w, self.x_s = at[0, 0], at[1, 0], at[0, 1]
         self.x_ww, self.x_ws, self.x_ss = at[2, 0], at[1, 1], at[0, 2]
         cross = _cross(self.x_w, self.x_s)
         length = np.linalg.norm(cross, axis=1)
         scale = np.linalg.norm(self.x_w, axis=1) * np.linalg.norm(self.x_s, axis=1)
-        inwards = -sign if base.edge[1] == "1" else sign
+        inwards = -sign if edge[1] == "1" else sign
         regular = (length > 1e-12 * scale)[:, None]
         self.normal = np.divide(inwards * cross, length[:, None], out=np.full_like(cross, np.nan), where=regular)
 
@@ -265,25 +222,29 @@ def _longest(*vectors: FloatArray) -> float:
     return max(float(np.linalg.norm(x, axis=1).max()) for x in vectors)
 
 
-def _relative(worst: float, largest: float, noise: float) -> tuple[float, float]:
-    """Return the largest difference over the largest derivative, and what `noise` amounts to in that measure.
+def _over(value: float, largest: float) -> float:
+    """Return a value over a derivative; where both are zero nothing is known of it, and that is left to rounding."""
+    if largest > 0:
+        return value / largest
+    return 0.0 if value == 0 else np.inf
 
-    A derivative that is nothing but rounding counts as vanishing: then the absolute figure decides.
+
+def _noises(base: Base, origin: FloatArray) -> list[float]:
+    """Bound what rounding may do to cross derivatives of order 0, 1, 2.
+
+    That of storing the control points, once, and that of some operations with them, which are counted from `origin`.
     """
-    scale = largest if largest > 8 * noise else 1.0
-    return float(worst / scale), float(noise / scale)
-
-
-def _noises(base: Base) -> list[float]:
-    """Bound what rounding of the control points to float64 may do to cross derivatives of order 0, 1, 2."""
-    coordinate = float(np.abs(bounding_box(base.surface)).max())
-    return [float(np.finfo(float).eps) * coordinate * _derivative_factor(base, order) for order in range(3)]
+    eps = float(np.finfo(float).eps)
+    box = bounding_box(base.surface)
+    stored = eps / 2 * float(np.linalg.norm(np.abs(box).max(axis=0)))
+    worked = _ROUNDINGS * eps * float(np.abs(box - origin).max())
+    return [(stored + worked) * _derivative_factor(base, order) for order in range(3)]
 
 
 def _geometric_noise(noises: list[float], speed: float, largest_curvature: float) -> tuple[float, float]:
     """Bound what that rounding may do to the angle (radians) and to the curvature across the edge (1/length)."""
     angle = noises[1] / speed
-    return angle, noises[2] / speed**2 + 2 * largest_curvature * angle
+    return angle, noises[2] / speed / speed + 2 * largest_curvature * angle
 
 
 def _derivative_factor(base: Base, order: int) -> float:

@@ -79,11 +79,12 @@ def _homogeneous(surface: BSplineSurface, u: FloatArray, v: FloatArray, du: int,
     return curve_points(surface.degree_u, surface.knots_u, rows.reshape(len(v), n_u, d), u, du)
 
 
-def _net(surface: BSplineSurface) -> FloatArray:
-    """Return (w x, w y, w z, w) in place of each control point of a rational surface."""
+def _net(surface: BSplineSurface, origin: FloatArray | None = None) -> FloatArray:
+    """Return control points counted from `origin`; (w x, w y, w z, w) in place of each of a rational surface."""
+    points = surface.control_points if origin is None else surface.control_points - origin
     if surface.weights is None:
-        return surface.control_points
-    return np.concatenate([surface.control_points * surface.weights[..., None], surface.weights[..., None]], axis=2)
+        return points
+    return np.concatenate([points * surface.weights[..., None], surface.weights[..., None]], axis=2)
 
 
 def surface_points(
@@ -184,8 +185,12 @@ class EdgeCurves:
         return values + [np.zeros_like(values[0])] * (order + 1 - len(values))
 
 
-def edge_curves(surface: BSplineSurface | SemiStructuredSurface, edge: str, order: int = 2) -> EdgeCurves:
+def edge_curves(
+    surface: BSplineSurface | SemiStructuredSurface, edge: str, order: int = 2, origin: ArrayLike = (0.0, 0.0, 0.0)
+) -> EdgeCurves:
     """Prepare what `EdgeCurves` evaluates along edge u0, u1, v0 or v1: derivatives up to `order`.
+
+    Points are counted from `origin`, shape (3,).
 
     Examples
     --------
@@ -195,8 +200,9 @@ def edge_curves(surface: BSplineSurface | SemiStructuredSurface, edge: str, orde
     array([[2., 0., 1.]])
     """
     at_end = edge[1] == "1"
+    centre = np.asarray(origin, dtype=np.float64)
     if isinstance(surface, BSplineSurface):
-        net = _net(surface)
+        net = _net(surface, centre)
         across, along = (surface.degree_u, surface.knots_u), (surface.degree_v, surface.knots_v)
         if edge[0] == "v":
             net, across, along = net.transpose(1, 0, 2), along, across
@@ -205,12 +211,12 @@ def edge_curves(surface: BSplineSurface | SemiStructuredSurface, edge: str, orde
     if edge[0] == "u":
         nearest = _nearest(len(surface.control_curves), surface.degree_u, at_end, order)
         curves = [surface.control_curves[i] for i in nearest]
-        rows = [_Row(c.degree, c.knots, c.control_points) for c in curves]
+        rows = [_Row(c.degree, c.knots, c.control_points - centre) for c in curves]
         return EdgeCurves(_stacked(rows), 3, _steps(surface.degree_u, surface.knots_u, at_end, order))
     # Each curve ends with derivatives of its own; those of one order are control points of a curve in u.
     ends = np.zeros((len(surface.control_curves), order + 1, 3))
     for end, c in zip(ends, surface.control_curves, strict=True):
-        points = [c.control_points[i] for i in _nearest(len(c.control_points), c.degree, at_end, order)]
+        points = [c.control_points[i] - centre for i in _nearest(len(c.control_points), c.degree, at_end, order)]
         values = _ends(points, _steps(c.degree, c.knots, at_end, order))
         end[: len(values)] = values
     line = _Row(surface.degree_u, surface.knots_u, ends.reshape(len(ends), -1))

@@ -1,8 +1,10 @@
-"""How good a contact must be to count as C0 .. G2."""
+"""How good a contact must be to count as C0 .. G2, and how well it must be known for that."""
 
 from __future__ import annotations
 
-from semispline.solver.judge.continuity import Contact
+from math import radians
+
+from semispline.solver.judge.contact import Contact
 from semispline.solver.options import Continuity
 
 # What the referee must confirm; rounding of the input is allowed on top (see `Contact.rounding`).
@@ -10,8 +12,39 @@ GAP_LIMIT = 1e-11  # of the size of the model
 RESIDUAL_LIMIT = 1e-11  # of the largest derivative
 ANGLE_LIMIT = 1e-9  # degrees
 JUMP_LIMIT = 1e-9  # of the largest curvature across the edge
-# The bound on rounding counts each control point once; a few operations follow before it is measured.
-_ROUNDINGS = 8.0
+
+# What rounding alone may do to a measure: above the first a user is warned, above the second nothing can be told. The
+# angles and curvatures are what CAD systems take for tangent and for smooth, and a tenth and a twentieth of them. A
+# residual of first derivatives turns the tangent by as many radians; one of second derivatives is one of curvature. The
+# gap, of the size of the model, is what CAD systems sew, and a tenth of it.
+CEILINGS = {
+    "gap": (1e-6, 1e-5),
+    "angle_degrees": (1e-3, 1e-2),
+    "curvature_jump_relative": (1e-3, 2e-2),
+    "c1_residual": (radians(1e-3), radians(1e-2)),
+    "c2_residual": (1e-3, 2e-2),
+}
+
+_REQUIRED = {
+    "C0": ("gap",),
+    "C1": ("gap", "c1_residual"),
+    "C2": ("gap", "c1_residual", "c2_residual"),
+    "G0": ("gap",),
+    "G1": ("gap", "angle_degrees"),
+    "G2": ("gap", "angle_degrees", "curvature_jump_relative"),
+}
+
+
+def allowed_measures(size: float, rounding: dict[str, float]) -> dict[str, float]:
+    """Return the limit of each measure for a model of a size, with what rounding may do on top."""
+    limits = {
+        "gap": GAP_LIMIT * size,
+        "angle_degrees": ANGLE_LIMIT,
+        "curvature_jump_relative": JUMP_LIMIT,
+        "c1_residual": RESIDUAL_LIMIT,
+        "c2_residual": RESIDUAL_LIMIT,
+    }
+    return {name: limit + rounding[name] for name, limit in limits.items()}
 
 
 def required_limits(contact: Contact, continuity: Continuity) -> list[tuple[str, float, float]]:
@@ -19,19 +52,27 @@ def required_limits(contact: Contact, continuity: Continuity) -> list[tuple[str,
 
     Source: the measures of the design document; rounding of the input is allowed on top of each limit.
     """
-    measures = {
-        "C0": ("gap",),
-        "C1": ("gap", "c1_residual"),
-        "C2": ("gap", "c1_residual", "c2_residual"),
-        "G0": ("gap",),
-        "G1": ("gap", "angle_degrees"),
-        "G2": ("gap", "angle_degrees", "curvature_jump_relative"),
-    }[continuity]
-    limits = {
-        "gap": GAP_LIMIT * contact.size,
-        "c1_residual": RESIDUAL_LIMIT,
-        "c2_residual": RESIDUAL_LIMIT,
-        "angle_degrees": ANGLE_LIMIT,
-        "curvature_jump_relative": JUMP_LIMIT,
-    }
-    return [(m, getattr(contact, m), limits[m] + _ROUNDINGS * contact.rounding[m]) for m in measures]
+    return [(name, getattr(contact, name), contact.allowed[name]) for name in _REQUIRED[continuity]]
+
+
+def untold(contact: Contact, continuity: Continuity) -> list[str]:
+    """Return, of each measure that rounding hides so far that `continuity` cannot be told, by how much it does."""
+    return [text for text, is_untold in _hidden(contact, continuity) if is_untold]
+
+
+def doubtful(contact: Contact, continuity: Continuity) -> list[str]:
+    """Return, of each measure that `continuity` requires and rounding may hide to a noticeable part, by how much."""
+    return [text for text, is_untold in _hidden(contact, continuity) if not is_untold]
+
+
+def _hidden(contact: Contact, continuity: Continuity) -> list[tuple[str, bool]]:
+    found = []
+    for name in _REQUIRED[continuity]:
+        unit = contact.size if name == "gap" else 1.0
+        noticeable, most = (ceiling * unit for ceiling in CEILINGS[name])
+        rounding = contact.rounding[name]
+        if rounding > noticeable:
+            ceiling = most if rounding > most else noticeable
+            text = f"rounding alone may change {name} by {rounding:.2g}, expected at most {ceiling:.2g}"
+            found.append((text, rounding > most))
+    return found

@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike
 
 from semispline.solver.arrays import FloatArray
 from semispline.solver.errors import OptionError
-from semispline.solver.io import atomic_path, pyvista_module, sampled, triangle_mesh
+from semispline.solver.io import atomic_path, pyvista_module, sampled, shown, triangle_mesh
 from semispline.solver.judge import LocalGeometry, isophote_angle, mirror_angle
 from semispline.solver.splines import SemiStructuredSurface, Surface
 
@@ -164,7 +164,7 @@ def check_picture(path: str | Path, field: str | None) -> None:
     if field is not None and field not in get_args(Field):
         raise OptionError(f"color: found {field!r}, expected one of {', '.join(get_args(Field))}")
     if Path(path).suffix.lower() != ".png":
-        raise OptionError(f"{path}: suffix {Path(path).suffix!r} cannot be drawn, expected .png")
+        raise OptionError(f"{shown(path)}: suffix {shown(Path(path).suffix)!r} cannot be drawn, expected .png")
     pyvista_module(path)
 
 

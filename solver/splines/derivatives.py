@@ -115,9 +115,12 @@ def _repeated(spline: Spline, slack: Rounding, steps: list[Step[Spline, Rounding
     return spline
 
 
-def _curve_step(curve: BSplineCurve, slack: FloatArray, name: str) -> tuple[BSplineCurve, FloatArray]:
+def _curve_step(
+    curve: BSplineCurve, slack: FloatArray, name: str, cure: str = "split_curve the curve"
+) -> tuple[BSplineCurve, FloatArray]:
     points = derivative_points(curve.degree, curve.knots, curve.control_points)
-    jumps = _Jumps(_distances, np.linalg.norm(points, axis=-1), _spread(curve.degree, curve.knots, slack), name, "v")
+    spread = _spread(curve.degree, curve.knots, slack)
+    jumps = _Jumps(_distances, np.linalg.norm(points, axis=-1), spread, name, "v", cure)
     degree, knots, rows, slack = _continuous(curve.degree - 1, curve.knots[1:-1], list(points), jumps)
     return BSplineCurve(degree, knots, np.stack(rows)), slack
 
@@ -127,7 +130,8 @@ def _net_step_u(
 ) -> tuple[BSplineSurface, FloatArray]:
     p, knots = surface.degree_u, surface.knots_u
     points = derivative_points(p, knots, surface.control_points)
-    jumps = _Jumps(_distances, np.linalg.norm(points, axis=-1), _spread(p, knots, slack), name, letter)
+    sizes, spread = np.linalg.norm(points, axis=-1), _spread(p, knots, slack)
+    jumps = _Jumps(_distances, sizes, spread, name, letter, f"split_{letter} the surface")
     degree, knots, rows, slack = _continuous(p - 1, knots[1:-1], list(points), jumps)
     return replace(surface, degree_u=degree, knots_u=knots, control_points=np.stack(rows)), slack
 
@@ -145,7 +149,7 @@ def _rows_step_u(
     sizes = np.array([_largest(c.control_points) for c in curves])
     # Rows are combined over common knots, so that of a row only the largest rounding is known.
     spread = _spread(p, knots, np.array([row.max() for row in slack]))
-    jumps = _Jumps(_curve_distance, sizes, spread, name, "u")
+    jumps = _Jumps(_curve_distance, sizes, spread, name, "u", "split_u the surface")
     p, knots, curves, rounding = _continuous(p - 1, knots[1:-1], curves, jumps)
     each = [np.full(len(c.control_points), x) for c, x in zip(curves, rounding, strict=True)]
     return SemiStructuredSurface(p, knots, tuple(curves)), each
@@ -155,7 +159,7 @@ def _rows_step_v(
     surface: SemiStructuredSurface, slack: list[FloatArray], name: str
 ) -> tuple[SemiStructuredSurface, list[FloatArray]]:
     rows = [
-        _curve_step(curve, own, f"{name}, row {i}")
+        _curve_step(curve, own, f"{name}, row {i}", "split_v the surface")
         for i, (curve, own) in enumerate(zip(surface.control_curves, slack, strict=True))
     ]
     return replace(surface, control_curves=tuple(curve for curve, _ in rows)), [own for _, own in rows]
@@ -167,6 +171,7 @@ class _Jumps(Generic[Row]):
 
     `distance` takes two rows; `size` and `slack` hold the size and the rounding of each row (axis 0), or of each
     control point of each row. All is local: a narrow span elsewhere, with its large numbers, allows nothing here.
+    `cure` says how the spline that was given can be cut at the knot.
     """
 
     distance: Callable[[Row, Row], FloatArray]
@@ -174,6 +179,7 @@ class _Jumps(Generic[Row]):
     slack: FloatArray
     name: str
     letter: str
+    cure: str
 
     def check(self, left: int, right: int, value: float, one: Row, other: Row) -> None:
         jump = self.distance(one, other)
@@ -181,7 +187,7 @@ class _Jumps(Generic[Row]):
         if np.any(jump > limit):
             raise InputError(
                 f"{self.name}: it, or one of lower order, jumps by {np.max(jump):.3g} at {self.letter} = {value}; "
-                f"split_{self.letter} the surface there and differentiate the pieces"
+                f"{self.cure} there and differentiate the pieces"
             )
 
 

@@ -8,6 +8,7 @@ from dataclasses import replace
 import pytest
 from typer.testing import CliRunner
 
+import semispline
 from semispline.papers.cli import app
 from semispline.papers.ledger.records import Verdict
 from semispline.papers.ledger.verification import verify
@@ -24,6 +25,11 @@ def test_all_commands_are_mounted():
     assert result.exit_code == 0
     for command in ("verify", "reproduce", "derive", "generate", "blend", "check", "list", "show", "convert"):
         assert f" {command} " in result.output
+
+
+def test_version_is_that_of_the_package():
+    result = run("--version")
+    assert (result.exit_code, result.output) == (0, f"semispline {semispline.__version__}\n")
 
 
 def test_help_loads_nothing_heavy():
@@ -117,3 +123,24 @@ def test_a_broken_record_is_exit_status_2(made_up_paper):
     result = run("verify", folder)
     assert result.exit_code == 2
     assert "eq-2" in result.stderr
+
+
+@pytest.mark.parametrize("name", ["printed.py", "claims.py"])
+def test_no_module_of_the_paper_is_overwritten(made_up_paper, tmp_path, name):
+    folder = made_up_paper()
+    before = (folder / name).read_text()
+    (tmp_path / "link").symlink_to(folder / name)
+    for option in ("--json", "--markdown"):
+        for path in (folder / name, tmp_path / "link"):
+            result = run("verify", folder, option, path)
+            assert result.exit_code == 2
+            assert result.stderr.startswith(f"error: {option}: ")
+            assert "give another name" in result.stderr
+    assert (folder / name).read_text() == before
+
+
+def test_record_and_report_are_two_files(made_up_paper, tmp_path):
+    result = run("verify", made_up_paper(), "--json", tmp_path / "x", "--markdown", tmp_path / "." / "x")
+    assert result.exit_code == 2
+    assert "--markdown" in result.stderr
+    assert not (tmp_path / "x").exists()

@@ -190,7 +190,7 @@ def test_a_verdict_that_differs_is_an_answer(made_up_paper):
 def test_a_worker_that_is_ended_is_a_failed_computation(made_up_paper):
     claims = made_up_paper() / "claims.py"
     claims.write_text(claims.read_text().replace('"""Add up, for n = 1 .. 9."""', "__import__('os')._exit(9)"))
-    with pytest.raises(ComputationError, match="ended from outside"):
+    with pytest.raises(ComputationError, match="ended without a result: status 9"):
         verify(str(claims.parent), workers=2)
 
 

@@ -7,7 +7,7 @@ import sympy as sp
 
 from semispline.papers.ledger.loading import load_paper
 from semispline.papers.ledger.mutation import mutants, try_mutants
-from semispline.papers.ledger.printed_data import Knots, Numbers, inner_moves, knot_changes, number_changes
+from semispline.papers.ledger.number_lists import Knots, Numbers, inner_moves, knot_changes, number_changes
 from semispline.papers.ledger.records import Case, Check, Formula, Part, Strength
 from semispline.papers.lin2014 import printed as pr
 from semispline.papers.lin2014 import printed_figures as printed

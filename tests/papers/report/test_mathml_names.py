@@ -5,7 +5,7 @@ from xml.etree import ElementTree
 import pytest
 import sympy as sp
 
-from semispline.papers.ledger.printed_data import Knots
+from semispline.papers.ledger.number_lists import Knots
 from semispline.papers.report.formulas import latex, mathml, text_html
 
 

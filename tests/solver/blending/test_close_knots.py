@@ -210,6 +210,16 @@ def test_a_good_blend_has_no_such_warning():
     assert not rounding_warnings(flat)
 
 
+def test_a_blend_that_bends_a_little_is_not_taken_for_a_flat_one():
+    # A step of 1e-4 of the size has some 1e-7 of the energy of a bend: what rounding adds to it is not nothing.
+    a, b = floor(3, 0.5 + 1e-7 * np.arange(4)), Base(strip(3, [], (2, 3), (1e-4, 1e-4)), "u0")
+    result = blend(a, b)
+    assert 1e-9 < result.energy < 1e-6
+    assert 1e-3 * result.energy < result.energy_rounding < 0.1 * result.energy
+    assert rounding_warnings(result)
+    assert not rounding_warnings(blend(floor(3, [0.5]), b))
+
+
 @given(st.integers(0, 2**32 - 1), st.integers(1, 3), st.floats(1e-16, 1e-2))
 @settings(max_examples=20)
 def test_the_change_of_the_energy_by_errors_is_within_its_bound(seed, degree, width):

@@ -7,7 +7,7 @@ import pytest
 
 from helpers.bases import facing_pair
 from semispline import Base, BSplineSurface, FoldError, Regularity, blend
-from semispline.solver.blending.pipeline import _warnings
+from semispline.solver.blending.warnings import shape_warnings
 from semispline.solver.judge import Crease
 
 LINE = [0, 0, 1, 1]
@@ -32,14 +32,14 @@ NATURAL = np.sqrt(2)
     ],
 )
 def test_turns_from_both_sides(turn, bend, said):
-    found = _warnings(Regularity(0.5, turn, None), (Crease("v", 0.5, bend),) if bend else ())
+    found = shape_warnings(Regularity(0.5, turn, None), (Crease("v", 0.5, bend),) if bend else ())
     found = [warning for warning in found if "creased" not in warning]
     assert len(found) == (said is not None)
     assert all(said in warning for warning in found)
 
 
 def test_a_steep_turn_does_not_hide_a_pinch():
-    found = _warnings(Regularity(1e-4, 75.0, None), ())
+    found = shape_warnings(Regularity(1e-4, 75.0, None), ())
     assert ["steeply" in found[0], "pinched" in found[1]] == [True, True]
 
 

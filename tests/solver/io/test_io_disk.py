@@ -81,8 +81,8 @@ def test_inputs_that_cannot_be(tmp_path):
         (tmp_path / "none.json", "no such file"),
         (tmp_path, "regular"),
         (os.devnull, "regular"),
-        ("a\0b", "no such file|not a path"),
-        ("x" * 5000, "not a path"),
+        ("a\0b", "cannot be read"),
+        ("x" * 5000, "cannot be read: .*too long"),
     ):
         with pytest.raises(FileError, match=word):
             read_bytes(path)

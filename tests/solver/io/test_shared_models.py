@@ -17,8 +17,8 @@ MODELS = [
     ("tigl_simplewing.brep", 8, 0, 2),
     ("v3_T-Joint2.3dm", 18, 16, 11),
     ("v4_DinerMug.3dm", 4, 1, 2),
-    ("v4_MechPartA.3dm", 41, 27, 37),
-    ("v4_SolidHandle.3dm", 37, 25, 31),
+    ("v4_MechPartA.3dm", 41, 27, 33),
+    ("v4_SolidHandle.3dm", 37, 25, 27),
 ]
 
 

@@ -83,6 +83,10 @@ def test_a_saddle_across_the_axes_is_not_convex(mixed):
         polynomial(x0y2=-1),
         polynomial(x2y0=-1, x0y2=-1),  # the determinant is positive
         polynomial(x2y0=1, x3y0=0.34),  # by a little at one end
+        polynomial(x2y0=-0.1),  # by a little, and flat across
+        polynomial(x0y2=-0.1),
+        polynomial(x2y0=0.25, x2y1=1, x0y2=10),  # at one end of the other axis
+        polynomial(x0y2=0.25, x1y2=1, x2y0=10),
     ],
 )
 def test_what_bends_down_along_an_axis_is_not_convex(table):
@@ -93,6 +97,9 @@ def test_a_mixed_derivative_of_either_sign_counts():
     # By x and y it runs from -4 at x = -1 to 0.
     refused(claim(BOWL + polynomial(x1y1=-2, x2y1=1), tangent()), "not proved convex")
     refused(claim(BOWL + polynomial(x1y1=2, x2y1=1), tangent()), "not proved convex")
+    # The same along y, from -1 to 3; its least magnitude would be small enough.
+    for one in both(claim(polynomial(x2y0=1, x0y2=2, x1y1=1, x1y2=1), tangent())):
+        refused(one, "not proved convex")
 
 
 def test_a_tangent_point_outside_of_its_part_is_refused():
@@ -159,6 +166,10 @@ def test_a_point_too_far_above_the_bound_is_refused():
     check_certificate(certificate)
     refused(replace(certificate, tolerance=0.499), "value at the point")
     refused(replace(certificate, point=(0.5, 0.6)), "value at the point")
+
+
+def test_a_point_a_little_below_the_bound_is_refused():
+    refused(claim(BOWL, tangent(), bound=0.5), "value at the point")
 
 
 def squares(*entries):

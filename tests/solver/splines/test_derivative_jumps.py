@@ -5,6 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+import semispline
 from helpers.splines import knot_vectors, scale
 from semispline import derivative_surface
 from semispline.solver.errors import InputError
@@ -50,6 +51,20 @@ def test_rounding_of_the_control_points_is_forgiven_and_sixteen_times_it_is_not(
     forms(raised_at_half(gaps, 6 * EPS, [1.0, 0, 0]))[form](1)
     with pytest.raises(InputError, match="jumps by"):
         forms(raised_at_half(gaps, 60 * EPS, [1.0, 0, 0]))[form](1)
+
+
+@pytest.mark.parametrize(
+    ("form", "cure"),
+    list(enumerate(["split_curve the curve", *["split_v the surface", "split_u the surface"] * 2])),
+)
+def test_the_message_names_a_cure_for_what_was_given(form, cure):
+    """The cure is public, takes the knot that the message names, and leaves pieces that have the derivative."""
+    curve = raised_at_half((), 1.0, [0.0, 0, 0])
+    with pytest.raises(InputError, match=rf"at [uv] = 0\.5; {cure} there"):
+        forms(curve)[form](1)
+    assert hasattr(semispline, cure.split()[0])
+    for piece in semispline.split_curve(curve, 0.5):
+        forms(piece)[form](1)
 
 
 @pytest.mark.parametrize("form", range(5))

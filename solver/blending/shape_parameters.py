@@ -1,0 +1,74 @@
+"""alpha^2 and beta^2 by the method that was asked for, and whether a bound stopped it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from semispline.solver.blending.problem import BlendProblem
+from semispline.solver.options import Method
+from semispline.solver.proof import Certificate
+
+
+@dataclass(frozen=True)
+class Found:
+    """Shape parameters, and how they were found."""
+
+    a: float
+    b: float
+    method: str
+    iterations: int = 0
+    kkt_residual: float | None = None
+    certificate: Certificate | None = None
+    proven_gap: float | None = None
+    constraint_rank: tuple[int, int] | None = None
+    status: str | None = None
+    search_excess: float | None = None
+
+
+def find_shape_parameters(problem: BlendProblem, method: Method) -> Found:
+    """Find alpha^2 and beta^2 of least energy; where both are fixed there is nothing to find."""
+    if not any(problem.free):
+        return Found(*problem.start, method="linear")
+    # Each method waits until it is asked for: CasADi alone takes longer to load than a blend to solve.
+    if method == "reduced":
+        from semispline.solver.blending.reduced import solve_reduced
+
+        proved = solve_reduced(problem)
+        return Found(proved.a, proved.b, method, certificate=proved.certificate, proven_gap=proved.gap)
+    if method == "casadi":
+        from semispline.solver.blending.nlp import solve_constrained
+
+        local = solve_constrained(problem)
+        return Found(
+            local.a,
+            local.b,
+            method,
+            local.iterations,
+            local.kkt_residual,
+            constraint_rank=local.constraint_rank,
+            status=local.status,
+        )
+    from semispline.solver.blending.quasi_newton import solve_quasi_newton
+
+    rough = solve_quasi_newton(problem)
+    return Found(rough.a, rough.b, method, rough.iterations, status=rough.status, search_excess=rough.excess)
+
+
+def shape_unknowns(problem: BlendProblem, found: Found) -> list[tuple[str, float, float, float]]:
+    """Return name, value found and admissible ends of each shape parameter that was searched."""
+    return [
+        (name, value, *ends)
+        for name, is_free, value, ends in zip(
+            ("alpha2", "beta2"), problem.free, (found.a, found.b), problem.bounds, strict=True
+        )
+        if is_free
+    ]
+
+
+def active_bounds(problem: BlendProblem, found: Found) -> tuple[str, ...]:
+    """Return which bounds stopped the search, such as "alpha2 lower"."""
+    active = []
+    for name, value, low, high in shape_unknowns(problem, found):
+        # 1e-9: what the ways there and back between alpha and alpha^2 in natural units may round.
+        active += [f"{name} lower"] * (value <= low * (1 + 1e-9)) + [f"{name} upper"] * (value >= high * (1 - 1e-9))
+    return tuple(active)

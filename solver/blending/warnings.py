@@ -1,0 +1,103 @@
+"""What a user should look at before a blend is used: folds, creases, bounds, contact that rounding hides."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from semispline.solver.blending.problem import BlendProblem
+from semispline.solver.blending.shape_parameters import Found, active_bounds, shape_unknowns
+from semispline.solver.judge import Base, Contact, Crease, Regularity, doubtful, is_closed, model_size
+from semispline.solver.options import Continuity
+from semispline.solver.splines import SemiStructuredSurface, bounding_box
+
+# A normal that turns this far between neighbouring samples has met a fold; well before it, it is too coarse to tell.
+FOLD_TURN = 90.0
+STEEP_TURN = 60.0
+# An area element this far below its mean is as good as a fold.
+PINCH = 1e-3
+# A normal that turns this far across a knot of full multiplicity, in degrees, makes a crease: well below what CAD
+# systems take for tangent (0.01 and more), well above the rounding of a surface that is smooth there.
+SHARP = 1e-3
+_NAMED = 5
+# So many sizes from the origin rounding is that of the distance rather than that of the blend.
+_FAR = 1e3
+
+
+def shape_warnings(regularity: Regularity, creases: tuple[Crease, ...]) -> tuple[str, ...]:
+    """Return what a user should look at before the blend is used."""
+    found = []
+    sharpest = max((crease.angle_degrees for crease in creases), default=0.0)
+    turn = regularity.largest_turn_degrees
+    # A turn that a crease explains is no fold.
+    if turn - sharpest >= FOLD_TURN:
+        found.append(f"the blend folds: its normal turns by {turn:.0f} degrees between samples")
+    elif turn - sharpest > STEEP_TURN:
+        found.append(
+            f"the blend turns steeply: its normal turns by {turn:.0f} degrees between samples, above "
+            f"{STEEP_TURN:.0f} a fold may be missed"
+        )
+    if turn - sharpest < FOLD_TURN and regularity.least_area_ratio < PINCH:
+        found.append(f"the blend is pinched: its area element falls to {regularity.least_area_ratio:.1e} of the mean")
+    sharp = [crease for crease in creases if crease.angle_degrees >= SHARP]
+    if sharp:
+        places = ", ".join(f"{crease.parameter} = {crease.at:g}" for crease in sharp[:_NAMED])
+        more = f" and {len(sharp) - _NAMED} more" if len(sharp) > _NAMED else ""
+        found.append(
+            f"the blend is creased at {places}{more}, by up to {sharpest:.2g} degrees: knots of full multiplicity, "
+            "across which the energy counts nothing"
+        )
+    return tuple(found)
+
+
+def bound_warnings(problem: BlendProblem, found: Found) -> tuple[str, ...]:
+    """Return a warning for each shape parameter that a bound stopped, or that is beyond: method bfgs knows none."""
+    warnings = []
+    active = active_bounds(problem, found)
+    for name, value, low, high in shape_unknowns(problem, found):
+        if not low <= value <= high:
+            warnings.append(
+                f"{name} is {value:.3g}, outside of the admissible {low:.3g} to {high:.3g}: "
+                f"method {found.method} knows no bounds"
+            )
+        elif f"{name} lower" in active or f"{name} upper" in active:
+            which, bound = ("lower", low) if f"{name} lower" in active else ("upper", high)
+            warnings.append(
+                f"{name} is at its {which} bound {bound:.3g}: beyond it the energy may fall further; widen the box, or "
+                "set alpha"
+            )
+    return tuple(warnings)
+
+
+def seam_warning(a: Base, b: Base) -> tuple[str, ...]:
+    """Return a warning where one contact curve is closed and the other is open."""
+    if is_closed(a) == is_closed(b):
+        return ()
+    which = "a" if is_closed(a) else "b"
+    return (f"contact curve {which} is closed, the other is open: the blend is open along the seam of {which}",)
+
+
+def remedy(surface: SemiStructuredSurface, shape: float) -> str:
+    """Say what makes rounding too large to tell how a blend meets its base, and what to try."""
+    distance = float(np.abs(bounding_box(surface)).max()) / model_size(surface)
+    if distance > _FAR:
+        return f"the origin is {distance:.0e} times the size of the blend away: work in coordinates nearer to it"
+    return (
+        f"the blend is all but degenerate where it meets the base, its shape parameter is {shape:.1e}: try method "
+        "reduced with the default box, or bases whose knots are not so close"
+    )
+
+
+def contact_warnings(
+    surface: SemiStructuredSurface,
+    contacts: tuple[Contact, Contact],
+    continuity: tuple[Continuity, Continuity],
+    found: Found,
+) -> tuple[str, ...]:
+    """Return where contact is confirmed less than it seems: rounding hides a part, or a base has no normal there."""
+    warnings = []
+    for name, contact, wanted, shape in zip(("a", "b"), contacts, continuity, (found.a, found.b), strict=True):
+        warnings += [f"contact {name}: {text}; {remedy(surface, shape)}" for text in doubtful(contact, wanted)]
+        if wanted in ("G1", "G2"):
+            bare = [place for place in contact.no_normal if place.surface == name]
+            warnings += [f"base {name}: {place}; {wanted} says nothing there" for place in bare[:_NAMED]]
+    return tuple(warnings)

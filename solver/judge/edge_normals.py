@@ -1,0 +1,111 @@
+"""Where a surface has no proper normal along an edge: between samples too."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+import numpy as np
+
+from semispline.solver.arrays import FloatArray
+from semispline.solver.errors import EdgeError
+from semispline.solver.judge.base import Base
+from semispline.solver.judge.contact import NoNormal
+
+# A derivative that falls to this part of its mean along the edge, or the sine of the angle between two: no normal that
+# means anything, as an area element so small is as good as a fold.
+VANISHES = 1e-3
+# To this part it vanishes altogether: the golden sections find no less.
+_NOTHING = 1e-9
+# At a zero of a derivative between two samples its size there is below this part of the mean.
+_SUSPECT = 0.5
+_PER_SPAN = 8
+_SECTIONS = 40
+_GOLDEN = (5**0.5 - 1) / 2
+_REASONS = (
+    "the derivative across the edge vanishes",
+    "the derivative along the edge vanishes",
+    "the derivatives across and along the edge are parallel",
+)
+
+
+def places_without_normal(base: Base, surface: Literal["a", "b"]) -> tuple[NoNormal, ...]:
+    """Return where a derivative at the edge almost vanishes, or the two are almost parallel, in order along the edge.
+
+    Samples in every span find where to look; golden sections find the place. Of a whole stretch one place is named.
+
+    Examples
+    --------
+    >>> from semispline.solver.splines.surfaces import BSplineSurface
+    >>> k = [0, 0, 1, 1]
+    >>> fan = BSplineSurface(1, 1, k, k, [[[0, 0, 0], [3, 0, 0]], [[0, 0, 0], [0, 3, 0]]])
+    >>> print(*places_without_normal(Base(fan, "u0"), "a"))
+    no proper normal at parameter 0, (0, 0, 0): the derivative across the edge vanishes
+    """
+    breaks = base.breakpoints_along()
+    inside = (breaks[:-1, None] + np.diff(breaks)[:, None] * np.arange(_PER_SPAN) / _PER_SPAN).ravel()
+    s = np.append(inside, breaks[-1])
+    values = _sizes(base, s)
+    # Where all of one kind vanishes there is no mean; a sine needs none.
+    means = np.array([*(mean if mean > 0 else 1.0 for mean in values[:2].mean(axis=1)), 1.0])
+    values /= means[:, None]
+    found = []
+    for kind, row in enumerate(values):
+        for at, value in _lows(base, s, float(means[kind]), kind, row):
+            x, y, z = base.derivative(np.array([at]), 0, 0)[0].tolist()
+            found.append(NoNormal(surface, at, (x, y, z), _REASONS[kind], value))
+    return tuple(sorted(found, key=lambda place: place.parameter))
+
+
+def check_regular_edge(base: Base) -> None:
+    """Refuse an edge along which a surface has no normal.
+
+    Raises
+    ------
+    EdgeError
+        Naming the first place.
+    """
+    for place in places_without_normal(base, "a"):
+        if place.fraction <= _NOTHING:
+            raise EdgeError(
+                f"edge {base.edge}: no normal at parameter {place.parameter:.6g} along it ({place.reason}); choose an "
+                "edge where the surface is regular"
+            )
+
+
+def _sizes(base: Base, s: FloatArray) -> FloatArray:
+    """Return the lengths of the derivatives across and along, and the sine between them, shape (3, K)."""
+    at = base.referee.points(s, 1)
+    x, y = at[1, 0], at[0, 1]
+    across, along = (np.sqrt(np.einsum("ij,ij->i", d, d)) for d in (x, y))
+    area = np.linalg.norm(np.cross(x, y), axis=1)
+    # Where one vanishes there is no angle: that is said already.
+    sine = np.divide(area, across * along, out=np.ones_like(area), where=across * along > 0)
+    return np.stack([across, along, sine])
+
+
+def _lows(base: Base, s: FloatArray, mean: float, kind: int, row: FloatArray) -> list[tuple[float, float]]:
+    """Return parameter and value of the lowest place of each stretch in which one kind of value vanishes."""
+    padded = np.pad(row, 1, constant_values=np.inf)
+    lows = np.flatnonzero((row <= padded[:-2]) & (row <= padded[2:]) & (row <= _SUSPECT))
+    if not lows.size:
+        return []
+    left, right = s[np.maximum(lows - 1, 0)], s[np.minimum(lows + 1, len(s) - 1)]
+    best, least = s[lows], row[lows]
+    for _ in range(_SECTIONS):
+        inner = right - _GOLDEN * (right - left), left + _GOLDEN * (right - left)
+        below, above = (_sizes(base, x)[kind] / mean for x in inner)
+        for x, value in zip(inner, (below, above), strict=True):
+            better = value < least
+            best, least = np.where(better, x, best), np.where(better, value, least)
+        left, right = np.where(below <= above, left, inner[0]), np.where(below <= above, inner[1], right)
+    small = least <= VANISHES
+    found: list[tuple[float, float]] = []
+    before = -2
+    for low, at, value in zip(lows[small].tolist(), best[small].tolist(), least[small].tolist(), strict=True):
+        # Neighbours are one stretch.
+        if low - before > 1:
+            found.append((at, value))
+        elif value < found[-1][1]:
+            found[-1] = at, value
+        before = low
+    return found

@@ -1,0 +1,241 @@
+"""Which tests a mutant is shown: those that run its lines, found by coverage."""
+
+from __future__ import annotations
+
+import ast
+import json
+import re
+import resource
+import shutil
+import time
+from collections import defaultdict, deque
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cache
+from hashlib import sha256
+from pathlib import Path
+from typing import Any
+
+import coverage
+import pytest
+
+from mutants.running import Job, Slot, run_all
+from mutants.sites import Mutant
+
+# Doctests of the solver count as tests of it.
+TESTS = ("tests/solver", "semispline/solver")
+QUICK = "not (compiler or browser or slow)"
+_MEASURED = "solver"
+_SECONDS_OF_A_FILE = 1800.0
+_STATIC = re.compile(r" \((setup|call|teardown)\)$")
+
+
+@dataclass(frozen=True)
+class Table:
+    """Processor time of each test that passes, tests by file and line, and what failed without any mutant."""
+
+    seconds: dict[str, float]
+    lines: dict[str, dict[int, set[str]]]
+    failed: list[str]
+
+
+def measure(root: Path, folder: Path, slots: list[Slot]) -> Table:
+    """Run each test file once under coverage; what was measured before and has not changed is taken over."""
+    folder.mkdir(parents=True, exist_ok=True)
+    sources = digest(root, sorted(p.relative_to(root).as_posix() for p in (root / _MEASURED).rglob("*.py")))
+    queue: deque[Job] = deque()
+    results = []
+    for file in _test_files(root, folder, slots[0]):
+        known = folder / f"{sha256((file + sources + digest(root, [file])).encode()).hexdigest()[:24]}.json"
+        results.append(known)
+        if not known.exists():
+            queue.append(
+                Job(["--maxfail=1000", file, "-m", QUICK], _Measure(known), _SECONDS_OF_A_FILE, file, None, True)
+            )
+    count = len(queue)
+    for done, (job, outcome) in enumerate(run_all(queue, slots), 1):
+        print(f"coverage {done}/{count}: {job.subject}, {outcome.seconds:.0f} s, {outcome.status}", flush=True)
+        if not job.plugin.path.exists():
+            raise SystemExit(f"{job.subject}: no coverage; see {folder.parent}/slot-*/log")
+    return _joined([json.loads(path.read_text()) for path in results])
+
+
+def _test_files(root: Path, folder: Path, slot: Slot) -> list[str]:
+    path = folder / "collected.json"
+    path.unlink(missing_ok=True)
+    job = Job(["--collect-only", "-m", QUICK, *TESTS], _Collected(path), _SECONDS_OF_A_FILE, None, None, True)
+    (_, outcome), *_ = run_all(deque([job]), [slot])
+    if outcome.status != "passed" or not path.exists():
+        raise SystemExit(f"the tests cannot be collected; see {slot.folder / 'log'}")
+    return [file for file in json.loads(path.read_text()) if (root / file).exists()]
+
+
+class _Collected:
+    def __init__(self, path: Path) -> None:
+        self.path = path
+
+    def pytest_collection_finish(self, session: pytest.Session) -> None:
+        self.path.write_text(json.dumps(sorted({item.nodeid.split("::")[0] for item in session.items})))
+
+
+class _Measure:
+    """Coverage by test, other processes that a test starts included."""
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self.seconds: dict[str, float] = {}
+        self.failed: set[str] = set()
+        self.passed: set[str] = set()
+
+    def pytest_sessionstart(self) -> None:
+        # The child of the fork is here alone: nobody else's coverage is disturbed.
+        self.folder = self.path.with_suffix("")
+        self.folder.mkdir(exist_ok=True)
+        settings = self.folder / "settings"
+        settings.write_text(
+            f"[run]\ndata_file = {self.folder / 'data'}\nparallel = true\ninclude = {Path.cwd() / _MEASURED}/*\n"
+            "context = ${PYTEST_CURRENT_TEST-}\npatch = subprocess\n[report]\n"
+        )
+        self.coverage = coverage.Coverage(config_file=str(settings))
+        self.coverage.start()
+
+    @pytest.hookimpl(wrapper=True)
+    def pytest_runtest_protocol(self, item: Any) -> Iterator[None]:
+        self.coverage.switch_context(item.nodeid)
+        before = _processor_time()
+        result = yield
+        self.seconds[item.nodeid] = _processor_time() - before
+        return result
+
+    def pytest_runtest_logreport(self, report: Any) -> None:
+        if report.failed:
+            self.failed.add(report.nodeid)
+        elif report.when == "call" and report.passed:
+            self.passed.add(report.nodeid)
+
+    def pytest_sessionfinish(self, exitstatus: int) -> None:
+        self.coverage.stop()
+        self.coverage.save()
+        if exitstatus not in {0, 1}:  # tests passed, or some failed
+            return
+        self.coverage.combine()
+        data = self.coverage.get_data()
+        good = sorted(self.passed - self.failed)
+        number = {test: i for i, test in enumerate(good)}
+        lines: dict[str, dict[int, list[int]]] = {}
+        for path in data.measured_files():
+            of_file = lines[Path(path).relative_to(Path.cwd()).as_posix()] = {}
+            for line, contexts in data.contexts_by_lineno(path).items():
+                names = {_STATIC.sub("", c) for c in contexts}
+                # What runs while tests are collected belongs to all of them.
+                of_file[line] = sorted(range(len(good)) if "" in names else (number[n] for n in names if n in number))
+        found = {"seconds": {t: self.seconds[t] for t in good}, "lines": lines, "failed": sorted(self.failed)}
+        self.path.write_text(json.dumps(found))
+        shutil.rmtree(self.folder)
+
+
+def _processor_time() -> float:
+    children = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return time.process_time() + children.ru_utime + children.ru_stime
+
+
+def _joined(parts: list[dict[str, Any]]) -> Table:
+    seconds: dict[str, float] = {}
+    lines: dict[str, dict[int, set[str]]] = defaultdict(lambda: defaultdict(set))
+    failed: list[str] = []
+    for part in parts:
+        seconds |= part["seconds"]
+        failed += part["failed"]
+        tests = list(part["seconds"])
+        for file, of_file in part["lines"].items():
+            for line, numbers in of_file.items():
+                lines[file][int(line)] |= {tests[i] for i in numbers}
+    return Table(seconds, lines, failed)
+
+
+def tests_of(mutant: Mutant, table: Table, root: Path, bound: float) -> list[str]:
+    """Return the tests to show, most promising first, of `bound` seconds together (one at the least)."""
+    room = f"tests/{Path(mutant.file).parent.as_posix()}/"
+
+    def rank(test: str) -> tuple[bool, float]:
+        return not test.startswith((room, f"semispline/{mutant.file}")), table.seconds[test]
+
+    direct = _running(mutant, table, root)
+    files = {test.split("::")[0] for test in direct}
+    same_files = {test for test in table.seconds if test.split("::")[0] in files} - direct
+    chosen: list[str] = []
+    total = 0.0
+    for test in [*sorted(direct, key=rank), *sorted(same_files, key=rank)]:
+        if not chosen or total + table.seconds[test] <= bound:
+            chosen.append(test)
+            total += table.seconds[test]
+    return chosen
+
+
+def _running(mutant: Mutant, table: Table, root: Path) -> set[str]:
+    """Return the tests that run the lines of the mutant, or those that use the names that it defines."""
+    first, last = mutant.lines
+    if first:
+        return _at(table, mutant.file, first, last)
+    found: set[str] = set()
+    for name in mutant.names:
+        for file, start, end in _uses(root, mutant.file, name):
+            found |= _at(table, file, start, end)
+    return found or _at(table, mutant.file, 1, 10**6)
+
+
+def _at(table: Table, file: str, first: int, last: int) -> set[str]:
+    return {t for line, tests in table.lines.get(file, {}).items() if first <= line <= last for t in tests}
+
+
+@cache
+def _uses(root: Path, file: str, name: str) -> list[tuple[str, int, int]]:
+    """Return the statements of functions that use a module's name; those of names defined by it, too."""
+    files = [file] if name.startswith("_") else [p.relative_to(root).as_posix() for p in _sources(root)]
+    found = []
+    for path in files:
+        for statement, is_inner in _statements(root / path):
+            body = getattr(statement, "body", None)
+            last = body[0].lineno - 1 if body else statement.end_lineno
+            loaded = [x for x in ast.walk(statement) if isinstance(getattr(x, "ctx", None), ast.Load)]
+            names = {getattr(x, "id", getattr(x, "attr", "")) for x in loaded if getattr(x, "lineno", 0) <= last}
+            if name not in names:
+                continue
+            if is_inner:
+                found.append((path, statement.lineno, last))
+            elif isinstance(statement, ast.Assign | ast.AnnAssign):
+                targets = getattr(statement, "targets", [getattr(statement, "target", None)])
+                others = {t.id for t in targets if isinstance(t, ast.Name)} - {name}
+                found += [use for other in sorted(others) for use in _uses(root, path, other)]
+            else:
+                found.append((path, 1, 10**6))
+    return found
+
+
+@cache
+def _sources(root: Path) -> list[Path]:
+    return sorted((root / _MEASURED).rglob("*.py"))
+
+
+@cache
+def _statements(path: Path) -> list[tuple[Any, bool]]:
+    """Statements of a file, and whether a function holds them."""
+    found: list[tuple[Any, bool]] = []
+
+    def visit(node: ast.AST, is_inner: bool) -> None:
+        for child in ast.iter_child_nodes(node):
+            if isinstance(child, ast.stmt):
+                found.append((child, is_inner))
+            visit(child, is_inner or isinstance(child, ast.FunctionDef))
+
+    visit(ast.parse(path.read_bytes()), False)
+    return found
+
+
+def digest(root: Path, files: list[str]) -> str:
+    """Return a hash of the files' contents."""
+    total = sha256()
+    for file in files:
+        path = root / file
+        total.update(file.encode() + b"\0" + (path.read_bytes() if path.is_file() else b"") + b"\0")
+    return total.hexdigest()[:16]

@@ -1,0 +1,219 @@
+"""The tool that breaks the solver: what it finds to break, and its verdicts on a small project of our own."""
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from mutants.sites import mutants_of
+
+TOOL = Path(__file__).parent
+
+
+def changes(source, *, complete):
+    return {m.change for m in mutants_of("f.py", source.encode()) if m.complete == complete}
+
+
+@pytest.mark.parametrize(
+    ("source", "expected"),
+    [
+        ("LIMIT = 1e-9", {"1e-9 -> (1e-9 * 1000)", "1e-9 -> (1e-9 / 1000)"}),
+        ("MOST = 20", {"20 -> 21", "20 -> (19)", "20 -> 200"}),
+        ("def f(x): return x < y", {"< -> <=", "< -> >="}),
+        ("def f(x): return x == y", {"== -> !="}),
+        ("def f(x): return 0 <= (x)", {"<= -> <", "<= -> >", "0 -> 1", "0 -> (-1)"}),
+        ("def f(x): return abs(x)", {"abs -> "}),
+        ("def f(x): return np.abs(x).max()", {"np.abs -> ", "max -> min"}),
+        ("def f(x): return a and b or not c", {"and -> or", "or -> and", "not -> "}),
+        ("def f(x): return a & ~b", {"& -> |", "~ -> "}),
+        ("def f(x, most=3): pass", {"3 -> 4", "3 -> (2)"}),
+        ("def f(x): return g(x, tol=0.5)", {"0.5 -> (0.5 * 1000)", "0.5 -> (0.5 / 1000)"}),
+        ("def f(x): return x + 1e-14", {"1e-14 -> (1e-14 * 1000)", "1e-14 -> (1e-14 / 1000)"}),
+        ("def f(x): rounding = 8.0 * x", {"8.0 -> (8.0 * 1000)", "8.0 -> (8.0 / 1000)"}),
+        ("def f(x): return x is None", set()),
+        ("def f(x: 'a < b'): raise E(f'{x < 1}', x < 1)", set()),
+    ],
+)
+def test_limits_comparisons_and_boolean_words_are_complete(source, expected):
+    assert changes(source, complete=True) == expected
+
+
+@pytest.mark.parametrize(
+    ("source", "expected"),
+    [
+        ("def f(x): return x + 2", {"return x + 2 -> return None", "+ -> -", "2 -> 3"}),
+        ("def f(x): return x[0:-1]", {"return x[0:-1] -> return None", "0 -> 1", "- -> ", "1 -> 2"}),
+        ("def f(x): g(x)", {"g(x) -> pass"}),
+        ("def f(x): x -= 0.5", {"x -= 0.5 -> pass", "- -> +", "0.5 -> (0.5 * 2)"}),
+        ("def f(x): raise E(1)", {"raise E(1) -> pass"}),
+        ("def f(x): return x is None", {"return x is None -> return None", "is -> is not"}),
+        ("def f(x):\n  if x: g.y = True", {"x -> (not (x))", "g.y = True -> pass", "True -> False"}),
+    ],
+)
+def test_the_rest_is_arithmetic_numbers_results_and_statements(source, expected):
+    assert changes(source, complete=False) == expected
+
+
+def test_a_mutant_changes_one_place_and_keeps_its_key_when_other_lines_move():
+    source = b"def f(x):\n    return x < 1 or x < 1\n"
+    first, second = [m for m in mutants_of("f.py", source) if m.change == "< -> <="]
+    assert first.apply(source) == b"def f(x):\n    return x <= 1 or x < 1\n"
+    assert second.apply(source) == b"def f(x):\n    return x < 1 or x <= 1\n"
+    assert first.key != second.key
+    moved = [m.key for m in mutants_of("f.py", b"import os\n\n" + source) if m.change == "< -> <="]
+    assert moved == [first.key, second.key]
+
+
+GAUGE = '''
+LIMIT = 1e-6
+
+
+def is_small(x):
+    """A gauge.
+
+    >>> is_small(0.0)
+    True
+    """
+    return abs(x) < LIMIT
+
+
+def steps(n):
+    taken = 0
+    while taken < n:
+        taken += 1
+    return taken
+'''
+TESTS = """
+import subprocess
+import sys
+
+from semispline.solver.judge.gauge import is_small, steps
+
+
+def test_from_both_sides():
+    assert is_small(9e-7) and not is_small(-2e-6)
+
+
+def test_here():
+    assert steps(2) == 2 and steps(0) == 0
+
+
+def test_in_a_process_of_its_own():
+    code = "from semispline.solver.judge.gauge import steps; print(steps(3))"
+    assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True).stdout == "3\\n"
+
+
+def test_that_fails_anyway():
+    assert is_small(1.0)
+"""
+EXACT = "\n\ndef test_the_limit_itself():\n    assert not is_small(1e-6)\n"
+PROJECT = """
+[tool.pytest.ini_options]
+addopts = "--import-mode=importlib --doctest-modules"
+pythonpath = ["tests"]
+markers = ["compiler", "browser", "slow"]
+"""
+ACCEPTED = """
+[[accepted]]
+file = "solver/judge/gauge.py"
+function = "is_small"
+line = "return abs(x) < LIMIT"
+change = "< -> <="
+reason = "made up"
+"""
+
+
+@pytest.fixture(scope="module")
+def project(tmp_path_factory):
+    """A project with a good test for everything but the limit itself; the tool has decided all of it once."""
+    if not hasattr(os, "fork"):
+        pytest.skip("the tool needs forks")
+    root = tmp_path_factory.mktemp("project")
+    for folder in ("solver/judge", "semispline", "tests/solver/judge"):
+        (root / folder).mkdir(parents=True)
+    for package in ("solver", "solver/judge", "semispline"):
+        (root / package / "__init__.py").touch()
+    (root / "semispline/solver").symlink_to("../solver")
+    (root / "solver/judge/gauge.py").write_text(GAUGE)
+    (root / "tests/solver/judge/test_gauge.py").write_text(TESTS)
+    (root / "pyproject.toml").write_text(PROJECT)
+    (root / ".gitignore").write_text("build/\n__pycache__/\n")
+    (root / "tests/mutants").mkdir()
+    for file in TOOL.glob("[!t]*.py"):
+        # What never ends is waited for ten seconds: here, two are enough.
+        text = file.read_text().replace("_TIMES, _MORE = 5.0, 10.0", "_TIMES, _MORE = 5.0, 2.0")
+        (root / "tests/mutants" / file.name).write_text(text)
+    subprocess.run(["git", "init", "-q"], cwd=root, check=True)
+    return root, run(root)
+
+
+def run(root, *words):
+    environment = os.environ | {"PYTHONPATH": "tests", "PYTHONHASHSEED": "0", "OPENBLAS_NUM_THREADS": "1"}
+    command = [sys.executable, "-m", "mutants", "--workers", "1", *words]
+    done = subprocess.run(command, cwd=root, env=environment, capture_output=True, text=True, check=False)
+    assert done.stderr == ""
+    return done
+
+
+def decided(done):
+    words = ("killed ", "timeout ", "survived ", "undecided ")
+    return [line for line in done.stdout.splitlines() if line.startswith(words)]
+
+
+@pytest.mark.slow
+def test_the_one_mutant_that_no_test_tells_survives_and_is_named(project):
+    root, first = project
+    results = [json.loads(line) for line in (root / "build/mutants/results.jsonl").read_text().splitlines()]
+    assert {(r["file"], r["text"], r["change"]) for r in results if r["verdict"] == "survived"} == {
+        ("solver/judge/gauge.py", "return abs(x) < LIMIT", "< -> <=")
+    }
+    assert "solver/judge/gauge.py:11: < -> <=" in first.stdout
+    assert first.returncode == 1
+    # Constants of the module, a link, a process that a test starts, and a loop without an end.
+    verdicts = {r["change"]: r["verdict"] for r in results}
+    assert verdicts["1e-6 -> (1e-6 * 1000)"] == verdicts["1e-6 -> (1e-6 / 1000)"] == verdicts["abs -> "] == "killed"
+    assert verdicts["1 -> 2"] == "killed"
+    assert verdicts["taken += 1 -> pass"] == "timeout"
+    assert (
+        "left out, fails without any mutant: tests/solver/judge/test_gauge.py::test_that_fails_anyway" in first.stdout
+    )
+
+
+@pytest.mark.slow
+def test_the_working_tree_is_left_as_it_was(project):
+    assert (project[0] / "solver/judge/gauge.py").read_text() == GAUGE
+
+
+@pytest.mark.slow
+def test_a_second_run_decides_nothing_again(project):
+    second = run(project[0])
+    assert (decided(second), second.returncode) == ([], 1)
+
+
+@pytest.mark.slow
+def test_an_interrupted_run_goes_on_where_it_ended(project):
+    root, first = project
+    results = root / "build/mutants/results.jsonl"
+    whole = results.read_text()
+    lines = whole.splitlines(keepends=True)
+    results.write_text("".join(lines[:-3]) + lines[-3][:40])
+    assert len(decided(run(root))) == 3
+    assert len(decided(first)) == len(lines)
+
+
+@pytest.mark.slow
+def test_a_survivor_is_accepted_with_a_reason_until_a_test_kills_it(project):
+    root, _ = project
+    accepted, tests = root / "tests/mutants/accepted.toml", root / "tests/solver/judge/test_gauge.py"
+    accepted.write_text(ACCEPTED)
+    explained = run(root, "--report")
+    assert "1 accepted" in explained.stdout
+    assert explained.returncode == 0
+    tests.write_text(TESTS + EXACT)
+    killed = run(root)
+    assert any("< -> <=" in line and line.startswith("killed") for line in decided(killed))
+    assert "nothing of this survives any more" in killed.stdout
+    assert killed.returncode == 1
