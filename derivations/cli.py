@@ -61,7 +61,7 @@ def _split(knots: str | None) -> tuple[str, ...] | None:
 def derive(
     name: Annotated[str, typer.Argument(metavar="NAME", help=f"What to show: {', '.join(NAMES)}.")],
     form: Annotated[_Form, typer.Option(help="How to show it.")] = _Form.text,
-    order: Annotated[int, typer.Option(help="Order of contact, or highest derivative: 0 to 3.")] = 2,
+    order: Annotated[int, typer.Option(help="Order of contact, or highest derivative: 0 to 4.")] = 2,
     degree: _Number = None,
     base_degree: _Number = None,
     end: Annotated[_End, typer.Option(help="The clamped end where derivatives are taken.")] = _End.start,

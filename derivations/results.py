@@ -26,7 +26,7 @@ class Request:
     Parameters
     ----------
     order : int
-        Order of contact, or highest derivative, 0..3.
+        Order of contact, or highest derivative, 0..4.
     degree, base_degree : int or None
         p and q; symbols where None (3 where a number is needed).
     knots, other_knots : tuple of str or None

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from sympy import Expr, Integer, Matrix, Symbol, diag
 
-from semispline.derivations.codegen.program_backend import program_function, program_module
+from semispline.derivations.codegen.program_backend import program_module
 from semispline.derivations.codegen.python_backends import CASADI, NUMPY, python_module
 from semispline.derivations.codegen.routines import Argument, Routine, plain_symbols
 from semispline.derivations.contact import (
@@ -267,10 +267,10 @@ def generated_files() -> dict[str, str]:
     program = fairness_program()
     files["fairness_numpy.py"] = program_module(
         "Fairness: |grad H|^2 dA of a surface from its derivatives, and the gradient of what is made of it",
-        ("derivations/fairness.py",),
+        "derivations/fairness.py",
         (
-            program_function("fairness", "|grad H|^2 per du dv, area element, mean curvature, speed along u.", program),
-            program_function("fairness_gradient", "Adjoints of the derivatives.", reversed_program(program)),
+            ("fairness", "|grad H|^2 per du dv, area element, mean curvature, speed along u.", program),
+            ("fairness_gradient", "Adjoints of the derivatives.", reversed_program(program)),
         ),
     )
     return dict(sorted(files.items()))

@@ -11,21 +11,26 @@ from semispline.derivations.codegen.python_backends import LINE_LENGTH, assignme
 from semispline.derivations.fairness import Program
 
 
-def program_function(name: str, summary: str, program: Program) -> str:
+def program_function(name: str, summary: str, source: str, program: Program) -> str:
     """Return the text of one function: `name(planes)` for an array of shape (inputs, ...) gives (outputs, ...).
 
     Examples
     --------
     >>> from sympy import Symbol
     >>> x, y = Symbol("x"), Symbol("y")
-    >>> text = program_function("f", "Square.", Program((x,), ((y, x**2),), (y,)))
+    >>> text = program_function("f", "Square.", "none", Program((x,), ((y, x**2),), (y,)))
     >>> text.splitlines()[-2:]
     ['    y = x**2', '    return np.stack([y])']
     """
     inputs, outputs = ([symbol.name for symbol in symbols] for symbols in (program.inputs, program.outputs))
-    operations = sum(int(count_ops(value)) for _, value in program.steps)
     lines = [f"def {name}(planes: FloatArray) -> FloatArray:", f'    """{summary}', ""]
-    lines += [*_wrapped("In", inputs), *_wrapped("Out", outputs), "", f"    Operations: {operations}.", '    """']
+    lines += [
+        *_wrapped("In", inputs),
+        *_wrapped("Out", outputs),
+        "",
+        f"    Source: {source}. Operations: {operations(program)}.",
+        '    """',
+    ]
     if len(inputs) == 1:
         lines.append(f"    ({inputs[0]},) = planes")
     else:
@@ -40,13 +45,20 @@ def program_function(name: str, summary: str, program: Program) -> str:
     return "\n".join(lines) + "\n"
 
 
-def program_module(title: str, sources: Sequence[str], functions: Sequence[str]) -> str:
-    """Return the text of one generated file."""
-    body = "\n\n".join(functions)
+def operations(program: Program) -> int:
+    """Count the operations of a program, each step's as it is printed."""
+    return sum(int(count_ops(value)) for _, value in program.steps)
+
+
+def program_module(title: str, source: str, programs: Sequence[tuple[str, str, Program]]) -> str:
+    """Return the text of one generated file; a program is given with the name and summary of its function."""
+    body = "\n\n".join(program_function(name, summary, source, program) for name, summary, program in programs)
+    total = sum(operations(program) for _, _, program in programs)
     return (
         f'"""{title} (NumPy).\n\n'
-        f"Written by `semispline generate` from {' and '.join(sources)}.\n"
-        'Do not edit: change the derivation and generate again.\n"""\n\n'
+        f"Written by `semispline generate` from {source}.\n"
+        "Do not edit: change the derivation and generate again.\n"
+        f'Operations: {total} in {len(programs)} functions.\n"""\n\n'
         "from __future__ import annotations\n\nimport numpy as np\nfrom numpy.typing import NDArray\n\n"
         f"FloatArray = NDArray[np.float64]\n\n\n{body}"
     )

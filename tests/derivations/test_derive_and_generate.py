@@ -126,7 +126,7 @@ def test_derived_numpy_code_runs():
     ("arguments", "words"),
     [
         (["nonsense"], "nonsense: no such result; there are basis-pieces, contact-conditions"),
-        (["contact-rows", "--order", "7"], "order: found 7, expected 0..3"),
+        (["contact-rows", "--order", "7"], "order: found 7, expected 0..4"),
         (["contact-rows", "--order", "2", "--degree", "1"], "degree: found 1, expected at least 2"),
         (["contact-rows", "--base-degree", "0"], "base_degree: found 0"),
         (["gram-entries", "--knots", "0,0,q!,1"], "knots[2]: found 'q!'"),
