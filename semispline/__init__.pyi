@@ -27,8 +27,12 @@ from .solver.judge.curvature import normal_curvature as normal_curvature
 from .solver.judge.curvature import normals as normals
 from .solver.judge.curvature import principal_curvatures as principal_curvatures
 from .solver.judge.curvature import zebra as zebra
+from .solver.judge.fairness import Fairness as Fairness
+from .solver.judge.fairness import measure_fairness as measure_fairness
 from .solver.judge.regularity import Regularity as Regularity
 from .solver.judge.regularity import measure_regularity as measure_regularity
+from .solver.judge.turning import Turn as Turn
+from .solver.judge.turning import measure_turn as measure_turn
 from .solver.options import BlendOptions as BlendOptions
 from .solver.splines.bezier import BezierFunction as BezierFunction
 from .solver.splines.bezier import bezier_patch as bezier_patch

@@ -17,9 +17,13 @@ from .curvature import local_geometry_grid as local_geometry_grid
 from .curvature import mirror_angle as mirror_angle
 from .de_boor import curve_points as curve_points
 from .de_boor import surface_points as surface_points
+from .fairness import Fairness as Fairness
+from .fairness import measure_fairness as measure_fairness
 from .limits import required_limits as required_limits
 from .parametric import ParametricSurface as ParametricSurface
 from .parametric import geometry as geometry
 from .parametric import geometry_grid as geometry_grid
 from .regularity import Regularity as Regularity
 from .regularity import measure_regularity as measure_regularity
+from .turning import Turn as Turn
+from .turning import measure_turn as measure_turn
