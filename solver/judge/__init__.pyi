@@ -15,11 +15,18 @@ from .curvature import isophote_angle as isophote_angle
 from .curvature import local_geometry as local_geometry
 from .curvature import local_geometry_grid as local_geometry_grid
 from .curvature import mirror_angle as mirror_angle
+from .curvature_range import CurvatureAt as CurvatureAt
+from .curvature_range import CurvatureRange as CurvatureRange
+from .curvature_range import measure_curvature_range as measure_curvature_range
 from .de_boor import curve_points as curve_points
 from .de_boor import surface_points as surface_points
 from .fairness import Fairness as Fairness
 from .fairness import measure_fairness as measure_fairness
 from .limits import required_limits as required_limits
+from .loops import Exits as Exits
+from .loops import Loop as Loop
+from .loops import measure_exits as measure_exits
+from .loops import measure_loop as measure_loop
 from .parametric import ParametricSurface as ParametricSurface
 from .parametric import geometry as geometry
 from .parametric import geometry_grid as geometry_grid
@@ -27,3 +34,5 @@ from .regularity import Regularity as Regularity
 from .regularity import measure_regularity as measure_regularity
 from .turning import Turn as Turn
 from .turning import measure_turn as measure_turn
+from .waist import Waist as Waist
+from .waist import measure_waist as measure_waist

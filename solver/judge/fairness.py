@@ -127,9 +127,7 @@ def _gradient_density(surface: ParametricSurface, u: FloatArray, v: FloatArray) 
     Q = E * N - 2 * F * M + G * L
     length = np.sqrt(square)
 
-    def derivative_of_h(
-        x: FloatArray, y: FloatArray, third: tuple[FloatArray, FloatArray, FloatArray]
-    ) -> FloatArray:
+    def derivative_of_h(x: FloatArray, y: FloatArray, third: tuple[FloatArray, FloatArray, FloatArray]) -> FloatArray:
         """Return H's derivative along the parameter along which P_u has derivative x, P_v y, and P_uu ... `third`."""
         turning = _cross(x, b) + _cross(a, y)
         change = (

@@ -18,6 +18,8 @@ WINDOW = 1 / 50
 # How far inside a span what jumps at its ends is looked at: a fraction of the span, and of the domain, since knots
 # closer than 1e-12 of it count as one.
 _INSIDE, _APART = 1e-8, 2e-12
+# Finer grids around the least value so far, and what gain ends them.
+_ZOOMS, _ENOUGH = 8, 1e-9
 # Two tangents at a smaller angle than this have no normal.
 _DEGENERATE = 1e-12
 
@@ -107,12 +109,14 @@ def least_on_grid(
     `u` and `v` are sorted, and the finer grids stay between the neighbours of what was least.
     """
     best = np.inf, float(u[0]), float(v[0])
-    for _ in range(8):
+    for _ in range(_ZOOMS):
         values = np.nan_to_num(value(u, v), nan=np.inf, posinf=np.inf)
         i, j = np.unravel_index(int(values.argmin()), values.shape)
-        if not values[i, j] < best[0]:
+        least, before = float(values[i, j]), best[0]
+        if least < before:
+            best = least, float(u[i]), float(v[j])
+        if not before - least > _ENOUGH * abs(least):
             break
-        best = float(values[i, j]), float(u[i]), float(v[j])
         u = np.linspace(u[max(i - 1, 0)], u[min(i + 1, len(u) - 1)], 9)
         v = np.linspace(v[max(j - 1, 0)], v[min(j + 1, len(v) - 1)], 9)
     return best

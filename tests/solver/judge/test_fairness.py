@@ -5,7 +5,15 @@ import pytest
 from scipy.integrate import quad
 
 from helpers.shapes import arc, extruded, line, revolved, sheets, torus
-from semispline import BSplineSurface, insert_knots, local_geometry_grid, map_domain, measure_fairness, reverse_u, transform
+from semispline import (
+    BSplineSurface,
+    insert_knots,
+    local_geometry_grid,
+    map_domain,
+    measure_fairness,
+    reverse_u,
+    transform,
+)
 from semispline.solver.judge.fairness import SETTLED
 
 

@@ -4,7 +4,15 @@ import numpy as np
 import pytest
 
 from helpers.shapes import arc, extruded, line, sheets, torus
-from semispline import BSplineSurface, InputError, insert_knots, measure_regularity, measure_turn, swap_directions, transform
+from semispline import (
+    BSplineSurface,
+    InputError,
+    insert_knots,
+    measure_regularity,
+    measure_turn,
+    swap_directions,
+    transform,
+)
 from semispline.solver.judge.sections import turn_window
 from semispline.solver.judge.turning import turn_on_samples
 
