@@ -15,6 +15,7 @@ from .solver.io.surface_files import list_surfaces as list_surfaces
 from .solver.io.surface_files import read_surface as read_surface
 from .solver.io.surface_files import write_surface as write_surface
 from .solver.judge.base import Base as Base
+from .solver.judge.confirmed_meetings import Meeting as Meeting
 from .solver.judge.continuity import Contact as Contact
 from .solver.judge.continuity import measure_contact as measure_contact
 from .solver.judge.curvature import LocalGeometry as LocalGeometry
@@ -36,6 +37,8 @@ from .solver.judge.loops import Exits as Exits
 from .solver.judge.loops import Loop as Loop
 from .solver.judge.loops import measure_exits as measure_exits
 from .solver.judge.loops import measure_loop as measure_loop
+from .solver.judge.meets import Meets as Meets
+from .solver.judge.meets import measure_meets as measure_meets
 from .solver.judge.regularity import Regularity as Regularity
 from .solver.judge.regularity import measure_regularity as measure_regularity
 from .solver.judge.turning import Turn as Turn

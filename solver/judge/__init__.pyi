@@ -1,4 +1,5 @@
 from .base import Base as Base
+from .confirmed_meetings import Meeting as Meeting
 from .continuity import Contact as Contact
 from .continuity import check_regular_edge as check_regular_edge
 from .continuity import measure_contact as measure_contact
@@ -27,6 +28,8 @@ from .loops import Exits as Exits
 from .loops import Loop as Loop
 from .loops import measure_exits as measure_exits
 from .loops import measure_loop as measure_loop
+from .meets import Meets as Meets
+from .meets import measure_meets as measure_meets
 from .parametric import ParametricSurface as ParametricSurface
 from .parametric import geometry as geometry
 from .parametric import geometry_grid as geometry_grid

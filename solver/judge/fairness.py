@@ -15,7 +15,7 @@ from semispline.solver.splines import gauss_rule
 # A finer grid that changes the value by no more than this fraction settles it; and what is below the second figure is
 # zero, since a visible shape has 1 and more.
 SETTLED, _NOTHING = 0.01, 1e-8
-# Gauss points in u and in v altogether, and the least on each span: the integrand is no polynomial, whatever the degree.
+# Gauss points in u and in v altogether, and the least on each span: the integrand is no polynomial.
 _TOTAL, _LEAST = (24, 10), (6, 4)
 # How often every span is halved before the meter gives up; what a grid may hold in all, and what is worked on at once.
 _HALVINGS, _MOST, _AT_ONCE = 5, 2**21, 2**15
