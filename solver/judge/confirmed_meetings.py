@@ -19,7 +19,7 @@ from semispline.solver.judge.mesh_search import Hits, Mesh, crossings, grid_mesh
 from semispline.solver.judge.parametric import ParametricSurface
 from semispline.solver.judge.sections import closed_directions, extent, unit_normals
 
-# Hits within so many cells of each other are one place; so many of each are tried on the true surfaces, and in all.
+# Hits in boxes of so many cells that touch are one place; so many of each are tried on the true surfaces, and in all.
 _TOGETHER, _TRIED, _TRIED_IN_ALL = 3.0, 12, 2000
 # Steps on the true surfaces; no step is longer than this part of the domain; what may remain, as a fraction of the
 # extent, and how many roundings of the coordinates; how many cells apart the parameters of a real place are.
@@ -160,7 +160,7 @@ class _Meeting:
             if step == _STEPS or reached.all():
                 break
             slopes = [
-                sign * width[k] * s.evaluate(*x.T, *((1, 0), (0, 1))[k])
+                sign * width[k] * s.evaluate(x[:, 0], x[:, 1], 1 - k, k)
                 for (s, _), x, width, sign in zip(sides, at, widths, (1, -1), strict=True)
                 for k in range(2)
             ]
@@ -176,7 +176,7 @@ class _Meeting:
     def _angles(self, first: FloatArray, second: FloatArray) -> FloatArray:
         """Return the angles between the tangent planes, in degrees."""
         n, m = (
-            unit_normals(s.evaluate(*x.T, 1, 0), s.evaluate(*x.T, 0, 1))
+            unit_normals(s.evaluate(x[:, 0], x[:, 1], 1, 0), s.evaluate(x[:, 0], x[:, 1], 0, 1))
             for s, x in ((self.surface, first), (self.other, second))
         )
         return np.asarray(
@@ -211,11 +211,12 @@ def _at_poles(mesh: Mesh, cells: FloatArray) -> NDArray[np.bool_]:
 
 def _crowds(mesh: Mesh, other: Mesh, hits: Hits) -> IndexArray:
     """Return for each hit which crowd it belongs to: those a few cells apart in all four parameters are in one."""
-    places = np.concatenate([_cells(mesh, hits.first), _cells(other, hits.second)], axis=1)
-    pairs = cKDTree(places).query_pairs(_TOGETHER, output_type="ndarray")
-    n = len(places)
-    near = sp.coo_array((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(n, n))
-    return np.asarray(connected_components(near, directed=False)[1], dtype=np.intp)
+    # Sheets on each other have thousands of hits: boxes of some cells stand for what is in them.
+    boxes = np.floor(np.concatenate([_cells(mesh, hits.first), _cells(other, hits.second)], axis=1) / _TOGETHER)
+    boxes, box = np.unique(boxes, axis=0, return_inverse=True)
+    pairs = cKDTree(boxes).query_pairs(1.5, p=np.inf, output_type="ndarray")
+    near = sp.coo_array((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(len(boxes), len(boxes)))
+    return np.asarray(connected_components(near, directed=False)[1][box.ravel()], dtype=np.intp)
 
 
 def _some(indices: IndexArray, count: int) -> IndexArray:

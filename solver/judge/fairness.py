@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import TypeAlias
 
 import numpy as np
 
 from semispline.solver.arrays import FloatArray
 from semispline.solver.judge.parametric import ParametricSurface
-from semispline.solver.judge.sections import closed_directions, just_inside, turn_window
+from semispline.solver.judge.sections import closed_directions, just_inside, spread, turn_window
 from semispline.solver.splines import gauss_rule
 
 # A finer grid that changes the value by no more than this fraction settles it; and what is below the second figure is
@@ -69,34 +70,51 @@ def measure_fairness(surface: ParametricSurface) -> Fairness:
     Fairness(value=0.0, smooth=0.0, jumps=0.0, settled=True)
     """
     window = turn_window(surface)
-    breaks = surface.breakpoints
-    points = tuple(max(m, -(-n // (len(b) - 1))) for n, m, b in zip(_TOTAL, _LEAST, breaks, strict=True))
     seams = closed_directions(surface)
     before: Fairness | None = None
-    rules = tuple(gauss_rule(b, 2 * n - 1) for b, n in zip(breaks, points, strict=True))
-    for _ in range(_HALVINGS):
-        smooth, area = _smooth_part(surface, rules)
-        smooth, jumps = area * smooth, area / window * _jumps(surface, rules, seams)
+    for halvings in range(_HALVINGS):
+        rules = _rules(surface, halvings)
+        if before is not None and rules[0].points.size * rules[1].points.size > _MOST:
+            return before
+        gradient, area = _smooth_part(surface, rules)
+        smooth, jumps = area * gradient, area / window * _jumps(surface, rules, seams)
         value = smooth + jumps
         if not np.isfinite(value):
             return Fairness(np.inf, smooth, jumps, settled=False)
-        if before is not None and abs(value - before.value) <= max(SETTLED * value, _NOTHING):
-            return Fairness(value, smooth, jumps, settled=True)
-        before = Fairness(value, smooth, jumps, settled=False)
-        breaks = tuple(np.sort(np.concatenate([b, (b[:-1] + b[1:]) / 2])) for b in breaks)
-        rules = tuple(gauss_rule(b, 2 * n - 1) for b, n in zip(breaks, points, strict=True))
-        if np.prod([nodes.size for nodes, _ in rules]) > _MOST:
+        settled = before is not None and abs(value - before.value) <= max(SETTLED * value, _NOTHING)
+        before = Fairness(value, smooth, jumps, settled)
+        if settled:
             break
     assert before is not None
     return before
 
 
-_Rules = tuple[tuple[FloatArray, FloatArray], ...]
+@dataclass(frozen=True, eq=False)
+class _Rule:
+    """Gauss points and weights of one parameter, all spans after each other."""
+
+    points: FloatArray
+    weights: FloatArray
+
+
+_Rules: TypeAlias = tuple[_Rule, _Rule]
+
+
+def _rules(surface: ParametricSurface, halvings: int) -> _Rules:
+    """Return the rules in u and in v with every span halved so many times."""
+
+    def rule(breaks: FloatArray, total: int, least: int) -> _Rule:
+        number = max(least, -(-total // (len(breaks) - 1)))
+        points, weights = gauss_rule(spread(breaks, 1, 2**halvings), 2 * number - 1)
+        return _Rule(points.T.ravel(), weights.T.ravel())
+
+    u_breaks, v_breaks = surface.breakpoints
+    return rule(u_breaks, _TOTAL[0], _LEAST[0]), rule(v_breaks, _TOTAL[1], _LEAST[1])
 
 
 def _smooth_part(surface: ParametricSurface, rules: _Rules) -> tuple[float, float]:
     """Return the integral of |grad H|^2 and the area."""
-    (u, of_u), (v, of_v) = ((x.T.ravel(), w.T.ravel()) for x, w in rules)
+    (u, of_u), (v, of_v) = ((rule.points, rule.weights) for rule in rules)
     gradient = area = 0.0
     for part in _parts(len(u), len(v)):
         density, element = _gradient_density(surface, u, v[part])
@@ -149,7 +167,7 @@ def _gradient_density(surface: ParametricSurface, u: FloatArray, v: FloatArray) 
 
 def _jumps(surface: ParametricSurface, rules: _Rules, seams: tuple[bool, bool]) -> float:
     """Return the integral of [H]^2 ds over all lines of knots, and over seams."""
-    (u, of_u), (v, of_v) = ((x.T.ravel(), w.T.ravel()) for x, w in rules)
+    (u, of_u), (v, of_v) = ((rule.points, rule.weights) for rule in rules)
     total = 0.0
     for lines, nodes, weights, swapped, seam in (
         (surface.breakpoints[0], v, of_v, True, seams[0]),

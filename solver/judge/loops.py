@@ -162,7 +162,7 @@ def _tangents(pu: FloatArray) -> FloatArray:
     """Return unit tangents, shape (len(u), len(v), 3); where there is none, that of the nearest one before or after."""
     speed = np.linalg.norm(pu, axis=-1, keepdims=True)
     missing = ~(speed > 1e-12 * speed.max())
-    tangents = np.divide(pu, speed, out=np.zeros_like(pu), where=~missing)
+    tangents: FloatArray = np.divide(pu, speed, out=np.zeros_like(pu), where=~missing)
     rows = range(len(pu))
     for row, neighbour in [*zip(rows[1:], rows, strict=False), *zip(rows[-2::-1], rows[:0:-1], strict=True)]:
         gaps = missing[row, :, 0] & ~missing[neighbour, :, 0]
@@ -189,6 +189,7 @@ def _against_chord(
     def side(t: FloatArray) -> FloatArray:
         square = t - np.sum(t * chord, axis=-1, keepdims=True) * chord
         size = np.linalg.norm(square, axis=-1, keepdims=True)
-        return np.divide(square, size, out=np.zeros_like(square), where=has_chord & (size > 1e-12))
+        unit: FloatArray = np.divide(square, size, out=np.zeros_like(square), where=has_chord & (size > 1e-12))
+        return unit
 
     return theta, (side(ends[0]), side(ends[1]))

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from semispline.solver.arrays import FloatArray
 from semispline.solver.judge.box_tree import BoxTree, IndexArray, box_tree, overlapping
@@ -138,6 +139,10 @@ def _parameters(corners: FloatArray, parameters: FloatArray, points: FloatArray)
     return np.asarray(np.einsum("kc,kcd->kd", weights, parameters))
 
 
+def _inside(points: FloatArray, corners: FloatArray, margin: float) -> NDArray[np.bool_]:
+    return np.asarray((_barycentric(points, corners) > margin).all(axis=-1))
+
+
 def _barycentric(points: FloatArray, corners: FloatArray) -> FloatArray:
     a, b, c = (corners[:, k] for k in range(3))
     normal = np.cross(b - a, c - a)
@@ -149,7 +154,7 @@ def _barycentric(points: FloatArray, corners: FloatArray) -> FloatArray:
     return np.stack(weights, axis=-1)
 
 
-def _crossing(points: FloatArray, first: IndexArray, second: IndexArray) -> tuple[np.ndarray, FloatArray]:
+def _crossing(points: FloatArray, first: IndexArray, second: IndexArray) -> tuple[NDArray[np.bool_], FloatArray]:
     """Return which pairs of triangles cross, and a point of each that does."""
     same = first[:, :, None] == second[:, None, :]
     common = same.sum(axis=(1, 2))
@@ -186,13 +191,13 @@ def _heights(triangles: FloatArray, others: FloatArray) -> tuple[FloatArray, Flo
     return heights, scale
 
 
-def _reaches(triangles: FloatArray, others: FloatArray) -> np.ndarray:
+def _reaches(triangles: FloatArray, others: FloatArray) -> NDArray[np.bool_]:
     heights, scale = _heights(triangles, others)
     touch = _TOUCH * scale
     return np.asarray((heights.min(axis=1) <= touch) & (heights.max(axis=1) >= -touch))
 
 
-def _pierces(start: FloatArray, end: FloatArray, corners: FloatArray) -> tuple[np.ndarray, FloatArray]:
+def _pierces(start: FloatArray, end: FloatArray, corners: FloatArray) -> tuple[NDArray[np.bool_], FloatArray]:
     """Tell which segments cross which triangles, and where; those within its plane do not."""
     a, b, c = (corners[:, k] for k in range(3))
     normal = np.cross(b - a, c - a)
@@ -201,10 +206,10 @@ def _pierces(start: FloatArray, end: FloatArray, corners: FloatArray) -> tuple[n
         share = at_start / (at_start - at_end)
         inside = (share >= -_TOUCH) & (share <= 1 + _TOUCH)
         where = start + np.where(inside, share, 0.0)[:, None] * (end - start)
-    return inside & (_barycentric(where, corners) >= -_TOUCH).all(axis=-1), where
+    return inside & _inside(where, corners, -_TOUCH), where
 
 
-def _overlap_in_plane(p: FloatArray, q: FloatArray) -> tuple[np.ndarray, FloatArray]:
+def _overlap_in_plane(p: FloatArray, q: FloatArray) -> tuple[NDArray[np.bool_], FloatArray]:
     """Tell which triangles that lie in one plane overlap, and a point of both: a crossing of edges or a corner."""
     heights, scale = _heights(p, q)
     hit = np.zeros(len(p), dtype=bool)
@@ -215,14 +220,14 @@ def _overlap_in_plane(p: FloatArray, q: FloatArray) -> tuple[np.ndarray, FloatAr
     p, q = p[flat], q[flat]
     normal = np.cross(p[:, 1] - p[:, 0], p[:, 2] - p[:, 0])
 
-    def found(which: np.ndarray, at: FloatArray) -> None:
-        new = flat[which & ~hit[flat]]
-        where[new] = at[which & ~hit[flat]]
-        hit[new] = True
+    def found(which: NDArray[np.bool_], at: FloatArray) -> None:
+        new = which & ~hit[flat]
+        where[flat[new]] = at[new]
+        hit[flat[new]] = True
 
     for corners, others in ((p, q), (q, p)):
         for k in range(3):
-            found((_barycentric(others[:, k], corners) > _TOUCH).all(axis=-1), others[:, k])
+            found(_inside(others[:, k], corners, _TOUCH), others[:, k])
     for k in range(3):
         for m in range(3):
             start, along = p[:, k], p[:, (k + 1) % 3] - p[:, k]

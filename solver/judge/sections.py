@@ -111,7 +111,7 @@ def least_on_grid(
     best = np.inf, float(u[0]), float(v[0])
     for _ in range(_ZOOMS):
         values = np.nan_to_num(value(u, v), nan=np.inf, posinf=np.inf)
-        i, j = np.unravel_index(int(values.argmin()), values.shape)
+        i, j = divmod(int(values.argmin()), values.shape[1])
         least, before = float(values[i, j]), best[0]
         if least < before:
             best = least, float(u[i]), float(v[j])

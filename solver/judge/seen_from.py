@@ -162,9 +162,9 @@ class _Border:
             return False
         tree = box_tree(np.minimum(start, end) - off[:, None], np.maximum(start, end) + off[:, None])
         n, length = len(start), np.concatenate([[0.0], np.cumsum(np.linalg.norm(along, axis=-1))])
-        for i, j in overlapping(tree, tree):
-            apart = (j - i > 1) & (j - i < n - 1)
-            i, j = i[apart], j[apart]
+        for first, second in overlapping(tree, tree):
+            apart = (second - first > 1) & (second - first < n - 1)
+            i, j = first[apart], second[apart]
             between = length[j] - length[i + 1]
             between = np.minimum(between, length[-1] - (length[j + 1] - length[i]))
             # Next to a long edge short ones are close to it.

@@ -1,5 +1,7 @@
 """Exact rational shapes with known geometry, for the judge: profiles of lines and arcs, extruded or turned."""
 
+from itertools import pairwise
+
 import numpy as np
 
 from semispline import BSplineSurface
@@ -10,7 +12,7 @@ def arc(centre, radius, start, end):
     count = max(1, int(np.ceil(abs(end - start) / 90 - 1e-9)))
     angles = np.radians(np.linspace(start, end, count + 1))
     pieces = []
-    for a, b in zip(angles[:-1], angles[1:], strict=True):
+    for a, b in pairwise(angles):
         half = (b - a) / 2
         middle = (a + b) / 2
         w = np.cos(half)
@@ -35,7 +37,7 @@ def extruded(pieces, width, *, along="u"):
     """A profile in the plane z = 0, pulled along z; `along` names the parameter that runs along it."""
     knots, points = joined(pieces)
     flat = np.column_stack([points[:, :2] / points[:, 2:], np.zeros(len(points))])
-    net = np.stack([flat, flat + [0, 0, width]], axis=1)
+    net = np.stack([flat, flat + np.array([0, 0, width])], axis=1)
     weights = np.repeat(points[:, 2:], 2, axis=1)
     if along == "u":
         return BSplineSurface(2, 1, knots, [0, 0, 1, 1], net, weights)

@@ -76,7 +76,7 @@ def test_a_jump_counts_as_if_spread_over_the_window():
         slope = np.concatenate([[0.0], np.cumsum(curvature * (knots[4:8] - knots[2:6]) / 2)])
         y = scale * np.concatenate([[0.0], np.cumsum(slope * (knots[4:9] - knots[1:6]) / 3)])
         points = np.stack([x, y, np.zeros(6)], axis=1)
-        return BSplineSurface(3, 1, knots, [0, 0, 1, 1], np.stack([points, points + [0, 0, width]], axis=1))
+        return BSplineSurface(3, 1, knots, [0, 0, 1, 1], np.stack([points, points + np.array([0, 0, width])], axis=1))
 
     spread = measure_fairness(surface(2 / 50))
     assert spread.jumps < 1e-6 * spread.smooth

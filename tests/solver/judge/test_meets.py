@@ -278,7 +278,7 @@ def test_closed_rims_with_seams_anywhere():
 
 
 def test_a_tube_through_the_wall_of_a_closed_base():
-    """Around a rim and away from it, bent over and in through the wall: a place on the wall, in the base's parameters."""
+    """Around a rim and away from it, bent over and in through the wall; parameters are the base's."""
     wall = revolved(line((1, -4), (1, 0)))
     # From the rim outwards, down outside, and inwards through the wall at z = -1.
     way = [*arc((2, 0), 1.0, 180, 0), *line((3, 0), (3, -1)), *line((3, -1), (0.5, -1))]
