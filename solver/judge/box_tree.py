@@ -13,7 +13,7 @@ from semispline.solver.arrays import FloatArray
 IndexArray = NDArray[np.intp]
 
 # Bits of each coordinate by which boxes are ordered, and how many pairs are worked on at once.
-_BITS, _AT_ONCE = 10, 2**17
+_BITS, _AT_ONCE = 10, 2**15
 
 
 @dataclass(frozen=True, eq=False)
