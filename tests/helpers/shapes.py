@@ -60,7 +60,7 @@ def torus(big, small, *, tube=(0.0, 360.0), around=(0.0, 360.0)):
     return revolved(arc((big, 0), small, *tube), *around)
 
 
-def sheets(seed, count, *, arch=0.6, rough=0.08):
+def sheets(seed, count, *, arch=0.6, rough=0.08, sideways=0.016):
     """Quintic arches over cubic lines of 1 to 4 spans, dented at random: blends as one would keep them."""
     rng = np.random.default_rng(seed)
     made = []
@@ -70,6 +70,6 @@ def sheets(seed, count, *, arch=0.6, rough=0.08):
         y = np.array([knots_v[i + 1 : i + 4].mean() for i in range(len(knots_v) - 4)])
         x = np.arange(6) / 5
         net = np.stack([*np.meshgrid(x, y, indexing="ij"), np.repeat((arch * 4 * x * (1 - x))[:, None], len(y), 1)], -1)
-        net += rough * rng.uniform(-1, 1, net.shape) * [0.2, 0.2, 1.0]
+        net += rng.uniform(-1, 1, net.shape) * [sideways, sideways, rough]
         made.append(BSplineSurface(5, 3, [0.0] * 6 + [1.0] * 6, knots_v, net))
     return made

@@ -30,6 +30,17 @@ def test_both_sides_of_a_knot_are_looked_at(along):
     assert values == pytest.approx([0, 100], rel=1e-6, abs=1e-6)
 
 
+def test_a_peak_at_the_end_of_a_span():
+    """y = x^2 / 2 up to x = 0, where its curvature is 1, a line, and an arc of 0.8: samples of a span miss the peak."""
+    parabola = np.array([[-10, 50, 1.0], [-5, 0, 1], [0, 0, 1]])
+    profile = [parabola, *line((0, 0), (5, 0)), *arc((5, 1.25), 1.25, -90, 0)]
+    for along in ("u", "v"):
+        found = measure_curvature_range(extruded(profile, 1.0, along=along))
+        peak = max(found.least, found.largest, key=lambda at: abs(at.value))
+        assert abs(peak.value) == pytest.approx(1, rel=1e-6)
+        assert peak.point[:2] == pytest.approx([0, 0], abs=1e-6)
+
+
 def test_nothing_on_a_fine_grid_is_beyond_it():
     for surface in sheets(3, 4):
         found = measure_curvature_range(surface)

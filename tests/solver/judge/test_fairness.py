@@ -1,5 +1,7 @@
 """A * GH with jumps: a torus by its closed form, jumps of profiles, laws, and what does not settle."""
 
+from math import comb
+
 import numpy as np
 import pytest
 from scipy.integrate import quad
@@ -88,7 +90,7 @@ def test_a_jump_counts_as_if_spread_over_the_window():
     assert jump.value == pytest.approx(spread.value, rel=1e-3)
 
 
-def by_differences(surface, n_u=160, n_v=80):
+def by_differences(surface, n_u=300, n_v=200):
     """A * GH from H alone, differenced on a grid in each span of v: shares no third derivative."""
     area = gradient = 0.0
     for start, end in zip(surface.breakpoints[1][:-1], surface.breakpoints[1][1:], strict=True):
@@ -106,10 +108,55 @@ def by_differences(surface, n_u=160, n_v=80):
 
 
 def test_blends_against_differences_of_the_mean_curvature():
-    for surface in sheets(7, 4):
+    # Sheared, so that the lines u and v are far from square.
+    shear = np.array([[1.0, 0.9, 0.3], [0, 1, 0], [0, 0, 1]])
+    for straight in sheets(7, 4, sideways=0.05):
+        surface = transform(straight, shear)
         found = measure_fairness(surface)
         assert found.settled
-        assert found.smooth == pytest.approx(by_differences(surface), rel=0.05)
+        assert found.smooth == pytest.approx(by_differences(surface), rel=0.02)
+
+
+def test_a_graph_over_a_parallelogram():
+    """z = f(x, y) with x = u + c v, y = v: formulas in x and y, where lines u and v are far from square."""
+    c = 1.7
+
+    def f(x, y):
+        """Return f, f_x, f_y, f_xx, f_xy, f_yy."""
+        third = 0.4 * x**3 - 0.3 * x * y**2 + 0.2 * y**3
+        return (
+            third + 0.3 * x**2 * y**2 + 0.5 * x * y,
+            1.2 * x**2 - 0.3 * y**2 + 0.6 * x * y**2 + 0.5 * y,
+            -0.6 * x * y + 0.6 * y**2 + 0.6 * x**2 * y + 0.5 * x,
+            2.4 * x + 0.6 * y**2,
+            -0.6 * y + 1.2 * x * y + 0.5,
+            -0.6 * x + 1.2 * y + 0.6 * x**2,
+        )
+
+    def mean(x, y):
+        _, p, q, r, s, t = f(x, y)
+        return ((1 + q**2) * r - 2 * p * q * s + (1 + p**2) * t) / (2 * (1 + p**2 + q**2) ** 1.5)
+
+    node, weight = np.polynomial.legendre.leggauss(40)
+    u, v = np.meshgrid((node + 1) / 2, (node + 1) / 2, indexing="ij")
+    x, y, w = u + c * v, v, np.outer(weight, weight) / 4
+    # Derivatives of H by complex steps.
+    h_x, h_y = mean(x + 1e-30j, y).imag / 1e-30, mean(x, y + 1e-30j).imag / 1e-30
+    _, p, q, *_ = f(x, y)
+    element = np.sqrt(1 + p**2 + q**2)
+    gradient = ((1 + q**2) * h_x**2 - 2 * p * q * h_x * h_y + (1 + p**2) * h_y**2) / element**2
+    expected = np.sum(w * element) * np.sum(w * gradient * element)
+    # The same as one piece of degree 4: values at nodes to Bernstein coefficients.
+    t = np.linspace(0, 1, 5)
+    bernstein = np.array([comb(4, k) * t**k * (1 - t) ** (4 - k) for k in range(5)]).T
+    u, v = np.meshgrid(t, t, indexing="ij")
+    values = np.stack([u + c * v, v, f(u + c * v, v)[0]], axis=-1)
+    inverse = np.linalg.inv(bernstein)
+    knots = [0.0] * 5 + [1.0] * 5
+    surface = BSplineSurface(4, 4, knots, knots, np.einsum("ai,bj,ijd->abd", inverse, inverse, values))
+    found = measure_fairness(surface)
+    assert found.settled
+    assert found.value == pytest.approx(expected, rel=1e-5)
 
 
 def test_laws():

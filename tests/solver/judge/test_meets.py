@@ -8,11 +8,12 @@ import pytest
 from helpers.bases import cylinder, tube
 from helpers.shapes import arc, extruded, line, revolved, sheets, torus
 from semispline import Base, BSplineSurface, blend, measure_meets, transform
+from semispline.solver.judge import confirmed_meetings
 from semispline.solver.judge.box_tree import box_tree, overlapping
 from semispline.solver.judge.confirmed_meetings import search_itself
 from semispline.solver.judge.continuation import continuation
+from semispline.solver.judge.mesh_search import Hits, crossings, grid_mesh, joined_along
 from semispline.solver.judge.mesh_search import _triangles as triangles_of
-from semispline.solver.judge.mesh_search import crossings, grid_mesh, joined_along
 from semispline.solver.judge.sections import closed_directions, spread
 
 
@@ -20,6 +21,9 @@ def searched(surface, *bases):
     found = measure_meets(surface, *bases)
     assert found.searched
     return found
+
+
+NOTHING = np.zeros((2, 0, 2))
 
 
 # What meets nothing
@@ -115,6 +119,27 @@ def test_a_tube_in_the_form_of_an_eight(columns):
         assert meeting.angle_degrees == pytest.approx(90)
 
 
+class Cone(Eight):
+    """The same drawn together to a point at u = 0."""
+
+    def evaluate(self, u, v, du=0, dv=0):
+        u, v = np.broadcast_arrays(np.asarray(u, dtype=float), np.asarray(v, dtype=float))
+        shape = super().evaluate(np.ones_like(u), v, 0, dv)
+        return shape * (u if du == 0 else np.full_like(u, du == 1))[..., None]
+
+
+def test_triangles_with_one_common_corner():
+    """All have the tip in common, and no others are there."""
+    mesh = grid_mesh(Cone(), np.linspace(0, 1, 2), np.linspace(0, 1, 80), (False, True))
+    assert mesh.poles[0]
+    assert len(mesh.triangles) == 79
+    hits = crossings(mesh, mesh)
+    assert len(hits.first)
+    assert np.sort(np.concatenate([hits.first[:, 1], hits.second[:, 1]])) == pytest.approx(
+        np.repeat([0.25, 0.75], len(hits.first)), abs=0.02
+    )
+
+
 def test_welding_by_distance_hides_the_eight():
     """The control: with what lies at one point made one vertex there is nothing left to find."""
     mesh = eight_mesh(81)
@@ -202,6 +227,34 @@ def test_sheets_closer_than_the_mesh_can_tell_are_not_confirmed(apart):
     assert found.unconfirmed > 0
     assert found.deflection > apart
     assert any("closer than the mesh can tell" in sentence for sentence in found.sentences)
+
+
+# An arc, and with a narrow turn at its end back along it, so close that triangles cross.
+THERE, BACK = arc((0, 0), 1.0, 0, 60), [*arc(0.999985 * np.array([0.5, np.sqrt(0.75)]), 1.5e-5, 60, 240)]
+BACK += arc((0, 0), 0.99997, 60, 10)
+
+
+def test_a_narrow_turn_is_no_meeting():
+    """Steps that start at false hits end at one point of the turn."""
+    found = searched(extruded([*THERE, *BACK], 1.0))
+    assert found.found == ()
+    assert found.unconfirmed > 0
+
+
+def test_steps_that_end_on_the_contact_are_no_meeting(monkeypatch):
+    """From hits beside it, as a mesh may have them where the surface leaves its base narrowly."""
+    surface = extruded(arc((0, 1), 1.0, -90, 150), 1.0)
+    beside = Hits(np.array([[1e-3, 0.5]]), np.array([[1e-3, 0.5]]))
+    monkeypatch.setattr(confirmed_meetings, "crossings", lambda a, b: beside if a is not b else Hits(*NOTHING))
+    found = searched(surface, FLAT)
+    assert (found.found, found.unconfirmed) == ((), 1)
+    # They do end there, and what is a hit elsewhere counts.
+    through = extruded(OVER, 1.0)
+    t = through.domain[0][1] - 0.75
+    hit = Hits(np.array([[t, 0.5]]), np.array([[1.0, 0.5]]))
+    monkeypatch.setattr(confirmed_meetings, "crossings", lambda a, b: hit if a is not b else Hits(*NOTHING))
+    (meeting,) = searched(through, FLAT).found
+    assert meeting.point == pytest.approx([-1, 0, 0.5], abs=1e-9)
 
 
 @pytest.mark.parametrize("depth", [1e-2, 1e-4, 1e-6])

@@ -15,7 +15,7 @@ def test_an_arch_is_seen_from_above(degrees):
     assert np.abs(direction) == pytest.approx([0, 1, 0], abs=1e-9)
 
 
-@pytest.mark.parametrize("degrees", [181, 220, 300])
+@pytest.mark.parametrize("degrees", [178.5, 181, 220, 300])
 def test_normals_beyond_a_half_space_give_no_answer(degrees):
     assert seen_from(extruded(arc((0, 0), 1.0, 0, degrees), 1.0)) is None
 
@@ -23,6 +23,8 @@ def test_normals_beyond_a_half_space_give_no_answer(degrees):
 def test_closed_surfaces_give_no_answer():
     for tube in (torus(3.0, 1.0), torus(3.0, 1.0, tube=(0, 100)), extruded(arc((0, 0), 1.0, 0, 360), 1.0)):
         assert seen_from(tube) is None
+    # All normals one, and it meets itself nowhere: but it is no disc.
+    assert seen_from(revolved(line((1, 0), (2, 0)))) is None
 
 
 def test_a_flat_ring_that_covers_itself_gives_no_answer():
