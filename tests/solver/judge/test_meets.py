@@ -244,7 +244,7 @@ def test_a_narrow_turn_is_no_meeting():
 def test_steps_that_end_on_the_contact_are_no_meeting(monkeypatch):
     """From hits beside it, as a mesh may have them where the surface leaves its base narrowly."""
     surface = extruded(arc((0, 1), 1.0, -90, 150), 1.0)
-    beside = Hits(np.array([[1e-3, 0.5]]), np.array([[1e-3, 0.5]]))
+    beside = Hits(np.array([[1e-6, 0.5]]), np.array([[1e-6, 0.5]]))
     monkeypatch.setattr(confirmed_meetings, "crossings", lambda a, b: beside if a is not b else Hits(*NOTHING))
     found = searched(surface, FLAT)
     assert (found.found, found.unconfirmed) == ((), 1)
