@@ -8,7 +8,7 @@ import numpy as np
 
 from semispline.solver.arrays import FloatArray
 from semispline.solver.judge.parametric import ParametricSurface, geometry_grid
-from semispline.solver.judge.sections import just_inside, least_on_grid, spread
+from semispline.solver.judge.sections import just_inside, least_on_grid, no_tangent_plane, spread
 
 # Samples in u and v altogether, and the least in each span.
 _TOTAL, _LEAST = (40, 24), (4, 3)
@@ -35,8 +35,13 @@ class CurvatureRange:
 def measure_curvature_range(surface: ParametricSurface) -> CurvatureRange:
     """Return the least and the largest principal curvature over a surface, each with its place.
 
-    Samples in every span and on both sides of every knot, then finer ones around the extremes. Points without a normal
+    Samples in every span and before every knot, then finer ones around the extremes. Points without a normal
     are passed over; next to them digits are lost.
+
+    Raises
+    ------
+    InputError
+        There is no tangent plane anywhere.
 
     Examples
     --------
@@ -47,7 +52,7 @@ def measure_curvature_range(surface: ParametricSurface) -> CurvatureRange:
     (-1.0, 1.0, (0.0, 0.0, 0.0))
     """
     u, v = (
-        np.unique(np.concatenate([spread(breaks, total, least), *just_inside(breaks)]))
+        np.unique(np.concatenate([spread(breaks, total, least), just_inside(breaks)[1][:-1]]))
         for breaks, total, least in zip(surface.breakpoints, _TOTAL, _LEAST, strict=True)
     )
 
@@ -56,6 +61,8 @@ def measure_curvature_range(surface: ParametricSurface) -> CurvatureRange:
             return np.asarray(sign * geometry_grid(surface, u, v).principal[..., column])
 
         value, at_u, at_v = least_on_grid(values, u, v)
+        if not np.isfinite(value):
+            raise no_tangent_plane()
         x, y, z = surface.evaluate_grid(np.array([at_u]), np.array([at_v]))[0, 0].tolist()
         return CurvatureAt(sign * value, at_u, at_v, (x, y, z))
 

@@ -29,7 +29,7 @@ class Fairness:
     Attributes
     ----------
     value : float
-        The sum of the next two; infinite where the surface has no curvature somewhere.
+        The sum of the next two; all are infinite where curvature is without end at a sample.
     smooth : float
         What the spans contribute.
     jumps : float
@@ -69,18 +69,18 @@ def measure_fairness(surface: ParametricSurface) -> Fairness:
     >>> measure_fairness(BSplineSurface(1, 1, k, k, [[[0, 0, 0], [0, 1, 0]], [[1, 0, 0], [1, 1, 0]]]))
     Fairness(value=0.0, smooth=0.0, jumps=0.0, settled=True)
     """
-    window = turn_window(surface)
+    scaled = _Scaled(surface, turn_window(surface))
     seams = closed_directions(surface)
     before: Fairness | None = None
     for halvings in range(_HALVINGS):
         rules = _rules(surface, halvings)
         if before is not None and rules[0].points.size * rules[1].points.size > _MOST:
             return before
-        gradient, area = _smooth_part(surface, rules)
-        smooth, jumps = area * gradient, area / window * _jumps(surface, rules, seams)
+        gradient, area = _smooth_part(scaled, rules)
+        smooth, jumps = area * gradient, area * _jumps(scaled, rules, seams)
         value = smooth + jumps
         if not np.isfinite(value):
-            return Fairness(np.inf, smooth, jumps, settled=False)
+            return Fairness(np.inf, np.inf, np.inf, settled=False)
         settled = before is not None and abs(value - before.value) <= max(SETTLED * value, _NOTHING)
         before = Fairness(value, smooth, jumps, settled)
         if settled:
@@ -91,7 +91,7 @@ def measure_fairness(surface: ParametricSurface) -> Fairness:
 
 @dataclass(frozen=True, eq=False)
 class _Rule:
-    """Gauss points and weights of one parameter, all spans after each other."""
+    """Gauss points of one parameter, all spans after each other, and weights whose sum is 1."""
 
     points: FloatArray
     weights: FloatArray
@@ -100,20 +100,34 @@ class _Rule:
 _Rules: TypeAlias = tuple[_Rule, _Rule]
 
 
+@dataclass(frozen=True, eq=False)
+class _Scaled:
+    """A surface measured by its window, over [0, 1] x [0, 1]: what is measured then has neither units nor overflow."""
+
+    surface: ParametricSurface
+    window: float
+
+    def derivative(self, u: FloatArray, v: FloatArray, du: int, dv: int) -> FloatArray:
+        """Return a derivative on the grid u x v of the surface's own parameters, shape (3, len(u), len(v))."""
+        (u_start, u_end), (v_start, v_end) = self.surface.domain
+        factor = (u_end - u_start) ** du * (v_end - v_start) ** dv
+        return np.moveaxis(self.surface.evaluate_grid(u, v, du, dv) * factor / self.window, -1, 0)
+
+
 def _rules(surface: ParametricSurface, halvings: int) -> _Rules:
     """Return the rules in u and in v with every span halved so many times."""
 
     def rule(breaks: FloatArray, total: int, least: int) -> _Rule:
         number = max(least, -(-total // (len(breaks) - 1)))
         points, weights = gauss_rule(spread(breaks, 1, 2**halvings), 2 * number - 1)
-        return _Rule(points.T.ravel(), weights.T.ravel())
+        return _Rule(points.T.ravel(), weights.T.ravel() / (breaks[-1] - breaks[0]))
 
     u_breaks, v_breaks = surface.breakpoints
     return rule(u_breaks, _TOTAL[0], _LEAST[0]), rule(v_breaks, _TOTAL[1], _LEAST[1])
 
 
-def _smooth_part(surface: ParametricSurface, rules: _Rules) -> tuple[float, float]:
-    """Return the integral of |grad H|^2 and the area."""
+def _smooth_part(surface: _Scaled, rules: _Rules) -> tuple[float, float]:
+    """Return the integral of |grad H|^2 and the area, lengths in windows."""
     (u, of_u), (v, of_v) = ((rule.points, rule.weights) for rule in rules)
     gradient = area = 0.0
     for part in _parts(len(u), len(v)):
@@ -128,14 +142,14 @@ def _parts(n_u: int, n_v: int) -> Iterator[slice]:
     yield from (slice(at, at + step) for at in range(0, n_v, step))
 
 
-def _gradient_density(surface: ParametricSurface, u: FloatArray, v: FloatArray) -> tuple[FloatArray, FloatArray]:
+def _gradient_density(surface: _Scaled, u: FloatArray, v: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return |grad H|^2 |m| and |m|, with m = P_u x P_v, on a grid.
 
     H = Q / (2 |m|^3), Q = E (P_vv . m) - 2 F (P_uv . m) + G (P_uu . m); its derivatives by the product rule.
     """
 
     def derivative(du: int, dv: int) -> FloatArray:
-        return np.moveaxis(surface.evaluate_grid(u, v, du, dv), -1, 0)
+        return surface.derivative(u, v, du, dv)
 
     a, b = derivative(1, 0), derivative(0, 1)
     aa, ab, bb = derivative(2, 0), derivative(1, 1), derivative(0, 2)
@@ -165,13 +179,13 @@ def _gradient_density(surface: ParametricSurface, u: FloatArray, v: FloatArray) 
         return np.asarray((G * h_u**2 - 2 * F * h_u * h_v + E * h_v**2) / length), length
 
 
-def _jumps(surface: ParametricSurface, rules: _Rules, seams: tuple[bool, bool]) -> float:
-    """Return the integral of [H]^2 ds over all lines of knots, and over seams."""
+def _jumps(surface: _Scaled, rules: _Rules, seams: tuple[bool, bool]) -> float:
+    """Return the integral of [H]^2 ds over all lines of knots, and over seams; lengths in windows, so h is 1."""
     (u, of_u), (v, of_v) = ((rule.points, rule.weights) for rule in rules)
     total = 0.0
     for lines, nodes, weights, swapped, seam in (
-        (surface.breakpoints[0], v, of_v, True, seams[0]),
-        (surface.breakpoints[1], u, of_u, False, seams[1]),
+        (surface.surface.breakpoints[0], v, of_v, True, seams[0]),
+        (surface.surface.breakpoints[1], u, of_u, False, seams[1]),
     ):
         after, before = just_inside(lines)
         # On a closed surface the end of the last span lies before the start of the first.
@@ -184,14 +198,12 @@ def _jumps(surface: ParametricSurface, rules: _Rules, seams: tuple[bool, bool]) 
     return total
 
 
-def _mean_curvature(
-    surface: ParametricSurface, run: FloatArray, at: FloatArray, swapped: bool
-) -> tuple[FloatArray, FloatArray]:
+def _mean_curvature(surface: _Scaled, run: FloatArray, at: FloatArray, swapped: bool) -> tuple[FloatArray, FloatArray]:
     """Return H and the speed along lines, shape (len(run), len(at)): lines of constant u if swapped, else of v."""
 
     def derivative(du: int, dv: int) -> FloatArray:
-        values = surface.evaluate_grid(*((at, run) if swapped else (run, at)), du, dv)
-        return np.moveaxis(values.transpose(1, 0, 2) if swapped else values, -1, 0)
+        values = surface.derivative(*((at, run) if swapped else (run, at)), du, dv)
+        return values.transpose(0, 2, 1) if swapped else values
 
     a, b = derivative(1, 0), derivative(0, 1)
     m = _cross(a, b)

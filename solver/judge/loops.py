@@ -154,7 +154,7 @@ def measure_exits(surface: ParametricSurface) -> Exits:
         theta_1,
         float(cosine.mean()),
         ("same" if together > 0 else "opposite") if told else None,
-        together / sizes if told else 0.0,
+        float(np.clip(together / sizes, -1, 1)) if told else 0.0,
     )
 
 

@@ -9,12 +9,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
+import numpy as np
+
 from semispline.solver.judge.base import Base
 from semispline.solver.judge.confirmed_meetings import Meeting, Places, What, search_base, search_itself
 from semispline.solver.judge.continuation import Continuation, continuation
 from semispline.solver.judge.mesh_search import grid_mesh
 from semispline.solver.judge.parametric import ParametricSurface
-from semispline.solver.judge.sections import closed_directions, spread
+from semispline.solver.judge.sections import closed_directions, no_tangent_plane, spread, unit_normals
 from semispline.solver.judge.seen_from import Direction, seen_from
 
 # Cells of the mesh along u, along v (twice as many where closed) and into a base; the least in each span; all.
@@ -92,6 +94,8 @@ def measure_meets(
     ------
     EdgeError
         The edge of a base is not the surface's.
+    InputError
+        The surface has no tangent plane anywhere.
 
     Examples
     --------
@@ -120,7 +124,10 @@ def measure_meets(
     closed = closed_directions(surface)
     u_breaks, v_breaks = surface.breakpoints
     v = spread(v_breaks, _CELLS_V * (2 if closed[1] else 1), _LEAST)
-    own = grid_mesh(surface, spread(u_breaks, min(_CELLS_U, max(24, _MOST_CELLS // len(v))), _LEAST), v, closed)
+    u = spread(u_breaks, min(_CELLS_U, max(24, _MOST_CELLS // len(v))), _LEAST)
+    if np.isnan(unit_normals(surface.evaluate_grid(u, v, 1, 0), surface.evaluate_grid(u, v, 0, 1))).all():
+        raise no_tangent_plane()
+    own = grid_mesh(surface, u, v, closed)
     places: list[Places] = []
     deflection = own.deflection
     for what in searched:

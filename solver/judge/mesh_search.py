@@ -99,7 +99,9 @@ def crossings(a: Mesh, b: Mesh) -> Hits:
 
     Triangles with a common edge never count, and those with a common corner only where they cross elsewhere.
     """
-    points = b.points
+    # Around zero and of size 1: products neither overflow nor lose what is far from the origin.
+    centre, size = b.points.mean(axis=0), extent(b.points)
+    points = (b.points - centre) / (size if size > 0 else 1.0)
 
     def tree(mesh: Mesh) -> BoxTree:
         corners = points[mesh.triangles]

@@ -59,10 +59,11 @@ def closed_directions(surface: ParametricSurface) -> tuple[bool, bool]:
     p = surface.evaluate_grid(u, v)
     limit = CLOSED * extent(p)
 
-    def is_closed(start: FloatArray, end: FloatArray) -> bool:
-        return bool(np.abs(end - start).max() <= limit < extent(start))
+    def is_closed(rows: FloatArray) -> bool:
+        away = np.abs(rows - rows[0]).max(axis=(1, 2))
+        return bool(away[-1] <= limit < min(extent(rows[0]), away.max()))
 
-    return is_closed(p[0], p[-1]), is_closed(p[:, 0], p[:, -1])
+    return is_closed(p), is_closed(p.transpose(1, 0, 2))
 
 
 def turn_window(surface: ParametricSurface) -> float:
@@ -89,10 +90,20 @@ def turn_window(surface: ParametricSurface) -> float:
 
 def unit_normals(pu: FloatArray, pv: FloatArray) -> FloatArray:
     """Return P_u x P_v made unit vectors, shape (..., 3); NaN where there is no tangent plane."""
-    cross = np.cross(pu, pv)
+    # Unit tangents first: nothing overflows, whatever the units.
+    tangents = []
+    for tangent in (pu, pv):
+        speed = np.linalg.norm(tangent, axis=-1, keepdims=True)
+        tangents.append(np.divide(tangent, speed, out=np.zeros_like(tangent), where=speed > 0))
+    cross = np.cross(*tangents)
     area = np.linalg.norm(cross, axis=-1)
-    regular = area > _DEGENERATE * np.linalg.norm(pu, axis=-1) * np.linalg.norm(pv, axis=-1)
+    regular = area > _DEGENERATE
     return np.where(regular[..., None], cross, np.nan) / np.where(regular, area, 1.0)[..., None]
+
+
+def no_tangent_plane() -> InputError:
+    """Return what is to be said of a surface that is a curve or a point."""
+    return InputError("surface: has no tangent plane anywhere, expected one that is not a curve or a point")
 
 
 def angles(a: FloatArray, b: FloatArray) -> FloatArray:

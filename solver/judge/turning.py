@@ -9,7 +9,14 @@ import numpy as np
 
 from semispline.solver.arrays import FloatArray
 from semispline.solver.judge.parametric import ParametricSurface
-from semispline.solver.judge.sections import angles, closed_directions, spread, turn_window, unit_normals
+from semispline.solver.judge.sections import (
+    angles,
+    closed_directions,
+    no_tangent_plane,
+    spread,
+    turn_window,
+    unit_normals,
+)
 
 # A surface whose normal turns by more than this within one window is folded.
 FOLD_DEGREES = 90.0
@@ -64,7 +71,7 @@ def measure_turn(surface: ParametricSurface) -> Turn:
     Raises
     ------
     InputError
-        The sections v = const have no length.
+        The sections v = const have no length, or the surface has no tangent plane anywhere.
 
     Source: the measures of the design document.
 
@@ -85,7 +92,10 @@ def turn_on_samples(surface: ParametricSurface, fineness: int) -> Turn:
     closed_u, closed_v = closed_directions(surface)
     along_u = _largest(surface, "v", window, closed_u, fineness)
     along_v = _largest(surface, "u", window, closed_v, fineness)
-    return max(along_u, along_v, key=lambda turn: turn.degrees)
+    largest = max(along_u, along_v, key=lambda turn: turn.degrees)
+    if largest.degrees < 0:
+        raise no_tangent_plane()
+    return largest
 
 
 def _largest(
@@ -151,7 +161,7 @@ def _turn_of_section(
     ahead = np.where(share[:, None] > 0, share[:, None] * normals[low + 1], 0.0) + np.where(
         share[:, None] < 1, (1 - share[:, None]) * normals[low], 0.0
     )
-    turns = np.nan_to_num(angles(normals[:starts], ahead))
+    turns = np.nan_to_num(angles(normals[:starts], ahead), nan=-1.0)
     i = int(turns.argmax())
     start, end = float(run[low[i]]), float(run[low[i] + 1])
     # From the seam a step leads on from its start.
