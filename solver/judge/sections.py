@@ -19,7 +19,7 @@ WINDOW = 1 / 50
 # closer than 1e-12 of it count as one.
 _INSIDE, _APART = 1e-8, 2e-12
 # Finer grids around the least value so far, and what gain ends them.
-_ZOOMS, _ENOUGH = 8, 1e-9
+_ZOOMS, _ENOUGH = 8, 1e-7
 # Two tangents at a smaller angle than this have no normal.
 _DEGENERATE = 1e-12
 

@@ -123,11 +123,10 @@ def _largest(
         these = at[first : first + some]
         points = values(run, these)
         normals = unit_normals(values(run, these, 1, 0), values(run, these, 0, 1))
-        for place, p, n in zip(these.tolist(), points, normals, strict=True):
-            degrees, i, end = _turn_of_section(run, p, n, window, closed)
-            if degrees > best.degrees:
-                x, y, z = p[i].tolist()
-                best = Turn(degrees, section, place, (float(run[i]), end), (x, y, z), window)
+        degrees, (k, i), end = _largest_of_sections(run, points, normals, window, closed)
+        if degrees > best.degrees:
+            x, y, z = points[k, i].tolist()
+            best = Turn(degrees, section, float(these[k]), (float(run[i]), end), (x, y, z), window)
     return best
 
 
@@ -138,31 +137,35 @@ def _divided(run: FloatArray, parts: np.ndarray) -> FloatArray:
     return np.append(np.repeat(run[:-1], parts) + share * np.repeat(np.diff(run), parts), run[-1])
 
 
-def _turn_of_section(
+def _largest_of_sections(
     run: FloatArray, points: FloatArray, normals: FloatArray, window: float, closed: bool
-) -> tuple[float, int, float]:
-    """Return the largest turn of one section, the index of its first point and the parameter of its second."""
-    length = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=-1))])
-    total = float(length[-1])
-    reach = min(window, total / 2 if closed else total)
+) -> tuple[float, tuple[int, int], float]:
+    """Return the largest turn, the indices of section and first point, and the parameter of the second point."""
+    length: FloatArray = np.zeros(points.shape[:2])
+    np.cumsum(np.linalg.norm(np.diff(points, axis=1), axis=-1), axis=1, out=length[:, 1:])
+    starts, total = length, length[:, -1:]
+    reach = np.minimum(window, total / 2 if closed else total)
     if closed:
         # Once more round, as far as a window reaches.
-        more = int(np.searchsorted(length, reach)) + 1
-        length = np.concatenate([length, total + length[1:more]])
-        normals = np.concatenate([normals, normals[1:more]])
+        more = int((length < reach).sum(axis=1).max()) + 1
+        length = np.concatenate([length, total + length[:, 1:more]], axis=1)
+        normals = np.concatenate([normals, normals[:, 1:more]], axis=1)
         run = np.concatenate([run, run[1:more]])
-        starts = len(points)
-    else:
-        starts = int(np.searchsorted(length, total - reach * (1 - 1e-12), side="right"))
-    place = np.interp(length[:starts] + reach, length, np.arange(len(length)))
-    low = np.minimum(place.astype(int), len(length) - 2)
-    share = place - low
+    # One after the other, far enough apart, all sections are one table.
+    offset = 2 * (length[:, -1].max() + window) * np.arange(len(length))[:, None]
+    place = np.interp((starts + reach + offset).ravel(), (length + offset).ravel(), np.arange(length.size))
+    low = np.minimum(place.astype(np.intp), length.size - 2)
+    share = (place - low)[:, None]
+    flat = normals.reshape(-1, 3)
     # At a sample the next normal has no say: it may be missing.
-    ahead = np.where(share[:, None] > 0, share[:, None] * normals[low + 1], 0.0) + np.where(
-        share[:, None] < 1, (1 - share[:, None]) * normals[low], 0.0
-    )
-    turns = np.nan_to_num(angles(normals[:starts], ahead), nan=-1.0)
-    i = int(turns.argmax())
-    start, end = float(run[low[i]]), float(run[low[i] + 1])
+    ahead = np.where(share < 1, (1 - share) * flat[low], 0.0) + np.where(share > 0, share * flat[low + 1], 0.0)
+    turns = angles(normals[:, : starts.shape[1]], ahead.reshape(*starts.shape, 3))
+    # Rounding may put the end of a short section just beyond itself.
+    inside = starts + reach <= length[:, -1:] * (1 + 1e-12)
+    turns = np.where(inside, np.nan_to_num(turns, nan=-1.0), -1.0)
+    k, i = divmod(int(turns.argmax()), turns.shape[1])
+    at = int(low[k * turns.shape[1] + i]) - k * length.shape[1]
+    start, end = float(run[at]), float(run[min(at + 1, len(run) - 1)])
     # From the seam a step leads on from its start.
-    return float(turns[i]), i, start + float(share[i]) * (end - start) if end > start else start
+    beyond = float(share[k * turns.shape[1] + i, 0]) * (end - start) if end > start else 0.0
+    return float(turns[k, i]), (k, i), start + beyond
