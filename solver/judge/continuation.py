@@ -1,0 +1,131 @@
+"""How a base goes on from the end of a finished surface, in parameters that go on from it, too."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from semispline.solver.arrays import FloatArray
+from semispline.solver.errors import EdgeError
+from semispline.solver.judge.base import Base
+from semispline.solver.judge.parametric import ParametricSurface
+from semispline.solver.judge.sections import closed_directions, extent
+
+# How far apart the edges may be, as a fraction of their extent: contact that was made is far better.
+_APART = 1e-6
+_SAMPLES, _NEWTON_STEPS, _TRIED = 512, 20, 17
+
+
+@dataclass(frozen=True, eq=False)
+class Continuation:
+    """A base as Q(w, v): w >= 0 runs into it from its edge, v along the edge as on the surface that it continues.
+
+    Attributes
+    ----------
+    base : Base
+    v_breaks : ndarray
+        Where the surface that is continued has its knots.
+    flipped : bool
+        The base's parameter along the edge runs against v.
+    shift : float
+        Where on a closed edge the start of v lies, beyond the edge's own start.
+    """
+
+    base: Base
+    v_breaks: FloatArray
+    flipped: bool
+    shift: float
+
+    @property
+    def domain(self) -> tuple[tuple[float, float], tuple[float, float]]:
+        """The ranges of w and v."""
+        start, end = self._across
+        return (0.0, end - start), (float(self.v_breaks[0]), float(self.v_breaks[-1]))
+
+    @property
+    def breakpoints(self) -> tuple[FloatArray, FloatArray]:
+        """The base's own in w; in v those of the surface that is continued."""
+        breaks = self.base.surface.breakpoints[0 if self.base.edge[0] == "u" else 1]
+        return np.sort(breaks - breaks[0] if self._inwards > 0 else breaks[-1] - breaks), self.v_breaks
+
+    def parameters(self, w: ArrayLike, v: ArrayLike) -> tuple[FloatArray, FloatArray]:
+        """Return the base's own parameters u and v."""
+        start, end = self._across
+        w, v = np.asarray(w, dtype=np.float64), np.asarray(v, dtype=np.float64)
+        across = np.clip((start if self._inwards > 0 else end) + self._inwards * w, start, end)
+        first, last = self.base.range_along
+        t = (v - self.v_breaks[0]) / (self.v_breaks[-1] - self.v_breaks[0])
+        along = first + self.shift + (1 - t if self.flipped else t) * (last - first)
+        # Only a closed edge is shifted.
+        along = np.clip(np.where(along > last, along - (last - first), along) if self.shift else along, first, last)
+        return (across, along) if self.base.edge[0] == "u" else (along, across)
+
+    def evaluate(self, w: ArrayLike, v: ArrayLike, dw: int = 0, dv: int = 0) -> FloatArray:
+        """Return the point or a derivative at (w[k], v[k]), shape (K, 3)."""
+        orders = (dw, dv) if self.base.edge[0] == "u" else (dv, dw)
+        return self._rate(dw, dv) * self.base.surface.evaluate(*self.parameters(w, v), *orders)
+
+    def evaluate_grid(self, w: ArrayLike, v: ArrayLike, dw: int = 0, dv: int = 0) -> FloatArray:
+        """Return the same on the grid w x v, shape (len(w), len(v), 3)."""
+        if self.base.edge[0] == "u":
+            return self._rate(dw, dv) * self.base.surface.evaluate_grid(*self.parameters(w, v), dw, dv)
+        return self._rate(dw, dv) * self.base.surface.evaluate_grid(*self.parameters(w, v), dv, dw).transpose(1, 0, 2)
+
+    @property
+    def _across(self) -> tuple[float, float]:
+        return self.base.surface.domain[0 if self.base.edge[0] == "u" else 1]
+
+    @property
+    def _inwards(self) -> int:
+        return 1 if self.base.edge[1] == "0" else -1
+
+    def _rate(self, dw: int, dv: int) -> float:
+        first, last = self.base.range_along
+        along = (last - first) / (self.v_breaks[-1] - self.v_breaks[0]) * (-1 if self.flipped else 1)
+        return float(self._inwards**dw * along**dv)
+
+
+def continuation(surface: ParametricSurface, base: Base, end: int) -> Continuation:
+    """Find how a base lies at the start (0) or at the end (1) of the surface's u.
+
+    Raises
+    ------
+    EdgeError
+        Its edge is not the surface's.
+    """
+    v_breaks = surface.breakpoints[1]
+    v = np.linspace(v_breaks[0], v_breaks[-1], _TRIED)
+    target = surface.evaluate_grid(np.array([surface.domain[0][end]]), v)[0]
+    size = extent(target)
+    closed = closed_directions(base.surface)[1 if base.edge[0] == "u" else 0]
+    closed = closed and extent(target[[0, -1]]) <= _APART * size
+    shift = _nearest(base, target[0]) - base.range_along[0] if closed else 0.0
+    ways = [Continuation(base, v_breaks, flipped, shift) for flipped in (False, True)]
+
+    def distance(way: Continuation) -> float:
+        return float(np.linalg.norm(way.evaluate(np.zeros(1), v) - target, axis=-1).max())
+
+    best = min(ways, key=distance)
+    if not distance(best) <= _APART * size:
+        raise EdgeError(
+            f"base: its edge {base.edge} is {distance(best):.3g} away from the surface's end u{end}, "
+            "expected the edge that the surface was made for"
+        )
+    return best
+
+
+def _nearest(base: Base, point: FloatArray) -> float:
+    """Return the parameter along a closed edge that is nearest to a point."""
+    first, last = base.range_along
+    s = np.linspace(first, last, _SAMPLES, endpoint=False)
+    at = float(s[int(np.linalg.norm(base.derivative(s, 0, 0) - point, axis=-1).argmin())])
+    for _ in range(_NEWTON_STEPS):
+        here = np.array([at])
+        speed = base.derivative(here, 0, 1)[0]
+        step = float((point - base.derivative(here, 0, 0)[0]) @ speed / (speed @ speed))
+        at = first + (at + step - first) % (last - first)
+        if abs(step) < 1e-15 * (last - first):
+            break
+    return at

@@ -1,0 +1,222 @@
+"""How unfair a surface is: area times the integral of |grad H|^2, and what jumps of H add."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TypeAlias
+
+import numpy as np
+
+from semispline.solver.arrays import FloatArray
+from semispline.solver.judge.parametric import ParametricSurface
+from semispline.solver.judge.sections import closed_directions, just_inside, spread, turn_window
+from semispline.solver.splines import gauss_rule
+
+# A finer grid that changes the value by no more than this fraction settles it; and what is below the second figure is
+# zero, since a visible shape has 1 and more.
+SETTLED, _NOTHING = 0.01, 1e-8
+# Gauss points in u and in v altogether, and the least on each span: the integrand is no polynomial.
+_TOTAL, _LEAST = (24, 10), (6, 4)
+# How often every span is halved before the meter gives up; what a grid may hold in all, and what is worked on at once.
+_HALVINGS, _MOST, _AT_ONCE = 5, 2**21, 2**15
+
+
+@dataclass(frozen=True)
+class Fairness:
+    """A * (integral of |grad H|^2 dA + (1/h) * integral of [H]^2 ds); without units.
+
+    Attributes
+    ----------
+    value : float
+        The sum of the next two; all are infinite where curvature is without end at a sample.
+    smooth : float
+        What the spans contribute.
+    jumps : float
+        What lines where H jumps contribute: as much as if the jump were spread over one window of turn.
+    settled : bool
+        The last refinement of the samples changed the value by at most 1 %.
+    """
+
+    value: float
+    smooth: float
+    jumps: float
+    settled: bool
+
+
+def measure_fairness(surface: ParametricSurface) -> Fairness:
+    """Measure how mean curvature varies over a surface, by Gauss points on every span, refined until it settles.
+
+    H is the mean curvature, A the area, and h is 1/50 of the mean length of the sections v = const. H may jump across
+    lines of knots, and across the seam of a closed surface.
+
+    Parameters
+    ----------
+    surface : BSplineSurface, SemiStructuredSurface or ParametricSurface
+        One that evaluates derivatives up to third order.
+
+    Raises
+    ------
+    InputError
+        The sections v = const have no length.
+
+    Source: the measures of the design document.
+
+    Examples
+    --------
+    >>> from semispline.solver.splines.surfaces import BSplineSurface
+    >>> k = [0, 0, 1, 1]
+    >>> measure_fairness(BSplineSurface(1, 1, k, k, [[[0, 0, 0], [0, 1, 0]], [[1, 0, 0], [1, 1, 0]]]))
+    Fairness(value=0.0, smooth=0.0, jumps=0.0, settled=True)
+    """
+    scaled = _Scaled(surface, turn_window(surface))
+    seams = closed_directions(surface)
+    before: Fairness | None = None
+    for halvings in range(_HALVINGS):
+        rules = _rules(surface, halvings)
+        if before is not None and rules[0].points.size * rules[1].points.size > _MOST:
+            return before
+        gradient, area = _smooth_part(scaled, rules)
+        smooth, jumps = area * gradient, area * _jumps(scaled, rules, seams)
+        value = smooth + jumps
+        if not np.isfinite(value):
+            return Fairness(np.inf, np.inf, np.inf, settled=False)
+        settled = before is not None and abs(value - before.value) <= max(SETTLED * value, _NOTHING)
+        before = Fairness(value, smooth, jumps, settled)
+        if settled:
+            break
+    assert before is not None
+    return before
+
+
+@dataclass(frozen=True, eq=False)
+class _Rule:
+    """Gauss points of one parameter, all spans after each other, and weights whose sum is 1."""
+
+    points: FloatArray
+    weights: FloatArray
+
+
+_Rules: TypeAlias = tuple[_Rule, _Rule]
+
+
+@dataclass(frozen=True, eq=False)
+class _Scaled:
+    """A surface measured by its window, over [0, 1] x [0, 1]: what is measured then has neither units nor overflow."""
+
+    surface: ParametricSurface
+    window: float
+
+    def derivative(self, u: FloatArray, v: FloatArray, du: int, dv: int) -> FloatArray:
+        """Return a derivative on the grid u x v of the surface's own parameters, shape (3, len(u), len(v))."""
+        (u_start, u_end), (v_start, v_end) = self.surface.domain
+        factor = (u_end - u_start) ** du * (v_end - v_start) ** dv
+        return np.moveaxis(self.surface.evaluate_grid(u, v, du, dv) * factor / self.window, -1, 0)
+
+
+def _rules(surface: ParametricSurface, halvings: int) -> _Rules:
+    """Return the rules in u and in v with every span halved so many times."""
+
+    def rule(breaks: FloatArray, total: int, least: int) -> _Rule:
+        number = max(least, -(-total // (len(breaks) - 1)))
+        points, weights = gauss_rule(spread(breaks, 1, 2**halvings), 2 * number - 1)
+        return _Rule(points.T.ravel(), weights.T.ravel() / (breaks[-1] - breaks[0]))
+
+    u_breaks, v_breaks = surface.breakpoints
+    return rule(u_breaks, _TOTAL[0], _LEAST[0]), rule(v_breaks, _TOTAL[1], _LEAST[1])
+
+
+def _smooth_part(surface: _Scaled, rules: _Rules) -> tuple[float, float]:
+    """Return the integral of |grad H|^2 and the area, lengths in windows."""
+    (u, of_u), (v, of_v) = ((rule.points, rule.weights) for rule in rules)
+    gradient = area = 0.0
+    for part in _parts(len(u), len(v)):
+        density, element = _gradient_density(surface, u, v[part])
+        gradient += float(of_u @ density @ of_v[part])
+        area += float(of_u @ element @ of_v[part])
+    return gradient, area
+
+
+def _parts(n_u: int, n_v: int) -> Iterator[slice]:
+    step = max(1, _AT_ONCE // n_u)
+    yield from (slice(at, at + step) for at in range(0, n_v, step))
+
+
+def _gradient_density(surface: _Scaled, u: FloatArray, v: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return |grad H|^2 |m| and |m|, with m = P_u x P_v, on a grid.
+
+    H = Q / (2 |m|^3), Q = E (P_vv . m) - 2 F (P_uv . m) + G (P_uu . m); its derivatives by the product rule.
+    """
+
+    def derivative(du: int, dv: int) -> FloatArray:
+        return surface.derivative(u, v, du, dv)
+
+    a, b = derivative(1, 0), derivative(0, 1)
+    aa, ab, bb = derivative(2, 0), derivative(1, 1), derivative(0, 2)
+    m = _cross(a, b)
+    E, F, G, square = _dot(a, a), _dot(a, b), _dot(b, b), _dot(m, m)
+    L, M, N = _dot(aa, m), _dot(ab, m), _dot(bb, m)
+    Q = E * N - 2 * F * M + G * L
+    length = np.sqrt(square)
+
+    def derivative_of_h(x: FloatArray, y: FloatArray, third: tuple[FloatArray, FloatArray, FloatArray]) -> FloatArray:
+        """Return H's derivative along the parameter along which P_u has derivative x, P_v y, and P_uu ... `third`."""
+        turning = _cross(x, b) + _cross(a, y)
+        change = (
+            2 * _dot(a, x) * N
+            + E * (_dot(third[2], m) + _dot(bb, turning))
+            - 2 * (_dot(x, b) + _dot(a, y)) * M
+            - 2 * F * (_dot(third[1], m) + _dot(ab, turning))
+            + 2 * _dot(b, y) * L
+            + G * (_dot(third[0], m) + _dot(aa, turning))
+        )
+        return np.asarray((change - 3 * Q * _dot(m, turning) / square) / (2 * square * length))
+
+    with np.errstate(divide="ignore", invalid="ignore"):
+        aab, abb = derivative(2, 1), derivative(1, 2)
+        h_u = derivative_of_h(aa, ab, (derivative(3, 0), aab, abb))
+        h_v = derivative_of_h(ab, bb, (aab, abb, derivative(0, 3)))
+        return np.asarray((G * h_u**2 - 2 * F * h_u * h_v + E * h_v**2) / length), length
+
+
+def _jumps(surface: _Scaled, rules: _Rules, seams: tuple[bool, bool]) -> float:
+    """Return the integral of [H]^2 ds over all lines of knots, and over seams; lengths in windows, so h is 1."""
+    (u, of_u), (v, of_v) = ((rule.points, rule.weights) for rule in rules)
+    total = 0.0
+    for lines, nodes, weights, swapped, seam in (
+        (surface.surface.breakpoints[0], v, of_v, True, seams[0]),
+        (surface.surface.breakpoints[1], u, of_u, False, seams[1]),
+    ):
+        after, before = just_inside(lines)
+        # On a closed surface the end of the last span lies before the start of the first.
+        after, before = (after, np.roll(before, 1)) if seam else (after[1:], before[:-1])
+        for part in _parts(len(nodes), len(after)):
+            (h_after, speed), (h_before, _) = (
+                _mean_curvature(surface, nodes, side[part], swapped) for side in (after, before)
+            )
+            total += float((weights @ ((h_after - h_before) ** 2 * speed)).sum())
+    return total
+
+
+def _mean_curvature(surface: _Scaled, run: FloatArray, at: FloatArray, swapped: bool) -> tuple[FloatArray, FloatArray]:
+    """Return H and the speed along lines, shape (len(run), len(at)): lines of constant u if swapped, else of v."""
+
+    def derivative(du: int, dv: int) -> FloatArray:
+        values = surface.derivative(*((at, run) if swapped else (run, at)), du, dv)
+        return values.transpose(0, 2, 1) if swapped else values
+
+    a, b = derivative(1, 0), derivative(0, 1)
+    m = _cross(a, b)
+    E, F, G = _dot(a, a), _dot(a, b), _dot(b, b)
+    L, M, N = (_dot(derivative(*order), m) for order in ((2, 0), (1, 1), (0, 2)))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        h = (E * N - 2 * F * M + G * L) / (2 * _dot(m, m) ** 1.5)
+    return np.asarray(h), np.sqrt(G if swapped else E)
+
+
+def _dot(a: FloatArray, b: FloatArray) -> FloatArray:
+    return np.asarray(a[0] * b[0] + a[1] * b[1] + a[2] * b[2])
+
+
+def _cross(a: FloatArray, b: FloatArray) -> FloatArray:
+    return np.stack([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])

@@ -1,0 +1,65 @@
+"""How bases go on from a blend: any edge, any direction, any seam."""
+
+import numpy as np
+import pytest
+
+from helpers.bases import facing_pair, tube
+from helpers.shapes import sheets
+from semispline import Base, EdgeError, blend
+from semispline.solver.judge.continuation import continuation
+from semispline.solver.judge.sections import unit_normals
+
+OPTIONS = {"degree_u": 5, "middle_curves": 0, "alpha": "natural"}
+
+
+def check(surface, bases):
+    v = np.linspace(*surface.domain[1], 23)
+    for end, (base, sign) in enumerate(zip(bases, (-1, 1), strict=True)):
+        found = continuation(surface, base, end)
+        u = np.array([surface.domain[0][end]])
+        size = np.ptp(surface.evaluate_grid(u, v)[0], axis=0).max()
+        assert found.evaluate(np.zeros(1), v) == pytest.approx(surface.evaluate(u, v), abs=1e-7 * size)
+        assert found.domain[0][0] == 0
+        # Normals go on, w running against u at the start.
+        own = unit_normals(surface.evaluate_grid(u, v, 1, 0), surface.evaluate_grid(u, v, 0, 1))
+        its = unit_normals(found.evaluate_grid(np.zeros(1), v, 1, 0), found.evaluate_grid(np.zeros(1), v, 0, 1))
+        assert sign * its == pytest.approx(own, abs=1e-4)
+        # Along v they run as fast, and w runs on from u.
+        assert found.evaluate(np.zeros(1), v, 0, 1) == pytest.approx(surface.evaluate(u, v, 0, 1), abs=1e-4 * size)
+        out = -surface.evaluate(u, v, 1, 0) if end == 0 else surface.evaluate(u, v, 1, 0)
+        assert (np.sum(found.evaluate(np.zeros(1), v, 1, 0) * out, axis=1) > 0).all()
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_open_edges(seed):
+    bases = facing_pair(np.random.default_rng(seed))
+    check(blend(*bases, **OPTIONS).surface, bases)
+
+
+@pytest.mark.parametrize("backwards", [False, True])
+@pytest.mark.parametrize("phase", [0.0, 2.1])
+@pytest.mark.parametrize("edge", ["u0", "u1"])
+def test_closed_edges(backwards, phase, edge):
+    rng = np.random.default_rng(0)
+    heights = (5.0, 4.0) if edge == "u1" else (4.0, 5.0)
+    bases = (
+        Base(tube(rng, 8, noise=0.02), "u1"),
+        Base(tube(rng, 9, radius=1.5, heights=heights, phase=phase, backwards=backwards, v_range=(2, 5)), edge),
+    )
+    check(blend(*bases, **OPTIONS).surface, bases)
+
+
+def test_orders_of_derivatives():
+    bases = facing_pair(np.random.default_rng(4), edges=("v1", "v0"), backwards=(True, False))
+    found = continuation(blend(*bases, **OPTIONS).surface, bases[0], 0)
+    w, v, step = np.array([0.3 * found.domain[0][1]]), np.array([np.mean(found.domain[1])]), 1e-5
+    for order, (dw, dv) in (((1, 0), (step, 0)), ((0, 1), (0, step))):
+        ahead, behind = found.evaluate(w + dw, v + dv), found.evaluate(w - dw, v - dv)
+        assert found.evaluate(w, v, *order) == pytest.approx((ahead - behind) / (2 * step), rel=1e-6, abs=1e-8)
+        assert found.evaluate_grid(w, v, *order)[0] == pytest.approx(found.evaluate(w, v, *order), rel=1e-12)
+
+
+def test_another_edge_is_refused():
+    surface, other = sheets(1, 2)
+    with pytest.raises(EdgeError, match=r"its edge u1 is .* away from the surface's end u0"):
+        continuation(surface, Base(other, "u1"), 0)

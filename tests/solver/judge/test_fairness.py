@@ -1,0 +1,189 @@
+"""A * GH with jumps: a torus by its closed form, jumps of profiles, laws, and what does not settle."""
+
+from itertools import pairwise
+from math import comb
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+
+from helpers.shapes import arc, extruded, line, revolved, sheets, torus
+from semispline import (
+    BSplineSurface,
+    insert_knots,
+    local_geometry_grid,
+    map_domain,
+    measure_fairness,
+    reverse_u,
+    transform,
+)
+from semispline.solver.judge.fairness import SETTLED
+
+
+def test_torus():
+    R, r, around = 3.0, 1.0, np.radians(140)
+
+    def density(t):
+        # H = (R + 2 r cos t) / (2 r (R + r cos t)), derived by hand: dH/dt = -R sin t / (2 (R + r cos t)^2).
+        radius = R + r * np.cos(t)
+        return (-R * np.sin(t) / (2 * radius**2) / r) ** 2 * r * radius
+
+    for tube in ((10, 100), (0, 360)):
+        start, end = np.radians(tube)
+        area = around * (r * R * (end - start) + r**2 * (np.sin(end) - np.sin(start)))
+        expected = area * around * quad(density, start, end)[0]
+        found = measure_fairness(torus(R, r, tube=tube, around=(0, 140)))
+        assert found.settled
+        assert found.value == pytest.approx(expected, rel=1e-3)
+        assert found.jumps < 1e-8
+
+
+def test_spheres_and_cylinders_are_fair():
+    for surface in (revolved(arc((0, 0), 2.0, -60, 60), 0, 90), extruded(arc((0, 0), 1.0, 0, 200), 3.0)):
+        found = measure_fairness(surface)
+        assert found.value < 1e-8
+        assert found.settled
+
+
+@pytest.mark.parametrize("along", ["u", "v"])
+def test_jumps_of_a_bend_between_flaps(along):
+    # A line of length 2, a quarter circle, a line of length 1; width 3. H jumps by 1 / (2 r), twice.
+    r, width = 0.5, 3.0
+    profile = [*line((-2, 0), (0, 0)), *arc((0, r), r, -90, 0), *line((r, r), (r, r + 1))]
+    found = measure_fairness(extruded(profile, width, along=along))
+    length = 3 + r * np.pi / 2
+    window = (length if along == "u" else width) / 50
+    assert found.jumps == pytest.approx(length * width * 2 * width / (2 * r) ** 2 / window, rel=1e-6)
+    assert found.smooth < 1e-8
+    assert found.value == found.smooth + found.jumps
+
+
+def test_a_jump_at_the_seam_counts():
+    """A racetrack: two lines and two half circles; all four joints jump, also the one where it closes."""
+    straight = line((0, -1), (2, -1))
+    track = [*straight, *arc((2, 0), 1.0, -90, 90), *line((2, 1), (0, 1)), *arc((0, 0), 1.0, 90, 270)]
+    found = measure_fairness(extruded(track, 1.0, along="v"))
+    assert found.jumps == pytest.approx((4 + 2 * np.pi) * 4 / 4 * 50, rel=1e-6)
+
+
+def test_a_jump_counts_as_if_spread_over_the_window():
+    """A quadratic profile against itself with its jumps of curvature spread over a width, by the law that fixes h."""
+    # y'' jumps by 1 at x = 1, spread as a ramp of width d; small slopes, so H = y'' / 2 nearly.
+    scale, width = 1e-3, 1.0
+
+    def surface(d):
+        knots = np.array([0, 0, 0, 0, 1 - d / 2, 1 + d / 2, 2, 2, 2, 2])
+        x = np.array([knots[i + 1 : i + 4].mean() for i in range(6)])
+        # Second derivatives 0, 0, 1, 1 at 0, 1 - d/2, 1 + d/2, 2 of a cubic spline: slopes, then points, summed up.
+        curvature = np.array([0.0, 0.0, 1.0, 1.0])
+        slope = np.concatenate([[0.0], np.cumsum(curvature * (knots[4:8] - knots[2:6]) / 2)])
+        y = scale * np.concatenate([[0.0], np.cumsum(slope * (knots[4:9] - knots[1:6]) / 3)])
+        points = np.stack([x, y, np.zeros(6)], axis=1)
+        return BSplineSurface(3, 1, knots, [0, 0, 1, 1], np.stack([points, points + np.array([0, 0, width])], axis=1))
+
+    spread = measure_fairness(surface(2 / 50))
+    assert spread.jumps < 1e-6 * spread.smooth
+    # Exactly a window wide: area 2, ramp (1/2)^2 / h, h = 2 / 50.
+    assert spread.value == pytest.approx(2 * scale**2 / 4 / (2 / 50), rel=1e-3)
+    sharp = [[[x, y, z] for z in (0, 1)] for x, y in ((0, 0), (0.5, 0), (1, 0), (1.5, 0), (2, scale / 2))]
+    jump = measure_fairness(BSplineSurface(2, 1, [0, 0, 0, 1, 1, 2, 2, 2], [0, 0, 1, 1], sharp))
+    assert jump.smooth < 1e-3 * jump.jumps
+    assert jump.value == pytest.approx(spread.value, rel=1e-3)
+
+
+def by_differences(surface, number=48, step=1e-6):
+    """A * GH from H alone, differenced at Gauss points: shares no third derivative."""
+    node, weight = np.polynomial.legendre.leggauss(number)
+    area = gradient = 0.0
+    for start, end in pairwise(surface.breakpoints[1]):
+        half = (end - start) / 2
+        u, v = (node + 1) / 2, start + half * (node + 1)
+        geometry = local_geometry_grid(surface, u, v)
+
+        def mean(du, dv, u=u, v=v):
+            return local_geometry_grid(surface, u + du, v + dv).mean
+
+        h_u, h_v = ((mean(*d) - mean(*(-np.array(d)))) / (2 * step) for d in ((step, 0.0), (0.0, step)))
+        E, F, G = (geometry.first_form[..., i, j] for i, j in ((0, 0), (0, 1), (1, 1)))
+        element = np.sqrt(E * G - F**2)
+        w = np.outer(weight / 2, weight * half)
+        area += np.sum(w * element)
+        gradient += np.sum(w * (G * h_u**2 - 2 * F * h_u * h_v + E * h_v**2) / element)
+    return area * gradient
+
+
+def test_blends_against_differences_of_the_mean_curvature():
+    # Sheared, so that the lines u and v are far from square.
+    shear = np.array([[1.0, 0.9, 0.3], [0, 1, 0], [0, 0, 1]])
+    for straight in sheets(7, 4, sideways=0.05):
+        surface = transform(straight, shear)
+        found = measure_fairness(surface)
+        assert found.settled
+        assert found.smooth == pytest.approx(by_differences(surface), rel=SETTLED)
+
+
+def test_a_graph_over_a_parallelogram():
+    """z = f(x, y) with x = u + c v, y = v: formulas in x and y, where lines u and v are far from square."""
+    c = 1.7
+
+    def f(x, y):
+        """Return f, f_x, f_y, f_xx, f_xy, f_yy."""
+        third = 0.4 * x**3 - 0.3 * x * y**2 + 0.2 * y**3
+        return (
+            third + 0.3 * x**2 * y**2 + 0.5 * x * y,
+            1.2 * x**2 - 0.3 * y**2 + 0.6 * x * y**2 + 0.5 * y,
+            -0.6 * x * y + 0.6 * y**2 + 0.6 * x**2 * y + 0.5 * x,
+            2.4 * x + 0.6 * y**2,
+            -0.6 * y + 1.2 * x * y + 0.5,
+            -0.6 * x + 1.2 * y + 0.6 * x**2,
+        )
+
+    def mean(x, y):
+        _, p, q, r, s, t = f(x, y)
+        return ((1 + q**2) * r - 2 * p * q * s + (1 + p**2) * t) / (2 * (1 + p**2 + q**2) ** 1.5)
+
+    node, weight = np.polynomial.legendre.leggauss(40)
+    u, v = np.meshgrid((node + 1) / 2, (node + 1) / 2, indexing="ij")
+    x, y, w = u + c * v, v, np.outer(weight, weight) / 4
+    # Derivatives of H by complex steps.
+    h_x, h_y = mean(x + 1e-30j, y).imag / 1e-30, mean(x, y + 1e-30j).imag / 1e-30
+    _, p, q, *_ = f(x, y)
+    element = np.sqrt(1 + p**2 + q**2)
+    gradient = ((1 + q**2) * h_x**2 - 2 * p * q * h_x * h_y + (1 + p**2) * h_y**2) / element**2
+    expected = np.sum(w * element) * np.sum(w * gradient * element)
+    # The same as one piece of degree 4: values at nodes to Bernstein coefficients.
+    t = np.linspace(0, 1, 5)
+    bernstein = np.array([comb(4, k) * t**k * (1 - t) ** (4 - k) for k in range(5)]).T
+    u, v = np.meshgrid(t, t, indexing="ij")
+    values = np.stack([u + c * v, v, f(u + c * v, v)[0]], axis=-1)
+    inverse = np.linalg.inv(bernstein)
+    knots = [0.0] * 5 + [1.0] * 5
+    surface = BSplineSurface(4, 4, knots, knots, np.einsum("ai,bj,ijd->abd", inverse, inverse, values))
+    found = measure_fairness(surface)
+    assert found.settled
+    assert found.value == pytest.approx(expected, rel=1e-5)
+
+
+def test_laws():
+    surface = sheets(7, 1)[0]
+    value = measure_fairness(surface).value
+    rotation = np.linalg.qr(np.random.default_rng(1).normal(size=(3, 3)))[0]
+    others = [
+        transform(surface, 1e3 * rotation, [5e3, -2, 7]),
+        transform(surface, 1e-3 * np.eye(3)),
+        map_domain(surface, (2.0, 9.0), (-1.0, -0.5)),
+        reverse_u(surface),
+    ]
+    for same in others:
+        assert measure_fairness(same).value == pytest.approx(value, rel=1e-6)
+    # Other spans are other samples: within what it promises.
+    finer = insert_knots(surface, [0.2, 0.5], [float(np.mean(surface.domain[1]))])
+    assert measure_fairness(finer).value == pytest.approx(value, rel=2 * SETTLED)
+
+
+def test_what_has_no_end_does_not_settle():
+    # A cone's tip: |grad H|^2 dA grows without end towards it.
+    cone = revolved(line((0.0, 0.0), (1.0, 1.0)), 0, 90)
+    found = measure_fairness(cone)
+    assert not found.settled
+    assert found.value > 100

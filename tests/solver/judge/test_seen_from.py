@@ -1,0 +1,96 @@
+"""The certificate by normals: what it proves, and where it must give no answer."""
+
+import numpy as np
+import pytest
+
+from helpers.shapes import arc, extruded, line, revolved, sheets, torus
+from semispline import Base, BSplineSurface, transform
+from semispline.solver.judge.continuation import continuation
+from semispline.solver.judge.seen_from import seen_from
+
+
+@pytest.mark.parametrize("degrees", [60, 150, 170])
+def test_an_arch_is_seen_from_above(degrees):
+    direction = seen_from(extruded(arc((0, 0), 1.0, 90 + degrees / 2, 90 - degrees / 2), 1.0))
+    assert np.abs(direction) == pytest.approx([0, 1, 0], abs=1e-9)
+
+
+@pytest.mark.parametrize("degrees", [178.5, 181, 220, 300])
+def test_normals_beyond_a_half_space_give_no_answer(degrees):
+    assert seen_from(extruded(arc((0, 0), 1.0, 0, degrees), 1.0)) is None
+
+
+def test_closed_surfaces_give_no_answer():
+    for tube in (torus(3.0, 1.0), torus(3.0, 1.0, tube=(0, 100)), extruded(arc((0, 0), 1.0, 0, 360), 1.0)):
+        assert seen_from(tube) is None
+    # All normals one, and it meets itself nowhere: but it is no disc.
+    assert seen_from(revolved(line((1, 0), (2, 0)))) is None
+
+
+def test_a_flat_ring_that_covers_itself_gives_no_answer():
+    """All normals are one, and only the border tells."""
+    assert seen_from(revolved(line((1, 0), (2, 0)), 0, 350)) is not None
+    assert seen_from(revolved(line((1, 0), (2, 0)), 0, 361)) is None
+    assert seen_from(revolved(line((1, 0), (2, 0)), 0, 450)) is None
+
+
+def test_a_flat_strip_that_crosses_itself_gives_no_answer():
+    """Arms of a cross along one another's way: no two edges of the border are on one line."""
+    corner = [*line((-2, 0), (0, 0)), *arc((0, 1), 1.0, -90, 180), *line((-1, 1), (-1, -2))]
+    profile = extruded(corner, 0.2)
+    # Laid flat: the width goes sideways in the plane of the profile.
+    t = np.linspace(0, profile.domain[0][1], 400)[1:-1]
+    p, d = (profile.evaluate(t, np.zeros(len(t)), order)[:, :2] for order in (0, 1))
+    side = 0.1 * np.stack([-d[:, 1], d[:, 0]], axis=1) / np.linalg.norm(d, axis=1, keepdims=True)
+    knots = np.concatenate([[t[0]], t, [t[-1]]])
+    net = np.stack([np.column_stack([p + k * side, np.zeros(len(p))]) for k in (-1, 1)], axis=1)
+    assert seen_from(BSplineSurface(1, 1, knots, [0, 0, 1, 1], net)) is None
+    half = len(p) // 2
+    short = BSplineSurface(1, 1, np.concatenate([[t[0]], t[:half], [t[half - 1]]]), [0, 0, 1, 1], net[:half])
+    assert np.abs(seen_from(short)) == pytest.approx([0, 0, 1])
+
+
+def test_sheets_are_seen_and_so_is_what_is_turned():
+    rotation = np.linalg.qr(np.random.default_rng(1).normal(size=(3, 3)))[0]
+    for surface in sheets(4, 6):
+        direction = seen_from(surface)
+        assert np.linalg.norm(direction) == pytest.approx(1)
+        turned = seen_from(transform(surface, 1e3 * rotation, [5e5, 0, 0]))
+        assert np.abs(rotation @ direction @ turned) == pytest.approx(1, abs=1e-6)
+
+
+def over(height):
+    """A half turn from the plane's edge, back over it at a height, and down at the end by 60 degrees."""
+    r = height / 2
+    profile = [*arc((0, r), r, -90, 90), *line((0, height), (-1, height))]
+    return extruded(profile, 1.0)
+
+
+def test_with_bases_both_must_be_seen():
+    knots = [0, 0, 1, 1]
+    plane = BSplineSurface(1, 1, knots, knots, [[[x, 0, z] for z in (0, 1)] for x in (-2, 0)])
+    ramp = extruded(arc((0, 3), 3.0, -90, -30), 1.0)
+    assert seen_from(ramp, continuation(ramp, Base(plane, "u1"), 0)) is not None
+    hook = over(1.0)
+    assert seen_from(hook, continuation(hook, Base(plane, "u1"), 0)) is None
+
+
+def test_a_base_that_runs_under_the_blend_is_told_by_the_border_alone():
+    """Flat, all normals one: a strip that turns in the plane and ends on its own base."""
+    ring = revolved(line((1, 0), (2, 0)), 0, 270)
+    swept = BSplineSurface(
+        ring.degree_v, ring.degree_u, ring.knots_v, ring.knots_u, ring.control_points.transpose(1, 0, 2), ring.weights.T
+    )
+
+    def strip(length):
+        # From the ring's start at y = 0, x in [1, 2], towards negative y.
+        net = [[[1 + x / 2, -length + y, 0] for x in (0, 1, 2)] for y in (0, length)]
+        return Base(BSplineSurface(1, 2, [0, 0, 1, 1], [0, 0, 0, 1, 1, 1], net), "u1")
+
+    # The ring ends at x = 0, y in [-2, -1]: nothing of the strip is there, however long.
+    assert seen_from(swept, continuation(swept, strip(5.0), 0)) is not None
+    # Half a turn more, and it lies on a strip that is long enough.
+    whole = revolved(line((1, 0), (2, 0)), 0, 350)
+    swept = BSplineSurface(2, 2, whole.knots_v, whole.knots_u, whole.control_points.transpose(1, 0, 2), whole.weights.T)
+    assert seen_from(swept, continuation(swept, strip(0.1), 0)) is not None
+    assert seen_from(swept, continuation(swept, strip(0.5), 0)) is None

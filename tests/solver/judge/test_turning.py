@@ -1,0 +1,130 @@
+"""The largest turn within one window: known answers, and that it does not depend on the samples."""
+
+import numpy as np
+import pytest
+
+from helpers.shapes import arc, extruded, line, sheets, torus
+from semispline import (
+    BSplineSurface,
+    InputError,
+    insert_knots,
+    measure_regularity,
+    measure_turn,
+    swap_directions,
+    transform,
+)
+from semispline.solver.judge.sections import turn_window
+from semispline.solver.judge.turning import turn_on_samples
+
+
+def test_an_even_bend_turns_by_a_fiftieth():
+    for degrees in (30.0, 100.0, 250.0):
+        turn = measure_turn(extruded(arc((0, 0), 3.0, 0, degrees), 2.0))
+        assert turn.degrees == pytest.approx(degrees / 50, rel=1e-3)
+        assert turn.section == "v"
+        assert turn.window == pytest.approx(3.0 * np.radians(degrees) / 50, rel=1e-9)
+
+
+def bent(radius, degrees=90.0):
+    """Two flaps of length 2 with a bend of a radius between them."""
+    t = np.radians(degrees)
+    end = radius * np.array([np.sin(t), 1 - np.cos(t)])
+    bend = arc((0, radius), radius, -90, degrees - 90)
+    return [*line((-2, 0), (0, 0)), *bend, *line(end, end + 2 * np.array([np.cos(t), np.sin(t)]))]
+
+
+@pytest.mark.parametrize("along", ["u", "v"])
+def test_a_bend_between_flaps(along):
+    # A window holds a part of a wide bend and all of a narrow one.
+    wide, narrow = (extruded(bent(radius), 1.0, along=along) for radius in (0.5, 0.01))
+    for surface, radius in ((wide, 0.5), (narrow, 0.01)):
+        turn = measure_turn(surface)
+        expected = min(90.0, np.degrees(turn.window / radius))
+        # Chords are shorter than arcs, and samples may begin late.
+        assert turn.degrees == pytest.approx(expected, rel=2e-2)
+        assert turn.section == ("v" if along == "u" else "u")
+        start, end = turn.between
+        assert 1 <= end <= 2.1
+        assert 0.9 <= start <= 2
+
+
+def test_where_it_is():
+    turn = measure_turn(extruded(bent(0.01), 1.0))
+    x, y, _ = turn.point
+    assert np.hypot(x, y) < 0.1
+    surface = extruded(bent(0.01), 1.0)
+    assert surface.evaluate([turn.between[0]], [turn.at])[0] == pytest.approx(turn.point, abs=1e-12)
+
+
+def test_a_fold_is_a_turn_above_90_degrees():
+    assert not measure_turn(extruded(bent(0.001, 89.9), 1.0)).is_fold
+    assert measure_turn(extruded(bent(0.001, 90.1), 1.0)).is_fold
+
+
+def test_a_fold_in_the_plane_turns_by_180_degrees():
+    knots = [0, 0, 0, 0, 1, 1, 1, 1]
+    net = [[[x, y, 0.0] for y in (0, 1, 2, 3)] for x in (0, 3, -2, 1)]
+    assert measure_turn(BSplineSurface(3, 3, knots, knots, net)).degrees == pytest.approx(180)
+
+
+def test_a_closed_section_runs_on_over_its_seam():
+    """A drop: two lines from its tip, where it closes, to an arc that they touch."""
+    high, low = (1.5, np.sqrt(0.75)), (1.5, -np.sqrt(0.75))
+    drop = [*line((0, 0), low), *arc((2, 0), 1.0, -120, 120), *line(high, (0, 0))]
+    turn = measure_turn(extruded(drop, 1.0, along="v"))
+    assert turn.degrees == pytest.approx(120, abs=1e-6)
+    assert turn.section == "u"
+    start, end = turn.between
+    assert end < 0.1
+    assert start > 3.9
+    # The same with a gap at the tip: open, and without its corner. 1 / 50 of the width of 1 turns by 1 / 50.
+    almost = [*line((0.01, -0.01 / np.sqrt(3)), low), *drop[1:]]
+    assert measure_turn(extruded(almost, 1.0, along="v")).degrees == pytest.approx(np.degrees(1 / 50), rel=1e-2)
+
+
+def test_torus_turns_fastest_around_its_tube():
+    turn = measure_turn(torus(3.0, 1.0))
+    assert turn.section == "v"
+    assert turn.degrees == pytest.approx(360 / 50, rel=1e-3)
+
+
+def test_a_flat_surface_turns_nowhere():
+    k = [0, 0, 1, 1]
+    flat = BSplineSurface(1, 1, k, k, [[[5, 0, 0], [5, 1, 0]], [[7, 0, 0], [7, 1, 0]]])
+    turn = measure_turn(flat)
+    assert turn.degrees == 0
+    assert turn.point == (5, 0, 0)
+
+
+def test_sections_without_length_are_refused():
+    k = [0, 0, 1, 1]
+    with pytest.raises(InputError, match="mean length 0"):
+        measure_turn(BSplineSurface(1, 1, k, k, [[[0, 0, 0], [0, 1, 0]], [[0, 0, 0], [0, 1, 0]]]))
+
+
+def test_hardly_changes_when_samples_double():
+    for surface in [*sheets(7, 8), extruded(bent(0.05), 1.0), extruded(bent(0.3), 1.0, along="v")]:
+        once, twice = (turn_on_samples(surface, fineness).degrees for fineness in (1, 2))
+        assert once == pytest.approx(twice, rel=0.03, abs=0.1)
+
+
+def test_the_old_figure_halves_and_this_one_does_not():
+    """Knots at the middle of each span double the samples of `measure_regularity`; the surface stays."""
+    for surface in sheets(7, 4):
+        spline = surface
+        middles = [(b[:-1] + b[1:]) / 2 for b in spline.breakpoints]
+        finer = insert_knots(spline, *middles)
+        old = [measure_regularity(s).largest_turn_degrees for s in (spline, finer)]
+        assert 1.6 < old[0] / old[1] < 2.4
+        assert measure_turn(finer).degrees == pytest.approx(measure_turn(spline).degrees, rel=0.03, abs=0.1)
+
+
+def test_laws():
+    surface = sheets(7, 1)[0]
+    turn = measure_turn(surface)
+    rotation = np.linalg.qr(np.random.default_rng(1).normal(size=(3, 3)))[0]
+    for same in (transform(surface, 1e3 * rotation, [5e3, -2, 7]), transform(surface, 1e-3 * np.eye(3))):
+        assert measure_turn(same).degrees == pytest.approx(turn.degrees, rel=1e-9)
+    # The window belongs to the sections v = const: it is another one in the other direction.
+    swapped = swap_directions(surface)
+    assert turn_window(swapped) != pytest.approx(turn_window(surface))
