@@ -228,6 +228,8 @@ def report_record(result: BlendResult) -> dict[str, Any]:
         "search_excess": result.search_excess,
         "kkt_residual": result.kkt_residual,
         "proven_gap": result.proven_gap,
+        "p2": list(result.p2),
+        "fairness": result.fairness,
         "constraint_rank": result.constraint_rank,
         "regularity": asdict(result.regularity),
         "creases": [asdict(crease) for crease in result.creases],

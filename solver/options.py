@@ -14,7 +14,7 @@ from semispline.solver.scalars import real_number, whole_number
 Continuity: TypeAlias = Literal["C0", "C1", "C2", "G0", "G1", "G2"]
 Method: TypeAlias = Literal["reduced", "casadi", "bfgs"]
 Flip: TypeAlias = Literal["auto", "yes", "no"]
-Shape: TypeAlias = float | Literal["energy", "natural"]
+Shape: TypeAlias = float | Literal["fair", "energy", "natural"]
 VScale: TypeAlias = Literal["paper", "unit", "length"]
 
 # Energies have the fourth power of alpha^2 and of the box: far from any blend, and far from where floats end.
@@ -48,11 +48,13 @@ class BlendOptions:
     flip : {"auto", "yes", "no"}
         Whether edge b runs against edge a; "auto" takes the way without a twist. Where closeness cannot tell, both ways
         are blended and the one whose normal turns less is taken.
-    alpha : "energy", "natural", a number, or a pair of these for a and b
-        Where contact is geometric: search alpha of least energy, take its natural size (mean gap over mean cross speed,
-        for alpha^2), or set alpha itself; kept as a pair.
-    box : (float, float)
-        Admissible alpha^2 and beta^2, in units of their natural sizes; near zero the blend folds.
+    alpha : "energy", "fair", "natural", a number, or a pair of these for a and b
+        Where contact is geometric: search alpha of least energy, or that of the fairest shape (least area times
+        integral of |grad H|^2, and with it a second parameter p2 on each side), take its natural size (mean gap over
+        mean cross speed, for alpha^2), or set alpha itself; kept as a pair.
+    box : (float, float), optional
+        Admissible alpha^2 and beta^2. For least energy in units of their natural sizes, 1/8 to 8 unless given; for the
+        fairest shape in units of an arc's, 1/4 to 4, or to 16 where exits and chords disagree.
     v_scale : {"paper", "unit", "length"}
         What (11) takes the length of the v-domain for: itself, 1, or mean contact length over mean gap. With the last
         two the blend does not depend on the units of v nor on the order of the bases.
@@ -82,10 +84,14 @@ class BlendOptions:
     method: Method = _option("reduced", "text", "METHOD", "How alpha and beta are found: reduced, casadi or bfgs.")
     flip: Flip = _option("auto", "text", "FLIP", "Whether edge B runs against edge A: auto, yes or no.")
     alpha: Shape | tuple[Shape, Shape] = _option(
-        "energy", "number-or-word", "ALPHA", "For G1 and G2: energy (searched), natural, or a number.", sides=True
+        "energy",
+        "number-or-word",
+        "ALPHA",
+        "For G1 and G2: energy or fair (searched), natural, or a number.",
+        sides=True,
     )
-    box: tuple[float, float] = _option(
-        (1 / 8, 8.0), "range", "LOW HIGH", "Range of a searched alpha² and beta², times their natural sizes."
+    box: tuple[float, float] | None = _option(
+        None, "range", "LOW HIGH", "Range of a searched alpha² and beta², times their natural sizes (fair: an arc's)."
     )
     v_scale: VScale = _option("paper", "text", "SCALE", "Length of v in the energy: paper (as it is), unit or length.")
     u_knots: Sequence[float] | None = _option(
@@ -104,7 +110,7 @@ class BlendOptions:
             "method": _word(self.method, "method", get_args(Method)),
             "flip": _word(self.flip, "flip", get_args(Flip)),
             "alpha": tuple(map(_alpha, _pair(self.alpha, "alpha"))),
-            "box": _box(self.box),
+            "box": None if self.box is None else _box(self.box),
             "v_scale": _word(self.v_scale, "v_scale", get_args(VScale)),
             "u_knots": None if self.u_knots is None else _knots(self.u_knots, "u_knots"),
             "middle_knots": None if self.middle_knots is None else _knot_lists(self.middle_knots, "middle_knots"),
@@ -113,6 +119,11 @@ class BlendOptions:
             raise OptionError(f"strict: found {self.strict!r}, expected True or False")
         for name, value in checked.items():
             object.__setattr__(self, name, value)
+        if "fair" in self.alphas and (self.method != "reduced" or "energy" in self.alphas):
+            found = f"method {self.method}" if self.method != "reduced" else "energy on the other side"
+            raise OptionError(
+                f"alpha: found fair with {found}, expected method reduced and no energy; try alpha energy"
+            )
 
     @property
     def continuities(self) -> tuple[Continuity, Continuity]:
@@ -181,9 +192,9 @@ def _pair(value: Any, name: str) -> tuple[Any, Any]:
 
 def _alpha(value: object) -> Shape:
     if isinstance(value, str):
-        if value in ("energy", "natural"):
+        if value in ("fair", "energy", "natural"):
             return cast("Shape", value)
-        raise OptionError(f"alpha: found {value!r}, expected energy, natural or a positive number")
+        raise OptionError(f"alpha: found {value!r}, expected fair, energy, natural or a positive number")
     number = real_number(value, "alpha", OptionError)
     if not 1 / _MOST_ALPHA <= number <= _MOST_ALPHA:
         raise OptionError(f"alpha: found {number:g}, expected {1 / _MOST_ALPHA:g} to {_MOST_ALPHA:g}")

@@ -89,7 +89,7 @@ def blend(
     stated = state_problem(a, b, replace(chosen, flip=tied[0]))
     problem, sides, frame, matched = stated.problem, stated.sides, stated.frame, stated.matched
     # The one or two numbers that are not linear, then everything that is.
-    found = find_shape_parameters(problem, chosen.method)
+    found = find_shape_parameters(problem, chosen)
     surface = _surface(problem, found, sides, frame)
     energy = thin_plate_energy(surface)
     seconds = time.perf_counter() - started
@@ -134,6 +134,8 @@ def blend(
         # What rounding made is not proved to be least.
         certificate=None if rounding.matters else found.certificate,
         proven_gap=None if rounding.matters else found.proven_gap,
+        p2=found.p2,
+        fairness=found.fairness,
         constraint_rank=found.constraint_rank,
         seconds=seconds,
     )
@@ -226,7 +228,7 @@ def _surface(
 ) -> SemiStructuredSurface:
     """Set the prescribed rows anew from alpha and beta, solve for the free ones, and go back to model units."""
     centre, size = frame
-    points = problem.control_points(found.a, found.b) * size + centre
+    points = problem.control_points(found.a, found.b, found.p2) * size + centre
     pieces = np.split(points, problem.form.offsets[1:-1])
     # The contact curves themselves are the bases' own, to the last bit.
     pieces[0], pieces[-1] = sides[0].rows[0], sides[1].rows[0]

@@ -11,6 +11,7 @@ from scipy.sparse.linalg import splu
 
 from semispline.solver.arrays import FloatArray
 from semispline.solver.blending.closing import periodic_points, seam_order, with_least_size
+from semispline.solver.blending.exits import Exits, measure_exits
 from semispline.solver.blending.gram import EnergyForm
 from semispline.solver.blending.layout import ROWS_PER_SIDE, blend_u_basis, middle_bases
 from semispline.solver.blending.sides import Side
@@ -31,6 +32,9 @@ from semispline.solver.splines import (
 ROUNDING_CORRECTION = 1e-12
 TRUSTED_CORRECTION = 1e-8
 _MOST_REFINEMENTS = 20
+# Admissible alpha^2: for least energy in units of its natural size; for the fairest shape in units of an arc's, wider
+# where exits and chords disagree (a U-turn).
+ENERGY_BOX, WINDOW, WIDE_WINDOW = (1 / 8, 8.0), (1 / 4, 4.0), (1 / 4, 16.0)
 # Lengths below this fraction of the model count as zero.
 VANISHING = 1e-10
 # Means over v: points of the whole contact, and degree of the rule on each span where spans are many.
@@ -56,6 +60,7 @@ class BlendProblem:
         Boxes of alpha^2 and beta^2; low = high where the parameter is fixed.
     seam_order : int
         How many derivatives both bases keep across the seam of closed contact curves; -1 where these are open.
+    exits : Exits
     """
 
     form: EnergyForm
@@ -65,6 +70,7 @@ class BlendProblem:
     natural: tuple[float, float]
     bounds: tuple[tuple[float, float], tuple[float, float]]
     seam_order: int
+    exits: Exits
 
     @property
     def free(self) -> tuple[bool, bool]:
@@ -110,13 +116,37 @@ class BlendProblem:
         """What has to be solved for the free rows."""
         return FreeSystem(self.form, self.free_rows, [self.seam_order_of(i) for i in self.free_rows])
 
-    def control_points(self, a: float, b: float) -> FloatArray:
-        """Return p of least energy for given alpha^2 and beta^2, shape (N, 3): one linear solve for the free rows."""
+    def control_points(self, a: float, b: float, p2: tuple[float, float] = (0.0, 0.0)) -> FloatArray:
+        """Return p for alpha^2, beta^2 and p2, shape (N, 3): one linear solve for the free rows, of least energy."""
         points = np.zeros((self.form.offsets[-1], 3))
-        for (side, rows, spans), value in zip(self.contacts, (a, b), strict=True):
-            for row, prescribed in zip(rows, side.contact_rows(value, self.form.u.degree, spans), strict=False):
+        for (side, rows, spans), value, second in zip(self.contacts, (a, b), p2, strict=True):
+            prescribed_rows = side.contact_rows(value, self.form.u.degree, spans, second)
+            for row, prescribed in zip(rows, prescribed_rows, strict=False):
                 points[self.form.offsets[row] : self.form.offsets[row + 1]] = prescribed
         return self.completed(points)
+
+    def shape_layers(self) -> tuple[FloatArray, list[FloatArray]]:
+        """Return Z_k of P = sum_k m_k Z_k, shape (K, N, 3), with alpha^2 and p2 in units of their natural sizes.
+
+        The monomials are 1, then those of side a without 1, then those of side b; their exponents come with them.
+        """
+        offsets, degree = self.form.offsets, self.form.u.degree
+        layers = [np.zeros((offsets[-1], 3))]
+        exponents = []
+        for (side, rows, spans), unit, is_free, fixed in zip(
+            self.contacts, self.natural, self.free, self.start, strict=True
+        ):
+            powers, monomials = side.monomial_rows(degree, spans)
+            if not is_free:
+                powers, monomials = np.zeros((1, 2)), side.contact_rows(fixed, degree, spans)[None]
+            exponents.append(powers)
+            for k, (power, monomial) in enumerate(zip(powers, monomials, strict=True)):
+                if k:
+                    layers.append(np.zeros((offsets[-1], 3)))
+                for row, values in zip(rows, monomial, strict=False):
+                    layers[0 if k == 0 else -1][offsets[row] : offsets[row + 1]] = values * unit ** power.sum()
+        completed = self.completed(np.concatenate(layers, axis=1))
+        return np.stack(np.split(completed, len(layers), axis=1)), exponents
 
     def completed(self, points: FloatArray) -> FloatArray:
         """Fill the free rows of p, shape (N, d), so that the energy is least.
@@ -259,21 +289,26 @@ def make_problem(a: Side, b: Side, options: BlendOptions) -> BlendProblem:
         means.gap / speed if _checked_speed(side, speed, name) else 1.0
         for name, side, speed in zip("ab", (a, b), means.cross_speeds, strict=True)
     )
+    exits = measure_exits(a, b)
     bounds_a, bounds_b = (
-        (1.0, 1.0) if not side.has_shape_parameter else _bounds(size, alpha, options.box)
+        (1.0, 1.0) if not side.has_shape_parameter else _bounds(size, alpha, options.box, exits)
         for side, size, alpha in zip((a, b), (natural_a, natural_b), options.alphas, strict=True)
     )
     form = EnergyForm(u, rows)
     if options.v_scale != "paper":
         length = 1.0 if options.v_scale == "unit" else sum(means.lengths) / 2 / means.gap
         form = EnergyForm(u, tuple(Basis(row.degree, affine_knots(row.knots, 0.0, length)) for row in rows))
-    return BlendProblem(form, rows, a, b, (natural_a, natural_b), (bounds_a, bounds_b), closed)
+    return BlendProblem(form, rows, a, b, (natural_a, natural_b), (bounds_a, bounds_b), closed, exits)
 
 
-def _bounds(natural: float, alpha: Shape, box: tuple[float, float]) -> tuple[float, float]:
+def _bounds(natural: float, alpha: Shape, box: tuple[float, float] | None, exits: Exits) -> tuple[float, float]:
     """Return the admissible ends of alpha^2; they are equal where it is given."""
     if alpha == "energy":
-        return natural * box[0], natural * box[1]
+        low, high = box or ENERGY_BOX
+        return natural * low, natural * high
+    if alpha == "fair":
+        low, high = box or (WIDE_WINDOW if exits.u_turn else WINDOW)
+        return natural * exits.arc * low, natural * exits.arc * high
     fixed = natural if alpha == "natural" else float(alpha) ** 2
     return fixed, fixed
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from semispline.solver.blending.problem import BlendProblem
-from semispline.solver.options import Method
+from semispline.solver.options import BlendOptions
 from semispline.solver.proof import Certificate
 
 
@@ -23,12 +23,20 @@ class Found:
     constraint_rank: tuple[int, int] | None = None
     status: str | None = None
     search_excess: float | None = None
+    p2: tuple[float, float] = (0.0, 0.0)
+    fairness: float | None = None
 
 
-def find_shape_parameters(problem: BlendProblem, method: Method) -> Found:
-    """Find alpha^2 and beta^2 of least energy; where both are fixed there is nothing to find."""
+def find_shape_parameters(problem: BlendProblem, options: BlendOptions) -> Found:
+    """Find alpha^2 and beta^2 of least energy or fairest shape; where both are fixed there is nothing to find."""
+    method = options.method
     if not any(problem.free):
         return Found(*problem.start, method="linear")
+    if "fair" in options.alphas:
+        from semispline.solver.blending.fair_search import solve_fair
+
+        fair = solve_fair(problem)
+        return Found(fair.a, fair.b, method, fair.tried, p2=fair.p2, fairness=fair.value)
     # Each method waits until it is asked for: CasADi alone takes longer to load than a blend to solve.
     if method == "reduced":
         from semispline.solver.blending.reduced import solve_reduced

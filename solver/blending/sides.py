@@ -10,7 +10,7 @@ from semispline.solver.arrays import FloatArray
 from semispline.solver.blending.closing import reseamed
 from semispline.solver.blending.layout import check_knots_apart
 from semispline.solver.errors import EdgeError
-from semispline.solver.generated import contact_numpy, shape_numpy
+from semispline.solver.generated import contact_numpy, rows_numpy, shape_numpy
 from semispline.solver.judge import Base, Correspondence
 from semispline.solver.options import Continuity
 from semispline.solver.splines import Basis, BSplineCurve, BSplineSurface, affine_knots, elevate_curve, reversed_knots
@@ -55,7 +55,9 @@ class Side:
         """Whether a = alpha^2 is free: geometric contact beyond position."""
         return self.continuity in ("G1", "G2")
 
-    def contact_rows(self, a: float, blend_degree: int, blend_spans: tuple[float, float]) -> FloatArray:
+    def contact_rows(
+        self, a: float, blend_degree: int, blend_spans: tuple[float, float], p2: float = 0.0
+    ) -> FloatArray:
         """Return the rows P_0 .. P_order of the blend that the contact prescribes, shape (order + 1, n, 3).
 
         Source: generated from `semispline.derivations.contact`.
@@ -67,7 +69,12 @@ class Side:
             matrix = contact_numpy.contact_rows_1(a, p, blend_spans[0], q, self.spans[0])
         else:
             matrix = contact_numpy.contact_rows_2(a, p, *blend_spans, q, *self.spans)
-        return np.asarray(np.einsum("ij,jnd->ind", matrix, self.rows[: self.order + 1]))
+        rows = np.asarray(np.einsum("ij,jnd->ind", matrix, self.rows[: self.order + 1]))
+        if p2:
+            exponents, monomials = self.monomial_rows(blend_degree, blend_spans)
+            factors = [a**i * p2**j if j else 0.0 for i, j in exponents.tolist()]
+            rows += np.tensordot(factors, monomials, 1)
+        return rows
 
     def row_powers(self, centre: float, blend_degree: int, blend_spans: tuple[float, float]) -> FloatArray:
         """Return the prescribed rows as a polynomial in a - centre, shape (order + 1 powers, order + 1, n, 3).
@@ -81,6 +88,27 @@ class Side:
             matrix = shape_numpy.contact_row_powers_2(centre, p, *blend_spans, q, *self.spans)
         powers = matrix.reshape(order + 1, order + 1, order + 1)
         return np.asarray(np.einsum("kij,jnd->kind", powers, self.rows[: order + 1]))
+
+    def monomial_rows(self, blend_degree: int, blend_spans: tuple[float, float]) -> tuple[FloatArray, FloatArray]:
+        """Return the prescribed rows as a sum over monomials a^i p2^j, 1 first.
+
+        Returns
+        -------
+        exponents : ndarray, shape (M, 2)
+        rows : ndarray, shape (M, order + 1, n, 3)
+
+        Source: generated from `semispline.derivations.contact`.
+        """
+        n = self.order
+        if n == 0:
+            return np.zeros((1, 2)), self.rows[None, :1]
+        spans, base_spans = blend_spans[:n], self.spans[:n]
+        exponents = getattr(rows_numpy, f"chain_monomials_{n}")()
+        tables = getattr(rows_numpy, f"chain_table_{n}")().reshape(-1, n + 1, n + 1)
+        weights = getattr(rows_numpy, f"rows_from_derivatives_{n}")(blend_degree, *spans)
+        derivatives = getattr(contact_numpy, f"end_derivatives_{n}")(self.degree, *base_spans)
+        rows = np.einsum("ik,mkd,dj,jnc->minc", weights, tables, derivatives, self.rows[: n + 1])
+        return exponents, np.asarray(rows)
 
     def moved(self, centre: FloatArray, size: float) -> Side:
         """Return the same side in coordinates (x - centre) / size."""

@@ -62,7 +62,7 @@ def bound_warnings(problem: BlendProblem, found: Found) -> tuple[str, ...]:
         elif f"{name} lower" in active or f"{name} upper" in active:
             which, bound = ("lower", low) if f"{name} lower" in active else ("upper", high)
             warnings.append(
-                f"{name} is at its {which} bound {bound:.3g}: beyond it the energy may fall further; widen the box, or "
+                f"{name} is at its {which} bound {bound:.3g}: beyond it there may be a better blend; widen the box, or "
                 "set alpha"
             )
     return tuple(warnings)

@@ -86,7 +86,10 @@ def test_lower_case_names_are_understood_and_kept_in_upper_case(written):
         (lambda: blend(FLOOR, WALL, "G2"), "options: found a str, expected a BlendOptions"),
         (lambda: blend(FLOOR, WALL, BlendOptions(), strict=True), "options: found strict beside it"),
         (lambda: BlendOptions(continuity="g 2"), "continuity: found 'g 2', expected one of C0"),
-        (lambda: BlendOptions(alpha="free"), "alpha: found 'free', expected energy, natural or a positive number"),
+        (
+            lambda: BlendOptions(alpha="free"),
+            "alpha: found 'free', expected fair, energy, natural or a positive number",
+        ),
         (lambda: BlendOptions(u_knots=[0.5, float("nan")]), r"u_knots\[1\]: found nan, expected a finite number"),
         (lambda: BlendOptions(middle_knots=[0.5]), r"middle_knots\[0\]: found 0.5, expected numbers"),
         (lambda: BlendOptions(middle_knots="0.5"), "middle_knots: found '0.5', expected sequences of numbers"),

@@ -1,0 +1,210 @@
+"""The fairest shape: J and its gradient against other ways to them, and blends whose right shape is known."""
+
+from pathlib import Path
+
+import numpy as np
+import pyiges
+import pytest
+
+from helpers.bases import facing_pair
+from semispline import (
+    Base,
+    BSplineCurve,
+    BSplineSurface,
+    ComputationError,
+    OptionError,
+    blend,
+    measure_fairness,
+    measure_turn,
+    read_surface,
+    revolve_polynomial,
+    transform,
+)
+from semispline.solver.blending.fair_search import solve_fair
+from semispline.solver.blending.fairness_table import FairnessTable, make_grid
+from semispline.solver.blending.pipeline import state_problem
+
+CASES = Path(__file__).parents[2] / "cases"
+QUINTIC = {"degree_u": 5, "middle_curves": 0}
+FAIR = QUINTIC | {"alpha": "fair"}
+
+
+def case(name, edge):
+    return Base(read_surface(CASES / f"{name}.json"), edge)
+
+
+def sheet(x, height, slope, *, bend=0.3, inner=(), degree=3):
+    """A curved sheet from x on whose edge u0 rises by `slope`; knots along v as given."""
+    n = degree + 1 + len(inner)
+    v = np.linspace(0, 2, n)
+    rows = [[[x + i * 0.5, y, height + slope * i * 0.5 + bend * np.sin(2 * y + i)] for y in v] for i in range(4)]
+    knots = [0.0] * (degree + 1) + list(inner) + [1.0] * (degree + 1)
+    return BSplineSurface(3, degree, [0, 0, 0, 0, 1, 1, 1, 1], knots, rows)
+
+
+def sheets(**more):
+    """Two sheets that face each other: the first one turned round."""
+    first = transform(sheet(0.0, 0.0, 0.2, **more), np.diag([-1.0, 1.0, 1.0]))
+    return Base(first, "u0"), Base(sheet(1.2, 0.6, 0.4, bend=0.2, inner=(0.4,)), "u0")
+
+
+def tables(pair, times=1, **options):
+    problem = state_problem(*pair, **(QUINTIC | {"alpha": "fair"} | options)).problem
+    layers, exponents = problem.shape_layers()
+    return problem, FairnessTable(problem, layers, make_grid(problem, times)), exponents
+
+
+@pytest.mark.parametrize("inner", [(), (0.5, 0.5)], ids=["smooth", "only C1 at v = 1/2"])
+@pytest.mark.parametrize("options", [{}, {"degree_u": 3, "middle_curves": 1}])
+def test_the_gradient_is_that_of_the_value(inner, options):
+    _, table, _ = tables(sheets(inner=inner), **options)
+    assert table.grid.lines.tolist() == ([0.5] if inner else [])
+    # 1, p2, a, a^2 at a; p2, b, b^2 at b.
+    at = np.array([1.0, 0.3, 0.9, 0.81, -0.2, 1.1, 1.21])
+    value, gradient = table.measured(at)
+    assert value == pytest.approx(table.value(at), rel=1e-14)
+    for k in range(len(at)):
+        steps = [(h, np.eye(len(at))[k] * h) for h in (1e-4, 5e-5)]
+        coarse, fine = ((table.value(at + s) - table.value(at - s)) / (2 * h) for h, s in steps)
+        # Richardson: the error of the difference is of fourth order.
+        assert gradient[k] == pytest.approx((4 * fine - coarse) / 3, rel=1e-6, abs=1e-6 * abs(value))
+
+
+@pytest.mark.parametrize("inner", [(), (0.5, 0.5)])
+def test_what_is_minimised_is_what_the_judge_measures(inner):
+    result = blend(*sheets(inner=inner), **FAIR)
+    measured = measure_fairness(result.surface)
+    assert measured.settled
+    assert result.fairness == pytest.approx(measured.value, rel=0.01)
+    assert (measured.jumps > 1e-3) is bool(inner)
+
+
+def test_six_nodes_on_the_span_of_a_quintic_are_too_few():
+    # The trap that the number of nodes avoids: the usual rule of a node more than the degree.
+    problem, table, exponents = tables(sheets())
+    at = np.array([1.0, 0.0, 0.35, 0.1225, 0.0, 2.0, 4.0])
+    _, fine, _ = tables(sheets(), times=3)
+    layers, _ = problem.shape_layers()
+    rough = make_grid(problem)
+    points, weights = np.polynomial.legendre.leggauss(6)
+    coarse = FairnessTable(
+        problem, layers, type(rough)((points + 1) / 2, weights / 2, rough.v, rough.weights_v, rough.lines)
+    )
+    assert len(exponents[0]) == len(exponents[1]) == 4
+    assert table.value(at) == pytest.approx(fine.value(at), rel=0.01)
+    assert coarse.value(at) != pytest.approx(fine.value(at), rel=0.01)
+
+
+def test_the_end_is_a_minimum_of_the_search_and_p2_makes_it_lower():
+    problem = state_problem(*sheets(), **FAIR).problem
+    with_p2, without = solve_fair(problem), solve_fair(problem, search_p2=False)
+    assert with_p2.slope < 1e-3
+    assert without.slope < 1e-3
+    assert without.p2 == (0.0, 0.0)
+    assert with_p2.value < without.value
+    _, table, _ = tables(sheets(), times=2)
+    unit_a, unit_b = problem.natural
+    for factor in (0.9, 1.1):
+        x, y = without.a * factor / unit_a, without.b / unit_b
+        assert table.value(np.array([1.0, 0.0, x, x**2, 0.0, y, y**2])) > without.value
+
+
+def test_a_pipe_and_its_cap_are_not_pinched():
+    result = blend(case("pipe_poly", "v1"), case("dome_poly", "v0"), **FAIR)
+    points = result.surface.evaluate_grid(np.linspace(0, 1, 41), np.linspace(*result.surface.domain[1], 61))
+    radius = np.linalg.norm(points[..., :2], axis=-1)
+    assert radius.min() > 4.6
+    assert radius.max() < 5.001
+    assert not result.warnings
+
+
+def test_bells_bulge_and_are_symmetric():
+    low, high = case("bell_low", "u1"), case("bell_high", "u0")
+    result = blend(low, high, **FAIR)
+    u, v = np.linspace(0, 1, 41), np.linspace(*result.surface.domain[1], 61)
+    points = result.surface.evaluate_grid(u, v)
+    radius = np.linalg.norm(points[..., :2], axis=-1)
+    rims = np.linalg.norm(points[[0, -1], :, :2], axis=-1)
+    assert radius.min() >= rims.min() - 1e-9
+    assert radius.max() > 2.3
+    np.testing.assert_allclose(radius, radius[::-1], atol=1e-4)
+    assert result.alpha2 == pytest.approx(result.beta2, rel=1e-3)
+    assert not result.active_bounds
+
+
+def test_two_pipes_of_one_radius_are_joined_by_that_pipe():
+    line = BSplineCurve(3, [0] * 4 + [1] * 4, [[5, 0, z] for z in (0, 1, 2, 3)])
+    pipe = revolve_polynomial(line, [0, 0, 0], [0, 0, 1], 360, 1e-6).surface
+    far = transform(pipe, np.eye(3), [0, 0, 13])
+    edges = [(Base(pipe, edge), Base(far, other)) for edge, other in (("u1", "u0"), ("v1", "v0"))]
+    a, b = next((a, b) for a, b in edges if np.ptp(a.derivative(np.array([0.1, 0.6]), 0, 0)[:, 2]) < 1e-9)
+    surface = blend(a, b, **FAIR).surface
+    points = surface.evaluate_grid(np.linspace(0, 1, 31), np.linspace(*surface.domain[1], 41))
+    np.testing.assert_allclose(np.linalg.norm(points[..., :2], axis=-1), 5.0, rtol=0.01)
+
+
+def test_what_is_flat_takes_the_arc():
+    knots = [0, 0, 1, 1]
+    left = BSplineSurface(1, 1, knots, knots, [[[0, 0, 0], [0, 1, 0]], [[1, 0, 0], [1, 1, 0]]])
+    right = BSplineSurface(1, 1, knots, knots, [[[3, 0, 0], [3, 1, 0]], [[5, 0, 0], [5, 1, 0]]])
+    result = blend(Base(left, "u1"), Base(right, "u0"), **FAIR)
+    # Gap 2 over speeds 1 and 2, and the arc of a straight way is its chord.
+    assert (result.alpha2, result.beta2) == pytest.approx((2.0, 1.0), rel=1e-4)
+    assert result.fairness == pytest.approx(0.0, abs=1e-9)
+
+
+def test_the_real_pair_turns_evenly():
+    path = Path(pyiges.__file__).parent / "examples" / "impeller.igs"
+    result = blend(Base(read_surface(f"{path}#102"), "u0"), Base(read_surface(f"{path}#131"), "u0"), **FAIR)
+    assert measure_turn(result.surface).degrees < 15
+    assert not result.warnings
+
+
+def same_points(one, two, u, v, **tolerance):
+    np.testing.assert_allclose(one.evaluate_grid(u, v), two, **tolerance)
+
+
+def test_units_place_order_and_parameters_do_not_matter():
+    a, b = sheets()
+    first = blend(a, b, **FAIR)
+    u, v = np.linspace(0, 1, 9), np.linspace(0, 1, 7)
+    points = first.surface.evaluate_grid(u, v)
+    again = blend(a, b, **FAIR)
+    np.testing.assert_array_equal(again.surface.evaluate_grid(u, v), points)
+    scaled = [Base(transform(base.surface, 1e3 * np.eye(3)), base.edge) for base in (a, b)]
+    same_points(blend(*scaled, **FAIR).surface, 1e3 * points, u, v, rtol=0, atol=1e-5 * 1e3)
+    moved = [Base(transform(base.surface, np.eye(3), [1e3, 0, 0]), base.edge) for base in (a, b)]
+    same_points(blend(*moved, **FAIR).surface, points + np.array([1e3, 0, 0]), u, v, rtol=0, atol=1e-5)
+    swapped = blend(b, a, **FAIR)
+    assert not swapped.flipped
+    same_points(swapped.surface, points[::-1], u, v, rtol=0, atol=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"method": "casadi"}, "alpha: found fair with method casadi, expected method reduced"),
+        ({"method": "bfgs"}, "alpha: found fair with method bfgs"),
+        ({"alpha": ("fair", "energy")}, "alpha: found fair with energy on the other side"),
+    ],
+)
+def test_fair_is_for_the_reduced_method(options, message):
+    with pytest.raises(OptionError, match=message):
+        blend(*sheets(), **(FAIR | options))
+
+
+def test_where_every_candidate_folds_it_says_so():
+    # Random control points: waves that no blend can follow.
+    pair = facing_pair(np.random.default_rng(0), edges=("u0", "u0"), backwards=(False, False))
+    with pytest.raises(ComputationError, match="each of 36 candidates folds; try another edge"):
+        blend(*pair, **FAIR)
+
+
+def test_a_given_alpha_stays_and_a_box_replaces_the_window():
+    a, b = sheets()
+    one = blend(a, b, **(FAIR | {"alpha": (0.9, "fair")}))
+    assert one.alpha2 == pytest.approx(0.81, rel=1e-12)
+    assert one.p2[0] == 0.0
+    narrow = blend(a, b, **FAIR, box=(1.3, 1.4))
+    assert narrow.active_bounds == ("alpha2 lower", "beta2 lower")
+    assert any("at its lower bound" in text for text in narrow.warnings)
