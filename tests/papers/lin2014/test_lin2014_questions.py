@@ -25,11 +25,11 @@ from semispline.papers.lin2014.checks import (
     representation,
     rows_along_normal,
 )
-from semispline.papers.lin2014.claims import appendix as claims_appendix
-from semispline.papers.lin2014.claims import section_2 as claims_2_definition
-from semispline.papers.lin2014.claims import section_3 as claims_3_blending
+from semispline.papers.lin2014.claims import section_2_definition as claims_2_definition
+from semispline.papers.lin2014.claims import section_3_blending as claims_3_blending
 from semispline.papers.lin2014.claims import section_3_conditions as claims_3_conditions
 from semispline.papers.lin2014.claims import section_4 as claims_4_implementation
+from semispline.papers.lin2014.claims import section_a as claims_appendix
 
 RECORDS = (claims_2_definition, claims_3_blending, claims_3_conditions, claims_4_implementation, claims_appendix)
 # Whatever remembers what it has computed.

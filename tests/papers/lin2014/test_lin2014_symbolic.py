@@ -11,11 +11,11 @@ from semispline.papers.ledger.verification import decide
 from semispline.papers.lin2014 import printed as pr
 from semispline.papers.lin2014.checks import construction, counts, definitions, objective, representation
 from semispline.papers.lin2014.checks.contact_rows import mirror_check, row_check
-from semispline.papers.lin2014.claims import appendix as claims_appendix
-from semispline.papers.lin2014.claims import section_2 as claims_2_definition
-from semispline.papers.lin2014.claims import section_3 as claims_3_blending
+from semispline.papers.lin2014.claims import section_2_definition as claims_2_definition
+from semispline.papers.lin2014.claims import section_3_blending as claims_3_blending
 from semispline.papers.lin2014.claims import section_3_conditions as claims_3_conditions
 from semispline.papers.lin2014.claims import section_4 as claims_4_implementation
+from semispline.papers.lin2014.claims import section_a as claims_appendix
 from semispline.papers.lin2014.claims.section_4 import NORMAL_EQUATION, TRUE_14
 
 CLAIMS = {
