@@ -22,8 +22,6 @@ from sympy import Expr, Symbol, sqrt, sympify
 # The derivatives of the surface that enter, by their directions.
 DERIVATIVES = ("u", "v", "uu", "uv", "vv", "uuu", "uuv", "uvv", "vvv")
 COORDINATES = ("x", "y", "z")
-# What the program gives: |grad H|^2 per du dv, the area element, the mean curvature, the speed along u.
-OUTPUTS = ("rough", "area", "mean", "speed")
 
 
 @dataclass(frozen=True)
@@ -86,7 +84,9 @@ def _plus(r: Vector, s: Vector) -> Vector:
 
 
 def fairness_program() -> Program:
-    """Return the steps from nine derivatives of a surface to the outputs.
+    """Return the steps from nine derivatives of a surface to four outputs.
+
+    |grad H|^2 per du dv, the area element, the mean curvature, the speed along u.
 
     Examples
     --------

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager
 from dataclasses import asdict, replace
-from math import isfinite, isnan
+from math import isnan
 from typing import TYPE_CHECKING, Annotated, Any, cast
 
 import typer
@@ -17,10 +17,17 @@ from semispline.solver.errors import ContactError, EdgeError, TrimError
 from semispline.solver.exit_status import ANSWER_IS_NO, reports_errors
 from semispline.solver.option_flags import takes_blend_options
 from semispline.solver.options import BlendOptions, Continuity, continuity_name
+from semispline.solver.reports import (
+    contact_record,
+    print_contact,
+    print_entries,
+    print_result,
+    print_warnings,
+    report_record,
+)
 
 if TYPE_CHECKING:
-    from semispline.solver.blending import BlendResult
-    from semispline.solver.io import LoadedSurface, SurfaceEntry
+    from semispline.solver.io import LoadedSurface
     from semispline.solver.judge import Contact
 
 app = typer.Typer(no_args_is_help=True, add_completion=False, pretty_exceptions_enable=False)
@@ -71,7 +78,7 @@ def blend_command(
             temporary = stack.enter_context(atomic_path(report))
             temporary.write_text(to_text(report_record(result)))
         write_surface(out, result.surface, first.unit)
-    _print_result(result)
+    print_result(result)
 
 
 @app.command("check")
@@ -109,11 +116,11 @@ def check_command(
             record |= {"require": required, "meets": not misses, "misses": misses, "doubts": doubts}
         _write_json(json_file, {"format": "semispline/1", "kind": "contact", **record})
     if json_file != "-":
-        _print_contact(contact, first.unit)
+        print_contact(contact, first.unit)
         if require is not None:
             reasons = "; ".join([*misses, *doubts])
             typer.echo(f"{required}: " + ("no: " if misses else "yes, but " if doubts else "yes") + reasons)
-    _print_warnings(warnings)
+    print_warnings(warnings)
     if misses:
         raise typer.Exit(ANSWER_IS_NO)
 
@@ -136,7 +143,7 @@ def list_command(
         record = {"path": file, "surfaces": [asdict(entry) for entry in entries], "others": dict(others)}
         _write_json(json_file, {"format": "semispline/1", "kind": "surface_list", **record})
     if json_file != "-":
-        _print_entries(entries, others)
+        print_entries(entries, others)
 
 
 @app.command("show")
@@ -186,57 +193,6 @@ def convert_command(
     with _progress("converting"):
         (loaded,) = read_surfaces([source])
         write_surface(target, loaded.surface, loaded.unit)
-
-
-def contact_record(contact: Contact) -> dict[str, Any]:
-    """Return what a JSON file holds of a measured contact."""
-    return {name: _finite(value) for name, value in asdict(contact).items()}
-
-
-def _finite(value: Any) -> Any:
-    """Return a value or record for JSON, which knows neither NaN nor infinity: what cannot be told is null."""
-    if isinstance(value, dict):
-        return {name: _finite(part) for name, part in value.items()}
-    return None if isinstance(value, float) and not isfinite(value) else value
-
-
-def report_record(result: BlendResult) -> dict[str, Any]:
-    """Return what `blend --report` writes."""
-    record: dict[str, Any] = {
-        "format": "semispline/1",
-        "kind": "blend_report",
-        "continuity": list(result.continuity),
-        "method": result.method,
-        "energy": result.energy,
-        "energy_rounding": result.energy_rounding,
-        "alpha2": result.alpha2,
-        "beta2": result.beta2,
-    }
-    for name in ("alpha2_bounds", "beta2_bounds"):
-        bounds = getattr(result, name)
-        if bounds is not None:
-            record[name] = list(bounds)
-    return record | {
-        "active_bounds": list(result.active_bounds),
-        "flipped": result.flipped,
-        "seam_shift": result.seam_shift,
-        "seam": None if result.seam is None else contact_record(result.seam),
-        "warnings": list(result.warnings),
-        "control_points": result.surface.n_control_points,
-        "iterations": result.iterations,
-        "status": result.status,
-        "search_excess": result.search_excess,
-        "kkt_residual": result.kkt_residual,
-        "proven_gap": result.proven_gap,
-        "p2": list(result.p2),
-        "fairness": result.fairness,
-        "constraint_rank": result.constraint_rank,
-        "regularity": asdict(result.regularity),
-        "creases": [asdict(crease) for crease in result.creases],
-        "seconds": result.seconds,
-        "contact_a": contact_record(result.contact_a),
-        "contact_b": contact_record(result.contact_b),
-    }
 
 
 def _check_edges(edge_a: str, edge_b: str) -> None:
@@ -308,99 +264,6 @@ def _doubts(contact: Contact, require: Continuity | None, misses: list[str]) -> 
         )
     places = contact.no_normal if require in ("G1", "G2") else ()
     return [f"{place.surface.upper()} has {place}" for place in places] + doubtful(contact, require)
-
-
-def _print_contact(contact: Contact, unit: str | None) -> None:
-    length = unit or "model units"
-    bend = f"1/{unit}" if unit else "1/(model units)"
-    rows = [("measure", "worst", "allowed", "unit", "at parameter", "at point")]
-    for name, measure, in_unit, place in (
-        ("gap", "gap", length, contact.gap_at),
-        ("angle", "angle_degrees", "degrees", contact.angle_at),
-        ("curvature jump", "curvature_jump", bend, contact.curvature_at),
-        ("curvature jump, relative", "curvature_jump_relative", "1", contact.curvature_at),
-    ):
-        point = ", ".join(f"{x:.5g}" for x in place.point)
-        value, limit = getattr(contact, measure), contact.allowed.get(measure)
-        allowed = "see below" if limit is None else f"{limit:.3g}"
-        rows.append((name, f"{value:.3g}", allowed, in_unit, f"{place.parameter:.5g}", f"({point})"))
-    _print_table(rows)
-    for bare in contact.no_normal:
-        typer.echo(f"{bare.surface.upper()}: {bare}")
-
-
-def _print_result(result: BlendResult) -> None:
-    def shape(value: float | None, bounds: tuple[float, float] | None) -> str:
-        if value is None:
-            return "none"
-        return f"{value:.6g}" if bounds is None else f"{value:.6g} (between {bounds[0]:.4g} and {bounds[1]:.4g})"
-
-    rows = [
-        ("continuity", " and ".join(result.continuity)),
-        ("method", result.method),
-        ("energy", f"{result.energy:.6g}"),
-        ("alpha\u00b2", shape(result.alpha2, result.alpha2_bounds)),
-        ("beta\u00b2", shape(result.beta2, result.beta2_bounds)),
-        ("active bounds", ", ".join(result.active_bounds) or "none"),
-        ("edge B runs against A", "yes" if result.flipped else "no"),
-        ("control points", str(result.surface.n_control_points)),
-        ("seconds", f"{result.seconds:.3f}"),
-    ]
-    if result.proven_gap is not None:
-        rows.insert(3, ("least energy", f"proved to {result.proven_gap:.1e} of itself"))
-    if result.seam_shift:
-        rows.append(("seam of B moved by", f"{result.seam_shift:.6g} in B's parameter"))
-    contacts = [("contact A", result.contact_a), ("contact B", result.contact_b), ("seam", result.seam)]
-    for name, contact in contacts:
-        if contact is None:
-            continue
-        allowed = contact.allowed
-        figures = (
-            f"gap {contact.gap:.2g} ({allowed['gap']:.2g})",
-            f"angle {contact.angle_degrees:.2g} ({allowed['angle_degrees']:.2g}) degrees",
-            f"relative curvature jump {contact.curvature_jump_relative:.2g} ({allowed['curvature_jump_relative']:.2g})",
-        )
-        rows.append((f"{name} (allowed)", ", ".join(figures)))
-    _print_table(rows)
-    _print_warnings(result.warnings)
-
-
-def _print_warnings(warnings: Sequence[str]) -> None:
-    for warning in warnings:
-        typer.echo(f"warning: {warning}", err=True)
-
-
-def _print_entries(entries: Sequence[SurfaceEntry], others: Mapping[str, int]) -> None:
-    from semispline.solver.io import counted, without_surfaces
-
-    if not entries:
-        typer.echo(without_surfaces(others))
-        return
-
-    def word(value: bool | None, yes: str) -> str:
-        return "?" if value is None else yes if value else "-"
-
-    rows = [("#", "kind", "degrees", "control points", "rational", "trimmed", "closed")]
-    notes = []
-    for entry in entries:
-        closed = "".join(name for name, is_closed in (("u", entry.closed_u), ("v", entry.closed_v)) if is_closed)
-        degrees = "?" if entry.degree_u is None else f"{entry.degree_u}, {entry.degree_v}"
-        count = "?" if entry.n_u is None else f"{entry.n_u} x {'various' if entry.n_v is None else entry.n_v}"
-        flags = (word(entry.rational, "rational"), word(entry.trimmed, "trimmed"), closed or "-")
-        rows.append((str(entry.number), entry.kind, degrees, count, *flags))
-        if entry.problem:
-            notes.append(entry.problem)
-    _print_table(rows)
-    for note in notes:
-        typer.echo(f"cannot be used: {note}")
-    if others:
-        typer.echo(f"cannot be used: {counted(others)}")
-
-
-def _print_table(rows: Sequence[Sequence[str]]) -> None:
-    widths = [max(len(row[k]) for row in rows) for k in range(len(rows[0]))]
-    for row in rows:
-        typer.echo("  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip())
 
 
 @contextmanager

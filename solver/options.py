@@ -100,7 +100,7 @@ class BlendOptions:
     middle_knots: Sequence[Sequence[float]] | None = _option(
         None, "lists", "K1,K2,...", "Inner knots of a middle curve, in v of edge A; once for each curve."
     )
-    strict: bool = _option(False, "flag", "", "Refuse a blend with warnings: folds, creases.")
+    strict: bool = _option(False, "flag", "", "Refuse a blend with any warning.")
 
     def __post_init__(self) -> None:
         checked = {

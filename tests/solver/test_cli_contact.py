@@ -133,7 +133,7 @@ def test_the_report_holds_what_was_allowed(tmp_path):
     done = run("blend", *files, *edges("v1", "u1"), *options, "-o", out, "--report", report)
     assert done.exit_code == 0
     assert "warning: contact b: rounding alone" in done.stderr
-    assert "relative curvature jump 0.0017 (0.017)" in done.stdout
+    assert "relative curvature jump 0.0017 (0.017 allowed)" in done.stdout
     contact = json.loads(report.read_text())["contact_b"]
     assert contact["allowed"]["curvature_jump_relative"] == pytest.approx(0.0165, rel=0.01)
     assert set(contact["allowed"]) == set(contact["rounding"]) <= set(contact)

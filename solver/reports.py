@@ -1,0 +1,177 @@
+"""What the commands say of contacts, blends and files: records for JSON, and tables on the terminal.
+
+Heavy imports wait inside the functions, so that `--help` answers fast.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import asdict
+from math import isfinite
+from typing import TYPE_CHECKING, Any
+
+import typer
+
+from semispline.solver.options import Continuity
+
+if TYPE_CHECKING:
+    from semispline.solver.blending import BlendResult
+    from semispline.solver.io import SurfaceEntry
+    from semispline.solver.judge import Contact
+
+
+def contact_record(contact: Contact) -> dict[str, Any]:
+    """Return what a JSON file holds of a measured contact."""
+    return {name: _finite(value) for name, value in asdict(contact).items()}
+
+
+def _finite(value: Any) -> Any:
+    """Return a value or record for JSON, which knows neither NaN nor infinity: what cannot be told is null."""
+    if isinstance(value, dict):
+        return {name: _finite(part) for name, part in value.items()}
+    return None if isinstance(value, float) and not isfinite(value) else value
+
+
+def report_record(result: BlendResult) -> dict[str, Any]:
+    """Return what `blend --report` writes."""
+    record: dict[str, Any] = {
+        "format": "semispline/1",
+        "kind": "blend_report",
+        "continuity": list(result.continuity),
+        "method": result.method,
+        "energy": result.energy,
+        "energy_rounding": result.energy_rounding,
+        "alpha2": result.alpha2,
+        "beta2": result.beta2,
+    }
+    for name in ("alpha2_bounds", "beta2_bounds"):
+        bounds = getattr(result, name)
+        if bounds is not None:
+            record[name] = list(bounds)
+    return record | {
+        "active_bounds": list(result.active_bounds),
+        "flipped": result.flipped,
+        "seam_shift": result.seam_shift,
+        "seam": None if result.seam is None else contact_record(result.seam),
+        "warnings": list(result.warnings),
+        "control_points": result.surface.n_control_points,
+        "iterations": result.iterations,
+        "status": result.status,
+        "search_excess": result.search_excess,
+        "kkt_residual": result.kkt_residual,
+        "proven_gap": result.proven_gap,
+        "p2": list(result.p2),
+        "fairness": result.fairness,
+        "constraint_rank": result.constraint_rank,
+        "regularity": asdict(result.regularity),
+        "creases": [asdict(crease) for crease in result.creases],
+        "seconds": result.seconds,
+        "contact_a": contact_record(result.contact_a),
+        "contact_b": contact_record(result.contact_b),
+    }
+
+
+def print_contact(contact: Contact, unit: str | None) -> None:
+    """Print what was measured of a contact, and where it is worst."""
+    length = unit or "model units"
+    bend = f"1/{unit}" if unit else "1/(model units)"
+    rows = [("measure", "worst", "allowed", "unit", "at parameter", "at point")]
+    for name, measure, in_unit, place in (
+        ("gap", "gap", length, contact.gap_at),
+        ("angle", "angle_degrees", "degrees", contact.angle_at),
+        ("curvature jump", "curvature_jump", bend, contact.curvature_at),
+        ("curvature jump, relative", "curvature_jump_relative", "1", contact.curvature_at),
+    ):
+        point = ", ".join(f"{x:.5g}" for x in place.point)
+        value, limit = getattr(contact, measure), contact.allowed.get(measure)
+        allowed = "see below" if limit is None else f"{limit:.3g}"
+        rows.append((name, f"{value:.3g}", allowed, in_unit, f"{place.parameter:.5g}", f"({point})"))
+    _print_table(rows)
+    for bare in contact.no_normal:
+        typer.echo(f"{bare.surface.upper()}: {bare}")
+
+
+def print_result(result: BlendResult) -> None:
+    """Print what a blend came to."""
+
+    def shape(value: float | None, bounds: tuple[float, float] | None) -> str:
+        if value is None:
+            return "none"
+        return f"{value:.6g}" if bounds is None else f"{value:.6g} (between {bounds[0]:.4g} and {bounds[1]:.4g})"
+
+    rows = [
+        ("continuity", " and ".join(result.continuity)),
+        ("method", result.method),
+        ("energy", f"{result.energy:.6g}"),
+        ("alpha\u00b2", shape(result.alpha2, result.alpha2_bounds)),
+        ("beta\u00b2", shape(result.beta2, result.beta2_bounds)),
+        ("active bounds", ", ".join(result.active_bounds) or "none"),
+        ("edge B runs against A", "yes" if result.flipped else "no"),
+        ("control points", str(result.surface.n_control_points)),
+        ("seconds", f"{result.seconds:.3f}"),
+    ]
+    if result.proven_gap is not None:
+        rows.insert(3, ("least energy", f"proved to {result.proven_gap:.1e} of itself"))
+    if result.seam_shift:
+        rows.append(("seam of B moved by", f"{result.seam_shift:.6g} in B's parameter"))
+    at_a, at_b = result.continuity
+    rows.append(("contact A", ", ".join(_figures(result.contact_a, at_a))))
+    rows.append(("contact B", ", ".join(_figures(result.contact_b, at_b))))
+    if result.seam is not None:
+        rows.append(("seam", ", ".join(_figures(result.seam, None))))
+    _print_table(rows)
+    print_warnings(result.warnings)
+
+
+def _figures(contact: Contact, asked: Continuity | None) -> Iterator[str]:
+    """Yield what was measured, with what was allowed where the continuity that was asked for requires it."""
+    from semispline.solver.judge import required_limits
+
+    allowed = {} if asked is None else {name: limit for name, _, limit in required_limits(contact, asked)}
+    for name, words, unit in (
+        ("gap", "gap", ""),
+        ("angle_degrees", "angle", " degrees"),
+        ("curvature_jump_relative", "relative curvature jump", ""),
+    ):
+        limit = f" ({allowed[name]:.2g} allowed)" if name in allowed else ""
+        yield f"{words} {getattr(contact, name):.2g}{unit}{limit}"
+
+
+def print_warnings(warnings: Sequence[str]) -> None:
+    """Print warnings on standard error."""
+    for warning in warnings:
+        typer.echo(f"warning: {warning}", err=True)
+
+
+def print_entries(entries: Sequence[SurfaceEntry], others: Mapping[str, int]) -> None:
+    """Print the surfaces of a file, and what else it holds."""
+    from semispline.solver.io import counted, without_surfaces
+
+    if not entries:
+        typer.echo(without_surfaces(others))
+        return
+
+    def word(value: bool | None, yes: str) -> str:
+        return "?" if value is None else yes if value else "-"
+
+    rows = [("#", "kind", "degrees", "control points", "rational", "trimmed", "closed")]
+    notes = []
+    for entry in entries:
+        closed = "".join(name for name, is_closed in (("u", entry.closed_u), ("v", entry.closed_v)) if is_closed)
+        degrees = "?" if entry.degree_u is None else f"{entry.degree_u}, {entry.degree_v}"
+        count = "?" if entry.n_u is None else f"{entry.n_u} x {'various' if entry.n_v is None else entry.n_v}"
+        flags = (word(entry.rational, "rational"), word(entry.trimmed, "trimmed"), closed or "-")
+        rows.append((str(entry.number), entry.kind, degrees, count, *flags))
+        if entry.problem:
+            notes.append(entry.problem)
+    _print_table(rows)
+    for note in notes:
+        typer.echo(f"cannot be used: {note}")
+    if others:
+        typer.echo(f"cannot be used: {counted(others)}")
+
+
+def _print_table(rows: Sequence[Sequence[str]]) -> None:
+    widths = [max(len(row[k]) for row in rows) for k in range(len(rows[0]))]
+    for row in rows:
+        typer.echo("  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip())
