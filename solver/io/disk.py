@@ -71,7 +71,7 @@ def shown(path: str | Path) -> str:
     """Return a path as a message can hold it."""
     text = str(path)
     text = text if len(text) <= 300 else f"{text[:140]}...{text[-140:]}"
-    return text if text.isprintable() else repr(text)
+    return text if text and text.isprintable() else repr(text)
 
 
 def _same_file(a: str | Path, b: str | Path) -> bool:
