@@ -284,13 +284,13 @@ class FreeSystem:
             gradient = self.form.gradient(points)
             step, lower = smooth.correction(gradient[self.free])
             points[self.free] += step
-            energy = max(float(np.sum(points * gradient)), 1e-300)
             change = max(_fraction(move, points), _fraction(step, points))
-            left = min(change, max(saved, lower) / energy)
             if change <= ROUNDING_CORRECTION or change >= before / 2:
                 break
             before = change
-        return points, left
+        layers = np.stack(np.split(points, points.shape[1] // 3, axis=1))
+        energy = float(np.trace(self.form.products(layers)))
+        return points, min(change, max(abs(saved), abs(lower)) / max(energy, 1e-300))
 
     def _correction(self, gradient: FloatArray) -> FloatArray:
         """Return the change of the sorted y that a gradient, shape (N, d), asks for."""

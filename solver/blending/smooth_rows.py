@@ -23,7 +23,7 @@ from semispline.solver.blending.gram import EnergyForm
 from semispline.solver.splines import Basis
 from semispline.solver.splines.refinement import refinement_matrix
 
-# Knots nearer than this fraction of the mean span are close: stiffer by 1e9, at which a solve keeps half its digits.
+# Knots nearer than this fraction of the longest span are close: stiffer by 1e9, where a solve keeps half its digits.
 CLOSE_KNOTS = 1e-3
 
 
@@ -40,7 +40,7 @@ def without_close_knots(basis: Basis) -> Basis:
     """
     p, knots = basis.degree, basis.knots
     values, counts = np.unique(knots, return_counts=True)
-    close = CLOSE_KNOTS * (values[-1] - values[0]) / (len(values) - 1)
+    close = CLOSE_KNOTS * np.diff(values).max()
     if np.diff(values).min() >= close:
         return basis
     kept = np.zeros_like(counts)
