@@ -219,13 +219,7 @@ class FreeSystem:
         """Fill the free rows of p, shape (N, d), so that the energy is least."""
         if self.size == 0:
             return points
-        # What the prescribed rows do to the gradient of the energy.
-        right = np.zeros((self.offsets[-1], points.shape[1]))
-        for (i, j), block in self.blocks.items():
-            if j not in self.rows:
-                right[self._part(i)] -= block @ points[self._part(j)]
-        right = right[self.free]
-        right = (right if self.z is None else self.z.T @ right)[self.order]
+        right = self._right(points)
         x = self.factor.solve(right)
         correction = self.factor.solve(right - self.matrix @ x)
         x += correction
@@ -244,6 +238,20 @@ class FreeSystem:
                 "their number"
             )
         return filled
+
+    def solved_at_once(self, points: FloatArray) -> FloatArray:
+        """Fill the free rows of p, shape (N, d), by one solve without refinement, as exported code does."""
+        return points if self.size == 0 else self._with_free(points, self.factor.solve(self._right(points)))
+
+    def _right(self, points: FloatArray) -> FloatArray:
+        """Return the right side for the sorted y, shape (size of y, d)."""
+        # What the prescribed rows do to the gradient of the energy.
+        right = np.zeros((self.offsets[-1], points.shape[1]))
+        for (i, j), block in self.blocks.items():
+            if j not in self.rows:
+                right[self._part(i)] -= block @ points[self._part(j)]
+        right = right[self.free]
+        return np.asarray((right if self.z is None else self.z.T @ right)[self.order])
 
     def _refined(self, x: FloatArray, points: FloatArray) -> tuple[FloatArray, float]:
         """Refine with the gradient taken from second derivatives, which H x loses by cancellation.
