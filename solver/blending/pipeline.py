@@ -15,7 +15,14 @@ from semispline.solver.blending.result import BlendResult
 from semispline.solver.blending.rounding import measure_energy_rounding, rounding_warning
 from semispline.solver.blending.shape_parameters import Found, active_bounds, find_shape_parameters
 from semispline.solver.blending.sides import Side, make_side, matched_sides
-from semispline.solver.blending.warnings import bound_warnings, contact_warnings, remedy, seam_warning, shape_warnings
+from semispline.solver.blending.warnings import (
+    bare_places,
+    bound_warnings,
+    contact_warnings,
+    remedy,
+    seam_warning,
+    shape_warnings,
+)
 from semispline.solver.errors import ComputationError, ContactError, FoldError
 from semispline.solver.judge import (
     Base,
@@ -106,7 +113,7 @@ def blend(
         + bound_warnings(problem, found)
         + rounding_warning(rounding, surface, energy)
         + seam_warning(a, b)
-        + contact_warnings(surface, (contact_a, contact_b), chosen.continuities, found)
+        + contact_warnings((a, b), surface, (contact_a, contact_b), chosen.continuities, found)
     )
     result = BlendResult(
         surface=surface,
@@ -263,7 +270,8 @@ def _checked_contacts(
             )
         hidden = untold(contact, wanted)
         if hidden:
-            raise ContactError(f"contact {name}: {'; '.join(hidden)} for {wanted}; {remedy(surface, shape)}")
+            said = remedy(base, surface, bare_places(contact, name), shape if wanted in ("G1", "G2") else None)
+            raise ContactError(f"contact {name}: {'; '.join(hidden)} for {wanted}; {said}")
         for measure, value, limit in measured:
             if not value <= limit:
                 raise ContactError(

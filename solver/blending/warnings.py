@@ -6,7 +6,7 @@ import numpy as np
 
 from semispline.solver.blending.problem import BlendProblem
 from semispline.solver.blending.shape_parameters import Found, active_bounds, shape_unknowns
-from semispline.solver.judge import Base, Contact, Crease, Regularity, doubtful, is_closed, model_size
+from semispline.solver.judge import Base, Contact, Crease, NoNormal, Regularity, doubtful, is_closed, model_size
 from semispline.solver.options import Continuity
 from semispline.solver.splines import SemiStructuredSurface, bounding_box
 
@@ -21,6 +21,8 @@ SHARP = 1e-3
 _NAMED = 5
 # So many sizes from the origin rounding is that of the distance rather than that of the blend.
 _FAR = 1e3
+# A span beside the edge below this fraction of the base makes its second derivatives round by 1e6 times as much.
+_NARROW = 1e-3
 
 
 def shape_warnings(regularity: Regularity, creases: tuple[Crease, ...]) -> tuple[str, ...]:
@@ -76,18 +78,47 @@ def seam_warning(a: Base, b: Base) -> tuple[str, ...]:
     return (f"contact curve {which} is closed, the other is open: the blend is open along the seam of {which}",)
 
 
-def remedy(surface: SemiStructuredSurface, shape: float) -> str:
-    """Say what makes rounding too large to tell how a blend meets its base, and what to try."""
+def remedy(base: Base, surface: SemiStructuredSurface, bare: list[NoNormal], shape: float | None) -> str:
+    """Say what makes rounding too large to tell how a blend meets its base, and what to try.
+
+    Parameters
+    ----------
+    base : Base
+    surface : SemiStructuredSurface
+        The blend.
+    bare : list of NoNormal
+        Where the base has no proper normal.
+    shape : float or None
+        The shape parameter; None where contact has none.
+    """
     distance = float(np.abs(bounding_box(surface)).max()) / model_size(surface)
     if distance > _FAR:
         return f"the origin is {distance:.0e} times the size of the blend away: work in coordinates nearer to it"
+    if bare:
+        return f"the base has {bare[0]}: choose another edge, or a base that is regular there"
+    across, end = base.edge
+    breaks = base.surface.breakpoints["uv".index(across)]
+    width = float(np.diff(breaks)[0 if end == "0" else -1])
+    if width < _NARROW * float(breaks[-1] - breaks[0]):
+        return (
+            f"knots_{across} of the base leave a span of {width:.1e} beside the edge, across which derivatives round: "
+            "remove these knots or take them further apart, or ask for a lower continuity"
+        )
+    if shape is None:
+        return "derivatives across the edge round: try bases of similar size, or a lower continuity"
     return (
         f"the blend is all but degenerate where it meets the base, its shape parameter is {shape:.1e}: try method "
-        "reduced with the default box, or bases whose knots are not so close"
+        "reduced with the default box, or a larger alpha"
     )
 
 
+def bare_places(contact: Contact, name: str) -> list[NoNormal]:
+    """Return where the base itself, "a" or "b", has no proper normal on a contact."""
+    return [place for place in contact.no_normal if place.surface == name]
+
+
 def contact_warnings(
+    bases: tuple[Base, Base],
     surface: SemiStructuredSurface,
     contacts: tuple[Contact, Contact],
     continuity: tuple[Continuity, Continuity],
@@ -95,9 +126,13 @@ def contact_warnings(
 ) -> tuple[str, ...]:
     """Return where contact is confirmed less than it seems: rounding hides a part, or a base has no normal there."""
     warnings = []
-    for name, contact, wanted, shape in zip(("a", "b"), contacts, continuity, (found.a, found.b), strict=True):
-        warnings += [f"contact {name}: {text}; {remedy(surface, shape)}" for text in doubtful(contact, wanted)]
-        if wanted in ("G1", "G2"):
-            bare = [place for place in contact.no_normal if place.surface == name]
+    for name, base, contact, wanted, shape in zip(
+        ("a", "b"), bases, contacts, continuity, (found.a, found.b), strict=True
+    ):
+        bare = bare_places(contact, name)
+        geometric = wanted in ("G1", "G2")
+        for text in doubtful(contact, wanted):
+            warnings.append(f"contact {name}: {text}; {remedy(base, surface, bare, shape if geometric else None)}")
+        if geometric:
             warnings += [f"base {name}: {place}; {wanted} says nothing there" for place in bare[:_NAMED]]
     return tuple(warnings)

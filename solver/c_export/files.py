@@ -24,10 +24,13 @@ from semispline.solver.blending import (
     state_problem,
 )
 from semispline.solver.c_export.readme import readme
+from semispline.solver.errors import ComputationError
 from semispline.solver.io import check_folder, check_outputs, read_problem, read_surfaces, split_spec, write_texts
 from semispline.solver.judge import Base
 
 NAME = "blend"
+# Errors of the control points of exported code, as a fraction of the size: of the energy that is the square.
+TRUSTED_SOLVE = 1e-6
 _NOTICE = """\
 /* Written by `semispline generate --c`. Do not edit: change the problem and generate again.
    How to call it: README.md. */
@@ -147,7 +150,13 @@ def _solve(stated: StatedProblem, a: Any, b: Any) -> Any:
     problem = stated.problem
     form, system = problem.form, problem.free_system
     # Asking for the points that Python finds refuses a system that cannot be trusted.
-    problem.control_points(*problem.start)
+    points_found = problem.control_points(*problem.start)
+    off = float(np.abs(system.solved_at_once(points_found) - points_found).max())
+    if not off <= TRUSTED_SOLVE:
+        raise ComputationError(
+            f"C code: one linear solve, without the refinement that blend has, is off by {off:.1e} of the size, "
+            f"expected at most {TRUSTED_SOLVE:.0e}; take knots further apart"
+        )
     n_rows = len(form.rows)
     points: list[Any] = [None] * n_rows
     for (side, order, spans), given, value in zip(problem.contacts, (a, b), problem.start, strict=True):

@@ -2,6 +2,7 @@ from .base import Base as Base
 from .base import local_origin as local_origin
 from .confirmed_meetings import Meeting as Meeting
 from .contact import Contact as Contact
+from .contact import NoNormal as NoNormal
 from .continuity import measure_contact as measure_contact
 from .continuity import model_size as model_size
 from .correspondence import Correspondence as Correspondence

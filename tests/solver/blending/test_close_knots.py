@@ -12,6 +12,7 @@ from semispline import (
     Base,
     BSplineCurve,
     BSplineSurface,
+    ComputationError,
     EdgeError,
     FoldError,
     OptionError,
@@ -22,6 +23,7 @@ from semispline import (
     read_surface,
 )
 from semispline.solver.blending.gram import EnergyForm, gram_matrix
+from semispline.solver.blending.smooth_rows import without_close_knots
 from semispline.solver.judge.creases import measure_creases
 from semispline.solver.splines import Basis, clamped, greville, uniform_knots
 from semispline.solver.splines.refinement import elevated_knots
@@ -198,6 +200,59 @@ def test_the_bound_holds_for_flat_bases(degree, more, digits, at, offset):
     assert abs(result.energy - KNOWN) <= result.energy_rounding + 1e-12
     if not rounding_warnings(result):
         assert result.energy == pytest.approx(KNOWN, rel=1e-3)
+
+
+# By hand: row 2 of C1, and rows 1, 2 of C2, are known as well; G2 is `KNOWN`. The bases are straight along v.
+STRAIGHT = {"C1": 8.0, "C2": 13.0, "G2": KNOWN}
+NARROW = {
+    "start": lambda g: [g],
+    "end": lambda g: [1 - g],
+    "both ends": lambda g: [g, 1 - g],
+    "middle": lambda g: 0.5 + g * np.arange(4),
+    "beside a crease": lambda g: [0.5, 0.5, 0.5, 0.5 + g],
+}
+
+
+@pytest.mark.parametrize("v_scale", ["paper", "unit"])
+@pytest.mark.parametrize("continuity", STRAIGHT)
+@pytest.mark.parametrize("place", NARROW)
+def test_a_narrow_span_hides_no_energy(place, continuity, v_scale):
+    """Narrow spans once hid all else from the solve: up to forty times the least energy, without a word."""
+    true = STRAIGHT[continuity]
+    for width in (1e-3, 1e-5, 1e-6, 1e-7):
+        result = blend(floor(3, NARROW[place](width)), WALL, continuity=continuity, v_scale=v_scale)
+        assert result.energy == pytest.approx(true, rel=1e-7), width
+        assert abs(result.energy - true) <= result.energy_rounding + 1e-12
+        assert not result.warnings
+        assert (result.proven_gap is not None) is (continuity == "G2")
+    for width in (3e-8, 1e-8, 5e-9, 3e-9, 1e-9, 3e-10, 1e-10, 1e-11):
+        try:
+            result = blend(floor(3, NARROW[place](width)), WALL, continuity=continuity, v_scale=v_scale)
+        except ComputationError:
+            continue
+        assert abs(result.energy - true) <= result.energy_rounding
+        assert rounding_warnings(result) or result.energy == pytest.approx(true, rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("degree", "inner", "kept"),
+    [
+        (3, [0.5], [0.5]),
+        # Close to an end none stays.
+        (3, [1e-6, 0.5, 1 - 1e-6], [0.5]),
+        # As many as keep the slope continuous.
+        (3, [0.5, 0.5 + 1e-6, 0.5 + 2e-6, 0.9], [0.5, 0.5 + 1e-6, 0.9]),
+        (2, [0.5, 0.5 + 1e-6], [0.5]),
+        # A crease stays one, wherever it is among its neighbours.
+        (3, [0.5, *[0.5 + 1e-6] * 3, 0.9], [*[0.5 + 1e-6] * 3, 0.9]),
+        # A thousandth of the longest span, 0.5, from both sides.
+        (2, [0.5, 0.5 + 4.9e-4], [0.5]),
+        (2, [0.5, 0.5 + 5.1e-4], [0.5, 0.5 + 5.1e-4]),
+    ],
+)
+def test_knots_that_stay_in_the_smooth_rows(degree, inner, kept):
+    found = without_close_knots(Basis(degree, clamped(inner, degree, 0.0, 1.0)))
+    np.testing.assert_array_equal(found.knots, clamped(kept, degree, 0.0, 1.0))
 
 
 def test_a_good_blend_has_no_such_warning():

@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 from helpers.bases import facing_pair
-from semispline import Base, BSplineSurface, FoldError, Regularity, blend
-from semispline.solver.blending.warnings import shape_warnings
-from semispline.solver.judge import Crease
+from semispline import Base, BSplineSurface, ContactError, FoldError, Regularity, blend
+from semispline.solver.blending.warnings import remedy, shape_warnings
+from semispline.solver.judge import Crease, NoNormal
+from semispline.solver.splines import greville
 
 LINE = [0, 0, 1, 1]
 FLOOR = Base(BSplineSurface(1, 1, LINE, LINE, [[[0, 0, 0], [0, 1, 0]], [[1, 0, 0], [1, 1, 0]]]), "u1")
@@ -77,3 +78,35 @@ def test_shape_parameters_that_are_not_searched_have_no_bound_to_meet():
         result = blend(FLOOR, WALL, **options)
         assert not result.active_bounds
         assert not [w for w in result.warnings if "bound" in w]
+
+
+def flat_with(knots_u, y=(0.0, 1.0)):
+    x = greville(np.array(knots_u, float), 3)
+    net = np.stack(np.broadcast_arrays(x[:, None], np.array(y), 0.0), axis=2)
+    along = [0.0] * len(y) + [1.0] * len(y)
+    return Base(BSplineSurface(3, len(y) - 1, knots_u, along, net), "u1")
+
+
+@pytest.mark.parametrize("continuity", ["C2", "G2"])
+def test_rounding_beside_the_edge_names_the_knots(continuity):
+    base = flat_with([0, 0, 0, 0, 1 - 1e-9, 1, 1, 1, 1])
+    with pytest.raises(ContactError, match=r"knots_u of the base leave a span of 1\.0e-09 beside the edge") as error:
+        blend(base, WALL, continuity=continuity)
+    assert "shape parameter" not in str(error.value)
+    other = Base(FLOOR.surface, "u1")
+    said = [remedy(one, blend(FLOOR, WALL).surface, [], shape) for one in (base, other) for shape in (None, 1e-8)]
+    assert ["beside the edge" in text for text in said] == [True, True, False, False]
+    assert ["shape parameter" in text for text in said] == [False, False, False, True]
+
+
+def test_a_base_without_a_normal_is_named():
+    bare = NoNormal("a", 0.0, (1.0, 0.0, 0.0), "the derivative along the edge vanishes", 1e-9)
+    said = remedy(FLOOR, blend(FLOOR, WALL).surface, [bare], 1.0)
+    assert "the base has no proper normal at parameter 0" in said
+    assert "shape parameter" not in said
+
+
+@pytest.mark.parametrize(("width", "named"), [(0.9e-3, True), (1.1e-3, False)])
+def test_a_span_is_narrow_below_a_thousandth(width, named):
+    base = flat_with([0, 0, 0, 0, 1 - width, 1, 1, 1, 1])
+    assert ("beside the edge" in remedy(base, blend(FLOOR, WALL).surface, [], None)) is named

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from helpers.bases import facing_pair
-from semispline import Base, BSplineSurface, blend, clamped_surface
+from semispline import Base, BSplineSurface, ComputationError, blend, clamped_surface
 from semispline.solver.blending.nlp import constrained_problem
 from semispline.solver.blending.pipeline import state_problem
 from semispline.solver.c_export.files import c_files, c_functions
@@ -229,3 +229,19 @@ def test_the_size_of_the_solve_is_linear():
     small, large = length(50), length(200)
     # A dense map would be 16 times as long.
     assert large < 4.5 * small
+
+
+@pytest.mark.parametrize(("width", "is_written"), [(1e-3, True), (1e-6, False)])
+def test_what_one_solve_cannot_find_is_not_written(width, is_written):
+    # Knots close to an end: `blend` refines, the code that is written cannot.
+    knots = [0, 0, 0, 0, width, 1, 1, 1, 1]
+    y = [np.mean(knots[i + 1 : i + 4]) for i in range(5)]
+    line = [0, 0, 1, 1]
+    a = BSplineSurface(1, 3, line, knots, [[[x, at, 0] for at in y] for x in (0, 1)])
+    b = BSplineSurface(1, 1, line, line, [[[2, at, z] for at in (0, 1)] for z in (1, 2)])
+    stated = state_problem(Base(a, "u1"), Base(b, "u0"), continuity="C2")
+    if is_written:
+        assert "blend.c" in c_files(stated)
+    else:
+        with pytest.raises(ComputationError, match="without the refinement that blend has"):
+            c_files(stated)
