@@ -20,8 +20,7 @@ from scipy.sparse.linalg import splu
 from semispline.solver.arrays import FloatArray
 from semispline.solver.blending.closing import periodic_points
 from semispline.solver.blending.gram import EnergyForm
-from semispline.solver.splines import Basis
-from semispline.solver.splines.refinement import refinement_matrix
+from semispline.solver.splines import Basis, refinement_matrix
 
 # Knots nearer than this fraction of the longest span are close: stiffer by 1e9, where a solve keeps half its digits.
 CLOSE_KNOTS = 1e-3

@@ -37,6 +37,7 @@ from .quadrature import sample as sample
 from .refinement import blossom_matrix as blossom_matrix
 from .refinement import clamp_knots as clamp_knots
 from .refinement import elevation_matrix as elevation_matrix
+from .refinement import refinement_matrix as refinement_matrix
 from .surfaces import BSplineCurve as BSplineCurve
 from .surfaces import BSplineSurface as BSplineSurface
 from .surfaces import SemiStructuredSurface as SemiStructuredSurface
