@@ -6,12 +6,12 @@ STAMP := $(VENV)/.installed
 LEFT_OUT := compiler or browser or slow
 # Rooms whose tests take about a minute on two cores, less the files that take ten seconds and more each; not derivations,
 # pictures, commands, and papers but their engine.
-LONG := io/test_io_foreign io/test_face_boundary io/test_io_cad judge/test_shape_of_any_surface judge/test_de_boor \
+LONG := io/test_io_foreign io/test_face_boundary io/test_io_cad judge/test_de_boor \
 	judge/test_meets proof/test_squares blending/test_reduced blending/test_real_bases blending/test_units \
 	blending/test_closed_pairs blending/test_blending blending/test_open_cascade_hundred
 QUICK := tests/test_documents.py tests/test_readme.py tests/test_rooms.py tests/papers/ledger \
 	$(addprefix tests/solver/,splines generated proof judge blending io c_export) \
-	$(patsubst %,--ignore=tests/solver/%.py,$(LONG)) --ignore=tests/papers/ledger/test_workers_of_verify.py
+	$(patsubst %,--ignore=tests/solver/%.py,$(LONG))
 
 .PHONY: report check quick test test-left-out test-kernels mutants lint types layers fresh bench clean
 

@@ -9,7 +9,11 @@ import pytest
 
 from helpers.processes import descendants, is_gone, processor_seconds, wait_until
 
-pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="asks Linux for the workers")
+# Processes of whole runs: .ci/run has the time.
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.skipif(sys.platform != "linux", reason="asks Linux for the workers"),
+]
 
 # Two groups of records, so two workers; a check holds the lock of the interpreter and never ends.
 CLAIMS = """

@@ -52,6 +52,7 @@ def test_a_damaged_file_is_refused_within_limits(name):
 
 
 @linux
+@pytest.mark.slow
 def test_limits_of_time_and_memory_are_told_apart(monkeypatch):
     path = CASES / "loop28.brep"
     size = path.stat().st_size

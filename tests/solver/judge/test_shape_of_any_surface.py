@@ -21,6 +21,9 @@ from semispline import (
     transform,
 )
 
+# A sweep over random surfaces: .ci/run has the time.
+pytestmark = pytest.mark.slow
+
 MEASURES = (
     measure_curvature_range,
     measure_exits,
