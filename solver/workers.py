@@ -182,8 +182,8 @@ def in_pool(
             for done in as_completed(waiting):
                 yield waiting[done], done.result()
         except BrokenProcessPool:
-            for worker in workers:
-                worker.join()
+            # Its own thread waits for the processes: two that wait at once may lose a status.
+            pool.shutdown(wait=True)
             # The pool ends the others with SIGTERM.
             statuses = [w.exitcode for w in workers if w.exitcode not in (None, 0, -signal.SIGTERM)]
             raise _error(statuses[0] or 0 if statuses else -signal.SIGTERM, "") from None
