@@ -410,4 +410,7 @@ def test_options_just_outside_of_their_range(options, message):
     ],
 )
 def test_options_just_inside_of_their_range(options):
-    state_problem(Base(flat((0, 1)), "u1"), Base(flat((2, 3), z=1.0), "u0"), **options)
+    problem = state_problem(Base(flat((0, 1)), "u1"), Base(flat((2, 3), z=1.0), "u0"), **options).problem
+    bounds = np.array(problem.bounds)
+    assert np.all((bounds > 0) & (bounds < np.inf))
+    assert np.all(bounds[:, 0] <= bounds[:, 1])
