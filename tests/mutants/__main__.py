@@ -16,7 +16,7 @@ FOLDER = ROOT / "build/mutants"
 ROOMS = ("solver/judge", "solver/blending", "solver/proof")
 SAMPLE = 300
 # Processor time of the tests that one mutant is shown.
-BOUND = 60.0
+BOUND = 30.0
 # Who takes five times as long as usual, and ten seconds more for imports, never ends.
 _TIMES, _MORE = 5.0, 10.0
 _FIRST = 8
