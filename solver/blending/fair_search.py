@@ -5,27 +5,39 @@ The least of all candidates and starts that were tried, never a proof: the measu
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import minimize
 
 from semispline.solver.arrays import FloatArray
-from semispline.solver.blending.fairness_table import FairnessTable, make_grid
+from semispline.solver.blending.fairness_grid import Across, Along, across, along, rough_across, rough_along
+from semispline.solver.blending.fairness_table import LEAST_COSINE, LOOPS, FairnessTable
 from semispline.solver.blending.problem import BlendProblem
+from semispline.solver.blending.projected import Point, descend, unbound
 from semispline.solver.errors import ComputationError
 
-# Cells of the scan in each direction; more where the window is wider.
+# Cells of the scan in each direction; more where the window is wider. It looks at half the nodes in u, where normals of
+# neighbours may turn further, and where there are many spans not at each of them.
 _CELLS, _WIDE_CELLS = 6, 8
+_SCAN_SPANS = 8
+_SCAN_COSINE = 0.0
 # What is flat or a cylinder has J = 0 for every alpha: then the nearest to the arc's is taken. J of a visible shape is
 # 10 to 1000.
 _TIE = 0.1
 _STARTS = 3
+# Gradients of log J at the end of a start, and of the search.
+_NEAR, _END = 0.02, 1e-4
+# Parts of the way back to a start, where a finer grid refuses.
+_BACK = (0.0, 0.02, 0.05, 0.1, 0.2, 0.4, 0.7, 1.0)
+# A grid of more nodes is not gone to without one between.
+_LARGE = 2000
+# Numbers in a block that is large for the C library.
+_WORKSPACE = 2**21
+# Longest steps of log alpha^2 and of p2 in its natural size; the distance of gradients whose difference is a Hessian.
+_STEP, _STEP_P2, _DIFFERENCE = 0.35, 2.0, 1e-4
 # J on twice as many nodes agrees to this fraction, or the search goes on there.
 _SETTLED = 0.01
-# A line search steps back from it.
-_NO_NUMBER = 1e3
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,11 +52,12 @@ class FairSolution:
     value : float
         J, on the finer grid.
     slope : float
-        Largest entry of the gradient of log J at the end, by logarithms of alpha^2, where no end of the window is met.
+        Largest entry of the gradient of log J at the end, by logarithms of alpha^2 and by p2 in natural sizes, where no
+        end of the window is met.
     tried : int
         Evaluations of J.
-    refused : int
-        Candidates of the scan that fold.
+    refused : dict
+        How many candidates were refused for each reason, "folds" and "loops".
     """
 
     a: float
@@ -53,53 +66,106 @@ class FairSolution:
     value: float
     slope: float
     tried: int
-    refused: int
+    refused: dict[str, int]
+
+
+@dataclass(frozen=True, eq=False)
+class Unknowns:
+    """The unknowns of a search: for each side logarithms of the end values of alpha^2, then p2, in natural sizes.
+
+    Attributes
+    ----------
+    exponents : ndarray, shape (K, n)
+        Of each monomial, 1 first, in alpha^2 and p2 of both sides.
+    logarithmic : ndarray of bool, shape (n,)
+    low, high : ndarray, shape (n,)
+        Bounds, equal where there is nothing to choose.
+    wanted : ndarray, shape (n,)
+        Where the tie-break draws.
+    """
+
+    exponents: FloatArray
+    logarithmic: NDArray[np.bool_]
+    low: FloatArray
+    high: FloatArray
+    wanted: FloatArray
+
+    def monomials(self, y: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return the monomials of candidates y, shape (B, n), and their derivatives: shapes (B, K) and (B, n, K)."""
+        x = np.where(self.logarithmic, np.exp(np.where(self.logarithmic, y, 0.0)), y)[:, None]
+        powers = x**self.exponents
+        values = powers.prod(axis=2)
+        slopes = np.empty((len(y), y.shape[1], values.shape[1]))
+        for k, logarithmic in enumerate(self.logarithmic.tolist()):
+            of = self.exponents[:, k]
+            if logarithmic:
+                slopes[:, k] = of * values
+            else:
+                rest = np.delete(powers, k, axis=2).prod(axis=2)
+                slopes[:, k] = of * x[:, :, k] ** np.maximum(of - 1, 0) * rest
+        return values, slopes
 
 
 class _Objective:
-    """log(J + tie-break) of y = (log alpha^2 / natural .., p2 / natural ..), with its gradient."""
+    """log(J + tie-break) on one grid, with its gradient; infinite where a candidate is refused."""
 
-    def __init__(self, problem: BlendProblem, table: FairnessTable, exponents: list[FloatArray]) -> None:
-        self.arc, self.table, self.exponents = problem.exits.arc, table, exponents
-        self.free = np.flatnonzero(problem.free)
+    def __init__(self, unknowns: Unknowns, table: FairnessTable) -> None:
+        self.unknowns, self.table = unknowns, table
         self.tried = 0
+        self.refused = {"folds": 0, "loops": 0}
+        # p2 is drawn nowhere, and neither is what is not free.
+        self._drawn = np.where(unknowns.logarithmic & (unknowns.low < unknowns.high), 1.0, 0.0)
 
-    def monomials(self, y: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return the monomials and their derivatives by y, shapes (K,) and (len(y), K)."""
-        values, slopes = [1.0], [np.zeros(len(y))]
-        for side, exponents in enumerate(self.exponents):
-            x, z = np.exp(y[2 * side]), y[2 * side + 1]
-            for i, j in exponents[1:].tolist():
-                value = x**i * z**j
-                slope = np.zeros(len(y))
-                slope[2 * side] = i * value
-                slope[2 * side + 1] = j * x**i * z ** (j - 1) if j else 0.0
-                values.append(value)
-                slopes.append(slope)
-        return np.array(values), np.array(slopes).T
+    def values(self, y: FloatArray) -> FloatArray:
+        """Return the values of candidates, shape (B, n)."""
+        measured = self.table.measure(self.unknowns.monomials(y)[0])
+        return self._counted(measured.values + self._tie(y), measured.refused)
 
-    def value(self, y: FloatArray) -> float:
-        """Return log(J + tie-break); infinite where the blend folds."""
-        self.tried += 1
-        total = self.table.value(self.monomials(y)[0]) + self._tie(y)
-        return float(np.log(total)) if np.isfinite(total) else np.inf
-
-    def _tie(self, y: FloatArray) -> float:
-        return _TIE * (1 + float(np.sum(self._off(y) ** 2)))
-
-    def _off(self, y: FloatArray) -> FloatArray:
-        off = np.zeros(len(y))
-        off[2 * self.free] = y[2 * self.free] - np.log(self.arc)
-        return off
+    def gradients(self, y: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return values and gradients of candidates, shape (B, n)."""
+        monomials, slopes = self.unknowns.monomials(y)
+        measured, by_monomials = self.table.with_gradient(monomials)
+        total = measured.values + self._tie(y)
+        by_y = np.einsum("bnk,bk->bn", slopes, by_monomials) + 2 * _TIE * self._drawn * self._off(y)
+        with np.errstate(invalid="ignore"):
+            return self._counted(total, measured.refused), by_y / total[:, None]
 
     def __call__(self, y: FloatArray) -> tuple[float, FloatArray]:
-        self.tried += 1
-        monomials, slopes = self.monomials(y)
-        value, gradient = self.table.measured(monomials)
-        total = value + self._tie(y)
-        if not np.isfinite(total):
-            return _NO_NUMBER, np.zeros(len(y))
-        return float(np.log(total)), np.asarray((slopes @ gradient + 2 * _TIE * self._off(y)) / total)
+        values, gradients = self.gradients(y[None])
+        return float(values[0]), gradients[0]
+
+    def point(self, y: FloatArray) -> Point:
+        """Return value, gradient and Hessian, the latter from differences of gradients."""
+        free = np.flatnonzero(self.unknowns.low < self.unknowns.high)
+        values, gradients = self.gradients(np.concatenate([y[None], y + _DIFFERENCE * np.eye(len(y))[free]]))
+        hessian = np.eye(len(y))
+        between = (gradients[1:] - gradients[0]) / _DIFFERENCE
+        hessian[np.ix_(free, free)] = (between[:, free] + between[:, free].T) / 2
+        return Point(y, float(values[0]), gradients[0], hessian)
+
+    def at(self, point: Point) -> Point:
+        """Return a place on another grid, with the model of the Hessian that is known."""
+        value, gradient = self(point.x)
+        return Point(point.x, value, gradient, point.hessian)
+
+    def j(self, y: FloatArray, value: float) -> float:
+        """Return J of a candidate whose value is known."""
+        return float(np.exp(value) - self._tie(y[None])[0])
+
+    def _off(self, y: FloatArray) -> FloatArray:
+        return y - self.unknowns.wanted
+
+    def _tie(self, y: FloatArray) -> FloatArray:
+        return np.asarray(_TIE * (1 + self._off(y) ** 2 @ self._drawn))
+
+    def _counted(self, total: FloatArray, refused: NDArray[np.int8]) -> FloatArray:
+        self.tried += len(total)
+        broken = (refused != 0) | ~np.isfinite(total)
+        loops = int(np.sum(refused == LOOPS))
+        self.refused["loops"] += loops
+        self.refused["folds"] += int(broken.sum()) - loops
+        with np.errstate(invalid="ignore"):
+            return np.where(broken, np.inf, np.log(np.where(broken, 1.0, total)))
 
 
 def solve_fair(problem: BlendProblem, *, search_p2: bool = True) -> FairSolution:
@@ -108,92 +174,156 @@ def solve_fair(problem: BlendProblem, *, search_p2: bool = True) -> FairSolution
     Raises
     ------
     ComputationError
-        Every candidate folds.
+        Every candidate is refused, or what is left cannot be measured.
     """
+    # Where a large block was freed, the C library keeps what is freed after it: else half of the time goes into pages.
+    np.empty(_WORKSPACE)
     layers, exponents = problem.shape_layers()
-    objective = _Objective(problem, FairnessTable(problem, layers, make_grid(problem)), exponents)
-    bounds = [
-        (float(np.log(low / unit)), float(np.log(high / unit)))
-        for (low, high), unit in zip(problem.bounds, problem.natural, strict=True)
-    ]
-    starts, refused = _scan(objective, bounds, _WIDE_CELLS if problem.exits.u_turn else _CELLS)
-    best = min((_descend(objective, start, bounds) for start in starts), key=lambda found: found[0])
-    second_order = [side.has_shape_parameter and side.order == 2 for side in (problem.a, problem.b)]
-    if search_p2 and any(second_order):
-        best = min(best, _descend(objective, best[1], bounds, second_order), key=lambda found: found[0])
-    fine = _Objective(problem, FairnessTable(problem, layers, make_grid(problem, 2)), exponents)
-    if abs(fine(best[1])[0] - best[0]) > _SETTLED or fine.table.folds(fine.monomials(best[1])[0]):
-        best = _descend(fine, best[1], bounds, second_order if search_p2 else None)
-    if fine.table.folds(fine.monomials(best[1])[0]):
+    unknowns = make_unknowns(problem, exponents, search_p2=search_p2)
+    u, rows = problem.form.u, problem.rows
+
+    def grid(in_u: Across, in_v: Along, least_cosine: float = LEAST_COSINE) -> _Objective:
+        return _Objective(unknowns, FairnessTable(problem, layers, in_u, in_v, least_cosine))
+
+    # The tips of U-turns are sharp.
+    rough = grid(across(u) if problem.exits.u_turn else rough_across(u), rough_along(rows), _SCAN_COSINE)
+    cells, values = _scan(rough, _WIDE_CELLS if problem.exits.u_turn else _CELLS)
+    refused = dict(rough.refused)
+    ends = [(start, _descended(rough, rough.point(start), _NEAR)) for start in _starts(cells, values)]
+    search, fine = grid(across(u), along(rows)), grid(across(u, 2), along(rows, 2))
+    between = grid(rough_across(u), along(rows)) if search.table.size > _LARGE else None
+    levels = [(level, tolerance) for level, tolerance in ((between, _NEAR), (search, _END)) if level is not None]
+    found = None
+    for start, end in sorted(ends, key=lambda pair: pair[1].value):
+        found = _settled(_refined(end, start, levels), start, fine)
+        if found is not None:
+            break
+    else:
+        # What the rough grid let pass is refused: what else does the finer one let pass?
+        kept = cells[np.isfinite(values.ravel())]
+        start = kept[np.argmin(search.values(kept))]
+        found = _settled(_refined(search.point(start), start, levels[-1:]), start, fine)
+    if found is None:
+        name = "folds" if fine.refused["folds"] + search.refused["folds"] else "runs a loop"
         raise ComputationError(
-            "the fairest blend folds: every alpha in the window does; try another edge, direction or a middle curve"
+            f"the fairest blend found {name}; try another edge, another direction (flip), or a middle curve"
         )
-    y = best[1]
-    gradient = fine(y)[1]
-    inside = [2 * s for s in (0, 1) if bounds[s][0] + 1e-9 < y[2 * s] < bounds[s][1] - 1e-9]
+    tried = sum(objective.tried for objective in (rough, between, search, fine) if objective is not None)
+    return _solution(problem, unknowns, found, fine, tried, refused)
+
+
+def make_unknowns(problem: BlendProblem, exponents: list[FloatArray], *, search_p2: bool = True) -> Unknowns:
+    """Return the unknowns of a problem; `exponents` are those of its layers, for each side a column per unknown."""
+    widths = [powers.shape[1] for powers in exponents]
+    table = np.zeros((1 + sum(len(powers) - 1 for powers in exponents), sum(widths)))
+    logarithmic = np.ones(sum(widths), dtype=bool)
+    low, high, wanted = (np.zeros(sum(widths)) for _ in range(3))
+    row = 1
+    for side, (powers, ends, unit) in enumerate(zip(exponents, problem.bounds, problem.natural, strict=True)):
+        first = sum(widths[:side])
+        part, p2 = slice(first, first + widths[side] - 1), first + widths[side] - 1
+        table[row : row + len(powers) - 1, first : p2 + 1] = powers[1:]
+        row += len(powers) - 1
+        low[part], high[part] = np.log(np.array(ends) / unit)
+        wanted[part] = np.log(problem.exits.arc)
+        logarithmic[p2] = False
+        # Where it is tied to alpha^2, and where contact needs none, no monomial has it.
+        if search_p2 and powers[:, -1].any():
+            most = problem.exits.arc / _second_weight(problem, side)
+            low[p2], high[p2] = -most, most
+    return Unknowns(table, logarithmic, low, high, wanted)
+
+
+def _second_weight(problem: BlendProblem, side: int) -> float:
+    """Return by how much p2 moves the third row of a contact, in |R_w|; that may be an arc's length."""
+    degree, (first, second) = problem.form.u.degree, problem.contacts[side][2][:2]
+    return first * second / (degree * (degree - 1))
+
+
+def _scan(objective: _Objective, cells: int) -> tuple[FloatArray, FloatArray]:
+    """Return the cells of the window, shape (B, n), and their values, one axis for each unknown that is scanned."""
+    unknowns = objective.unknowns
+    is_scanned = unknowns.logarithmic
+    axes = [
+        low + (high - low) * (np.arange(cells) + 0.5) / cells if low < high else np.array([low])
+        for low, high in zip(unknowns.low[is_scanned], unknowns.high[is_scanned], strict=True)
+    ]
+    grids = np.meshgrid(*axes, indexing="ij")
+    points = np.zeros((*grids[0].shape, len(unknowns.low)))
+    points[..., is_scanned] = np.stack(grids, axis=-1)
+    values = objective.values(points.reshape(-1, points.shape[-1])).reshape(points.shape[:-1])
+    if not np.isfinite(values).any():
+        reasons = " and ".join(
+            f"{count} run loops" if name == "loops" else f"{count} fold"
+            for name, count in objective.refused.items()
+            if count
+        )
+        raise ComputationError(
+            f"each of {values.size} candidates is refused: {reasons}; try another edge, another direction (flip), or a "
+            "middle curve"
+        )
+    return points.reshape(-1, points.shape[-1]), values
+
+
+def _starts(cells: FloatArray, values: FloatArray) -> FloatArray:
+    """Return the cells where the values have local minima, best first, shape (B, n)."""
+    padded = np.pad(values, 1, constant_values=np.inf)
+    around = np.lib.stride_tricks.sliding_window_view(padded, (3,) * values.ndim)
+    minima = np.flatnonzero((values <= around.min(axis=tuple(range(-values.ndim, 0)))) & np.isfinite(values))
+    # Ties keep the order of the cells: the search is the same at every run.
+    return np.asarray(cells[minima[np.argsort(values.ravel()[minima], kind="stable")][:_STARTS]])
+
+
+def _refined(end: Point, start: FloatArray, levels: list[tuple[_Objective, float]]) -> Point | None:
+    """Go on from the end of a start, from grid to grid; none where a grid refuses all the way back to the start."""
+    at: Point | None = end
+    for objective, tolerance in levels:
+        at = None if at is None else _admitted(objective, at, start)
+        at = None if at is None else _descended(objective, at, tolerance)
+    return at
+
+
+def _settled(found: Point | None, start: FloatArray, fine: _Objective) -> Point | None:
+    """Return what was found with its value on the finer grid, on which the search goes on where the values differ."""
+    if found is None:
+        return None
+    value = float(fine.values(found.x[None])[0])
+    if abs(value - found.value) <= _SETTLED:
+        return replace(found, value=value)
+    at = _admitted(fine, found, start)
+    return None if at is None else _descended(fine, at, _END)
+
+
+def _admitted(objective: _Objective, point: Point, start: FloatArray) -> Point | None:
+    """Return a place on another grid, the model of the Hessian kept; back towards the start where it is refused."""
+    for part in _BACK:
+        at = objective.at(replace(point, x=point.x + part * (start - point.x)))
+        if np.isfinite(at.value):
+            return at
+    return None
+
+
+def _descended(objective: _Objective, start: Point, tolerance: float) -> Point:
+    unknowns = objective.unknowns
+    longest = np.where(unknowns.logarithmic, _STEP, _STEP_P2)
+    return descend(objective, start, unknowns.low, unknowns.high, longest, tolerance)
+
+
+def _solution(
+    problem: BlendProblem, unknowns: Unknowns, found: Point, fine: _Objective, tried: int, refused: dict[str, int]
+) -> FairSolution:
+    natural = problem.natural
     a, b = (
-        min(max(float(np.exp(x)) * unit, low), high)
-        for x, unit, (low, high) in zip((y[0], y[2]), problem.natural, problem.bounds, strict=True)
+        min(max(float(np.exp(found.x[k])) * unit, low), high)
+        for k, unit, (low, high) in zip((0, 2), natural, problem.bounds, strict=True)
     )
+    free = unbound(found.x, found.gradient, unknowns.low, unknowns.high)
     return FairSolution(
         a,
         b,
-        (float(y[1]) * problem.natural[0], float(y[3]) * problem.natural[1]),
-        fine.table.value(fine.monomials(y)[0]),
-        float(np.abs(gradient[inside]).max(initial=0.0)),
-        objective.tried + fine.tried,
+        (float(found.x[1]) * natural[0], float(found.x[3]) * natural[1]),
+        max(0.0, fine.j(found.x, found.value)),
+        float(np.abs(found.gradient[free]).max(initial=0.0)),
+        tried,
         refused,
     )
-
-
-def _scan(objective: _Objective, bounds: list[tuple[float, float]], cells: int) -> tuple[list[FloatArray], int]:
-    """Return where J has local minima over the cells of the window, best first, and how many cells were refused."""
-    axes = [
-        low + (high - low) * (np.arange(cells) + 0.5) / cells if low < high else np.array([low]) for low, high in bounds
-    ]
-    values = np.full((len(axes[0]), len(axes[1])), np.inf)
-    points: dict[tuple[int, int], FloatArray] = {}
-    for i, x in enumerate(axes[0].tolist()):
-        for j, y in enumerate(axes[1].tolist()):
-            points[i, j] = np.array([x, 0.0, y, 0.0])
-            values[i, j] = objective.value(points[i, j])
-    refused = int(np.isinf(values).sum())
-    if refused == values.size:
-        raise ComputationError(
-            f"each of {refused} candidates folds; try another edge, another direction (flip), or a middle curve"
-        )
-    minima = [at for at in points if np.isfinite(values[at]) and values[at] <= _around(values, at)]
-    # Ties keep the order of the cells: the search is the same at every run.
-    return [points[at] for at in sorted(minima, key=lambda at: float(values[at]))[:_STARTS]], refused
-
-
-def _around(values: FloatArray, at: tuple[int, int]) -> float:
-    i, j = at
-    return float(values[max(i - 1, 0) : i + 2, max(j - 1, 0) : j + 2].min())
-
-
-def _descend(
-    objective: _Objective,
-    start: FloatArray,
-    bounds: list[tuple[float, float]],
-    with_p2: list[bool] | None = None,
-) -> tuple[float, FloatArray]:
-    """Return the least value found from a start, and where."""
-    unknown: NDArray[np.intp] = np.array(
-        [2 * s for s in (0, 1) if bounds[s][0] < bounds[s][1]]
-        + ([2 * s + 1 for s in (0, 1) if with_p2[s]] if with_p2 else []),
-        dtype=np.intp,
-    )
-
-    def function(z: FloatArray) -> tuple[float, FloatArray]:
-        y = start.copy()
-        y[unknown] = z
-        value, gradient = objective(y)
-        return value, gradient[unknown]
-
-    limits = [bounds[k // 2] if k % 2 == 0 else (None, None) for k in unknown.tolist()]
-    found = minimize(function, start[unknown], jac=True, method="L-BFGS-B", bounds=limits, options={"gtol": 1e-6})
-    end = start.copy()
-    end[unknown] = found.x
-    first = objective(start)[0]
-    return (float(found.fun), end) if found.fun <= first else (first, start)
