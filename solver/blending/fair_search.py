@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from semispline.solver.arrays import FloatArray
-from semispline.solver.blending.fairness_grid import Across, Along, across, along, rough_across, rough_along
+from semispline.solver.blending.fairness_grid import NODES_U, ROUGH_U, Across, Along, across, along, rough_along
 from semispline.solver.blending.fairness_table import LEAST_COSINE, LOOPS, FairnessTable
 from semispline.solver.blending.problem import BlendProblem
 from semispline.solver.blending.projected import Point, descend, unbound
@@ -168,7 +168,7 @@ class _Objective:
             return np.where(broken, np.inf, np.log(np.where(broken, 1.0, total)))
 
 
-def solve_fair(problem: BlendProblem, *, search_p2: bool = True) -> FairSolution:
+def solve_fair(problem: BlendProblem) -> FairSolution:
     """Find the shape parameters of the fairest blend.
 
     Raises
@@ -179,19 +179,19 @@ def solve_fair(problem: BlendProblem, *, search_p2: bool = True) -> FairSolution
     # Where a large block was freed, the C library keeps what is freed after it: else half of the time goes into pages.
     np.empty(_WORKSPACE)
     layers, exponents = problem.shape_layers()
-    unknowns = make_unknowns(problem, exponents, search_p2=search_p2)
+    unknowns = make_unknowns(problem, exponents)
     u, rows = problem.form.u, problem.rows
 
     def grid(in_u: Across, in_v: Along, least_cosine: float = LEAST_COSINE) -> _Objective:
         return _Objective(unknowns, FairnessTable(problem, layers, in_u, in_v, least_cosine))
 
     # The tips of U-turns are sharp.
-    rough = grid(across(u) if problem.exits.u_turn else rough_across(u), rough_along(rows), _SCAN_COSINE)
+    rough = grid(across(u) if problem.exits.u_turn else across(u, ROUGH_U), rough_along(rows), _SCAN_COSINE)
     cells, values = _scan(rough, _WIDE_CELLS if problem.exits.u_turn else _CELLS)
     refused = dict(rough.refused)
     ends = [(start, _descended(rough, rough.point(start), _NEAR)) for start in _starts(cells, values)]
-    search, fine = grid(across(u), along(rows)), grid(across(u, 2), along(rows, 2))
-    between = grid(rough_across(u), along(rows)) if search.table.size > _LARGE else None
+    search, fine = grid(across(u), along(rows)), grid(across(u, 2 * NODES_U), along(rows, 2))
+    between = grid(across(u, ROUGH_U), along(rows)) if search.table.size > _LARGE else None
     levels = [(level, tolerance) for level, tolerance in ((between, _NEAR), (search, _END)) if level is not None]
     found = None
     for start, end in sorted(ends, key=lambda pair: pair[1].value):
@@ -212,7 +212,7 @@ def solve_fair(problem: BlendProblem, *, search_p2: bool = True) -> FairSolution
     return _solution(problem, unknowns, found, fine, tried, refused)
 
 
-def make_unknowns(problem: BlendProblem, exponents: list[FloatArray], *, search_p2: bool = True) -> Unknowns:
+def make_unknowns(problem: BlendProblem, exponents: list[FloatArray]) -> Unknowns:
     """Return the unknowns of a problem; `exponents` are those of its layers, for each side a column per unknown."""
     widths = [powers.shape[1] for powers in exponents]
     table = np.zeros((1 + sum(len(powers) - 1 for powers in exponents), sum(widths)))
@@ -228,7 +228,7 @@ def make_unknowns(problem: BlendProblem, exponents: list[FloatArray], *, search_
         wanted[part] = np.log(problem.exits.arc)
         logarithmic[p2] = False
         # Where it is tied to alpha^2, and where contact needs none, no monomial has it.
-        if search_p2 and powers[:, -1].any():
+        if powers[:, -1].any():
             most = problem.exits.arc / _second_weight(problem, side)
             low[p2], high[p2] = -most, most
     return Unknowns(table, logarithmic, low, high, wanted)
@@ -312,16 +312,19 @@ def _descended(objective: _Objective, start: Point, tolerance: float) -> Point:
 def _solution(
     problem: BlendProblem, unknowns: Unknowns, found: Point, fine: _Objective, tried: int, refused: dict[str, int]
 ) -> FairSolution:
-    natural = problem.natural
     a, b = (
         min(max(float(np.exp(found.x[k])) * unit, low), high)
-        for k, unit, (low, high) in zip((0, 2), natural, problem.bounds, strict=True)
+        for k, unit, (low, high) in zip((0, 2), problem.natural, problem.bounds, strict=True)
+    )
+    p2_a, p2_b = (
+        float(found.x[k]) * unit if second.free else second.at(alpha)
+        for k, unit, second, alpha in zip((1, 3), problem.natural, problem.p2, (a, b), strict=True)
     )
     free = unbound(found.x, found.gradient, unknowns.low, unknowns.high)
     return FairSolution(
         a,
         b,
-        (float(found.x[1]) * natural[0], float(found.x[3]) * natural[1]),
+        (p2_a, p2_b),
         max(0.0, fine.j(found.x, found.value)),
         float(np.abs(found.gradient[free]).max(initial=0.0)),
         tried,

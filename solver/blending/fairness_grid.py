@@ -21,8 +21,8 @@ from semispline.solver.splines import (
 
 # Nodes in u altogether, and in v on each span and altogether, at least.
 NODES_U, NODES_V, LEAST_V = 40, 2, 10
-# For a rough look: in u altogether, and spans in v at most, whatever the knots, with nodes on each.
-_ROUGH_U, _ROUGH_SPANS, _ROUGH_LEAST_V = 20, 6, 6
+# For a rough look: in u altogether, and in v spans at most, whatever the knots, and nodes at least.
+ROUGH_U, _ROUGH_SPANS, _ROUGH_LEAST_V = NODES_U // 2, 6, 6
 # Orders of derivatives by u that go with each order by v, and the highest of either.
 ORDERS_U = ((1, 2, 3), (0, 1, 2), (0, 1), (0,))
 HIGHEST = 3
@@ -89,14 +89,9 @@ def _lines(rows: tuple[Basis, ...]) -> FloatArray:
     return np.unique(np.concatenate(found))
 
 
-def across(u: Basis, times: int = 1) -> Across:
-    """Return the nodes in u, `times` as many; problems of one size share them."""
-    return _across(u.degree, u.knots.tobytes(), NODES_U * times)
-
-
-def rough_across(u: Basis) -> Across:
-    """Return few nodes in u, for a rough look."""
-    return _across(u.degree, u.knots.tobytes(), _ROUGH_U)
+def across(u: Basis, nodes: int = NODES_U) -> Across:
+    """Return Gauss nodes in u, at least so many altogether; problems of one size share them."""
+    return _across(u.degree, u.knots.tobytes(), nodes)
 
 
 @lru_cache(maxsize=64)

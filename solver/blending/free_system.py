@@ -98,6 +98,19 @@ class FreeSystem:
             )
         return filled
 
+    def excess(self, points: FloatArray) -> float | None:
+        """Bound how much more energy p, shape (N, d), has than the least for its prescribed rows, as a fraction.
+
+        The matrix is positive definite (its factorisation showed that), so that the excess is half of gradient times
+        step. None where no row is free.
+        """
+        if self.size == 0:
+            return None
+        gradient = self.form.gradient(points)
+        step = self._with_free(np.zeros_like(points), self._correction(gradient))
+        least = max(float(np.sum(points * gradient)), np.finfo(float).tiny)
+        return abs(float(np.sum(step[self.free] * gradient[self.free]))) / least
+
     def solved_at_once(self, points: FloatArray) -> FloatArray:
         """Fill the free rows of p, shape (N, d), by one solve without refinement, as exported code does."""
         return points if self.size == 0 else self._with_free(points, self.factor.solve(self._right(points)))

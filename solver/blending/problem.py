@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from math import comb
+from typing import Any, cast
 
 import numpy as np
 
@@ -13,10 +15,10 @@ from semispline.solver.blending.exits import Exits, measure_exits
 from semispline.solver.blending.facing import VANISHING, measure_facing
 from semispline.solver.blending.free_system import FreeSystem
 from semispline.solver.blending.gram import EnergyForm
-from semispline.solver.blending.layout import ROWS_PER_SIDE, blend_u_basis, middle_bases
+from semispline.solver.blending.layout import blend_u_basis, middle_bases
 from semispline.solver.blending.sides import Side
 from semispline.solver.errors import EdgeError
-from semispline.solver.options import BlendOptions, Shape
+from semispline.solver.options import Alpha, BlendOptions
 from semispline.solver.splines import (
     Basis,
     affine_knots,
@@ -25,6 +27,31 @@ from semispline.solver.splines import (
 # Admissible alpha^2: for least energy in units of its natural size; for the fairest shape in units of an arc's, wider
 # where exits and chords disagree (a U-turn).
 ENERGY_BOX, WINDOW, WIDE_WINDOW = (1 / 8, 8.0), (1 / 4, 4.0), (1 / 4, 16.0)
+# For G3 and G4; above it lie loops that are fair.
+LOW_WINDOW = (1 / 8, 2.0)
+# p2 = factor * p1 for G3 and G4: it lowers J by a quarter and by two fifths against zero.
+P2_FACTORS = {3: 3.0, 4: 4.0}
+
+
+@dataclass(frozen=True)
+class SecondParameter:
+    """What p2 of a side may be: a number plus a multiple of alpha^2, or searched.
+
+    Attributes
+    ----------
+    value, per_a : float
+        p2 = value + per_a * alpha^2.
+    free : bool
+        Searched from there on.
+    """
+
+    value: float = 0.0
+    per_a: float = 0.0
+    free: bool = False
+
+    def at(self, a: float) -> float:
+        """Return p2 for alpha^2, where it is not searched."""
+        return self.value + self.per_a * a
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,6 +73,7 @@ class BlendProblem:
     seam_order : int
         How many derivatives both bases keep across the seam of closed contact curves; -1 where these are open.
     exits : Exits
+    p2 : (SecondParameter, SecondParameter)
     """
 
     form: EnergyForm
@@ -56,6 +84,7 @@ class BlendProblem:
     bounds: tuple[tuple[float, float], tuple[float, float]]
     seam_order: int
     exits: Exits
+    p2: tuple[SecondParameter, SecondParameter] = (SecondParameter(), SecondParameter())
 
     @property
     def free(self) -> tuple[bool, bool]:
@@ -70,14 +99,16 @@ class BlendProblem:
         return a, b
 
     @property
-    def contacts(self) -> tuple[tuple[Side, range, tuple[float, float]], ...]:
-        """For each contact the side, the rows counted from it, and the distances of the two nearest knots of U."""
+    def contacts(self) -> tuple[tuple[Side, range, tuple[float, ...]], ...]:
+        """For each contact the side, the rows counted from it, and the distances of the nearest knots of U."""
         U, p = self.form.u.knots, self.form.u.degree
-        from_end = U[-1] - U[::-1]
         m = len(self.form.rows) - 1
-        return (
-            (self.a, range(m + 1), (float(U[p + 1]), float(U[p + 2]))),
-            (self.b, range(m, -1, -1), (float(from_end[p + 1]), float(from_end[p + 2]))),
+        return tuple(
+            (side, rows, tuple(distances[p + 1 : p + 1 + max(2, side.order)].tolist()))
+            for side, rows, distances in (
+                (self.a, range(m + 1), U - U[0]),
+                (self.b, range(m, -1, -1), U[-1] - U[::-1]),
+            )
         )
 
     @property
@@ -93,7 +124,7 @@ class BlendProblem:
         if self.seam_order < 0:
             return -1
         basis = self.form.rows[row]
-        middle = ROWS_PER_SIDE <= row < len(self.rows) - ROWS_PER_SIDE
+        middle = self.a.count <= row < len(self.rows) - self.b.count
         return min(basis.degree - 1 if middle else self.seam_order, basis.size // 2 - 1)
 
     @cached_property
@@ -101,10 +132,11 @@ class BlendProblem:
         """What has to be solved for the free rows."""
         return FreeSystem(self.form, self.free_rows, [self.seam_order_of(i) for i in self.free_rows])
 
-    def control_points(self, a: float, b: float, p2: tuple[float, float] = (0.0, 0.0)) -> FloatArray:
+    def control_points(self, a: float, b: float, p2: tuple[float, float] | None = None) -> FloatArray:
         """Return p for alpha^2, beta^2 and p2, shape (N, 3): one linear solve for the free rows, of least energy."""
         points = np.zeros((self.form.offsets[-1], 3))
-        for (side, rows, spans), value, second in zip(self.contacts, (a, b), p2, strict=True):
+        seconds = p2 or (self.p2[0].at(a), self.p2[1].at(b))
+        for (side, rows, spans), value, second in zip(self.contacts, (a, b), seconds, strict=True):
             prescribed_rows = side.contact_rows(value, self.form.u.degree, spans, second)
             for row, prescribed in zip(rows, prescribed_rows, strict=False):
                 points[self.form.offsets[row] : self.form.offsets[row + 1]] = prescribed
@@ -118,12 +150,14 @@ class BlendProblem:
         offsets, degree = self.form.offsets, self.form.u.degree
         layers = [np.zeros((offsets[-1], 3))]
         exponents = []
-        for (side, rows, spans), unit, is_free, fixed in zip(
-            self.contacts, self.natural, self.free, self.start, strict=True
+        for (side, rows, spans), unit, is_free, fixed, second in zip(
+            self.contacts, self.natural, self.free, self.start, self.p2, strict=True
         ):
-            powers, monomials = side.monomial_rows(degree, spans)
-            if not is_free:
-                powers, monomials = np.zeros((1, 2)), side.contact_rows(fixed, degree, spans)[None]
+            if is_free:
+                powers, monomials = _without_p2(*side.monomial_rows(degree, spans), second)
+            else:
+                powers = np.zeros((1, 2))
+                monomials = side.contact_rows(fixed, degree, spans, second.at(fixed))[None]
             exponents.append(powers)
             for k, (power, monomial) in enumerate(zip(powers, monomials, strict=True)):
                 if k:
@@ -144,6 +178,21 @@ class BlendProblem:
         return self.free_system.completed(points)
 
 
+def _without_p2(exponents: FloatArray, monomials: FloatArray, second: SecondParameter) -> tuple[FloatArray, FloatArray]:
+    """Put what p2 is into monomials a^i p2^j; where it is searched they stay as they are."""
+    if second.free:
+        return exponents, monomials
+    found: dict[int, FloatArray] = {}
+    for (i, j), rows in zip(exponents.astype(int).tolist(), monomials, strict=True):
+        # (value + per_a a)^j
+        for k in range(j + 1):
+            factor = comb(j, k) * second.value ** (j - k) * second.per_a**k
+            if factor or i + k == 0:
+                found[i + k] = found.get(i + k, np.zeros_like(rows)) + factor * rows
+    powers = sorted(found)
+    return np.array([[i, 0.0] for i in powers]), np.stack([found[i] for i in powers])
+
+
 def make_problem(a: Side, b: Side, options: BlendOptions) -> BlendProblem:
     """Lay out the knots of the blend and its admissible shape parameters.
 
@@ -154,13 +203,16 @@ def make_problem(a: Side, b: Side, options: BlendOptions) -> BlendProblem:
     EdgeError
         The contact curves coincide, one of them is a point, or a cross derivative that contact needs vanishes.
     """
-    u = blend_u_basis(options.degree_u, options.middle_curves, options.u_knots)
+    options = options.decided()
+    middle_curves = cast("int", options.middle_curves)
+    u = blend_u_basis(cast("int", options.degree_u), middle_curves, options.u_knots, (a.order, b.order))
     orders = [seam_order(side.along, side.rows[: side.order + 1], side.largest) for side in (a, b)]
     closed = min(orders)
-    middle = middle_bases(a.along, b.along, options.middle_curves, options.middle_knots, closed=closed >= 0)
-    if closed >= 0 and options.middle_knots is None:
+    given = cast("Any", options.middle_knots)
+    middle = middle_bases(a.along, b.along, middle_curves, given, closed=closed >= 0)
+    if closed >= 0 and isinstance(given, str):
         middle = [with_least_size(basis, 2 * basis.degree) for basis in middle]
-    rows = ((a.along,) * ROWS_PER_SIDE) + tuple(middle) + ((b.along,) * ROWS_PER_SIDE)
+    rows = ((a.along,) * a.count) + tuple(middle) + ((b.along,) * b.count)
     means = measure_facing(a, b)
     natural_a, natural_b = (
         means.gap / speed if _checked_speed(side, speed, name) else 1.0
@@ -168,26 +220,41 @@ def make_problem(a: Side, b: Side, options: BlendOptions) -> BlendProblem:
     )
     exits = measure_exits(a, b)
     bounds_a, bounds_b = (
-        (1.0, 1.0) if not side.has_shape_parameter else _bounds(size, alpha, options.box, exits)
+        (1.0, 1.0) if not side.has_shape_parameter else _bounds(size, side.order, alpha, options.box, exits)
         for side, size, alpha in zip((a, b), (natural_a, natural_b), options.alphas, strict=True)
     )
+    p2_a, p2_b = (_second(side, i, options) for i, side in enumerate((a, b)))
     form = EnergyForm(u, rows)
     if options.v_scale != "paper":
         length = 1.0 if options.v_scale == "unit" else sum(means.lengths) / 2 / means.gap
         form = EnergyForm(u, tuple(Basis(row.degree, affine_knots(row.knots, 0.0, length)) for row in rows))
-    return BlendProblem(form, rows, a, b, (natural_a, natural_b), (bounds_a, bounds_b), closed, exits)
+    return BlendProblem(form, rows, a, b, (natural_a, natural_b), (bounds_a, bounds_b), closed, exits, (p2_a, p2_b))
 
 
-def _bounds(natural: float, alpha: Shape, box: tuple[float, float] | None, exits: Exits) -> tuple[float, float]:
+def _bounds(
+    natural: float, order: int, alpha: Alpha | None, box: tuple[float, float] | None, exits: Exits
+) -> tuple[float, float]:
     """Return the admissible ends of alpha^2; they are equal where it is given."""
     if alpha == "energy":
         low, high = box or ENERGY_BOX
         return natural * low, natural * high
     if alpha == "fair":
-        low, high = box or (WIDE_WINDOW if exits.u_turn else WINDOW)
+        low, high = box or (LOW_WINDOW if order > 2 else WIDE_WINDOW if exits.u_turn else WINDOW)
         return natural * exits.arc * low, natural * exits.arc * high
-    fixed = natural if alpha == "natural" else float(alpha) ** 2
+    fixed = natural if alpha == "natural" else float(cast("float", alpha)) ** 2
     return fixed, fixed
+
+
+def _second(side: Side, index: int, options: BlendOptions) -> SecondParameter:
+    """Return what p2 of a side may be: searched for G2 with a searched alpha, in step with p1 for G3 and G4."""
+    if not side.has_shape_parameter or side.order < 2 or options.p2 == "zero":
+        return SecondParameter()
+    if options.p2 != "auto":
+        return SecondParameter(value=float(options.p2[index]))
+    if side.order == 2:
+        return SecondParameter(free=options.alphas[index] == "fair")
+    # p1 = -a.
+    return SecondParameter(per_a=-P2_FACTORS[side.order])
 
 
 def _checked_speed(side: Side, speed: float, name: str) -> float:

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from semispline.solver.arrays import FloatArray
 
@@ -73,7 +74,7 @@ def descend(
     return at
 
 
-def unbound(x: FloatArray, gradient: FloatArray, low: FloatArray, high: FloatArray) -> FloatArray:
+def unbound(x: FloatArray, gradient: FloatArray, low: FloatArray, high: FloatArray) -> NDArray[np.intp]:
     """Return the unknowns that no bound holds back from going down."""
     held = (low >= high) | ((x <= low) & (gradient > 0)) | ((x >= high) & (gradient < 0))
     return np.flatnonzero(~held)

@@ -21,7 +21,8 @@ from semispline import (
     transform,
 )
 from semispline.solver.blending.fair_search import solve_fair
-from semispline.solver.blending.fairness_table import FairnessTable, make_grid
+from semispline.solver.blending.fairness_grid import NODES_U, across, along
+from semispline.solver.blending.fairness_table import FairnessTable
 from semispline.solver.blending.pipeline import state_problem
 
 CASES = Path(__file__).parents[2] / "cases"
@@ -48,10 +49,17 @@ def sheets(**more):
     return Base(first, "u0"), Base(sheet(1.2, 0.6, 0.4, bend=0.2, inner=(0.4,)), "u0")
 
 
-def tables(pair, times=1, **options):
+def tables(pair, times=1, nodes_u=NODES_U, **options):
+    """The problem of a pair and its table; monomials are 1, p2, a, a^2 of side a; p2, b, b^2 of side b."""
     problem = state_problem(*pair, **(QUINTIC | {"alpha": "fair"} | options)).problem
     layers, exponents = problem.shape_layers()
-    return problem, FairnessTable(problem, layers, make_grid(problem, times)), exponents
+    grid = across(problem.form.u, times * nodes_u), along(problem.rows, times)
+    return problem, FairnessTable(problem, layers, *grid), exponents
+
+
+def j(table, monomials):
+    """J of one candidate."""
+    return float(table.measure(np.array(monomials)[None]).values[0])
 
 
 @pytest.mark.parametrize("inner", [(), (0.5, 0.5)], ids=["smooth", "only C1 at v = 1/2"])
