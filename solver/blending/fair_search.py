@@ -189,13 +189,16 @@ def solve_fair(problem: BlendProblem) -> FairSolution:
     rough = grid(across(u) if problem.exits.u_turn else across(u, ROUGH_U), rough_along(rows), _SCAN_COSINE)
     cells, values = _scan(rough, _WIDE_CELLS if problem.exits.u_turn else _CELLS)
     refused = dict(rough.refused)
-    ends = [(start, _descended(rough, rough.point(start), _NEAR)) for start in _starts(cells, values)]
+    starts = _starts(cells, values)
+    ends = [_descended(rough, rough.point(start), _NEAR) for start in starts]
     search, fine = grid(across(u), along(rows)), grid(across(u, 2 * NODES_U), along(rows, 2))
     between = grid(across(u, ROUGH_U), along(rows)) if search.table.size > _LARGE else None
     levels = [(level, tolerance) for level, tolerance in ((between, _NEAR), (search, _END)) if level is not None]
     found = None
-    for start, end in sorted(ends, key=lambda pair: pair[1].value):
-        found = _settled(_refined(end, start, levels), start, fine)
+    # A rough grid may be blind to what makes a candidate worse than another: the finer one says which is best.
+    order = np.argsort(search.values(np.stack([end.x for end in ends])), kind="stable") if len(ends) > 1 else [0]
+    for k in order:
+        found = _settled(_refined(ends[k], starts[k], levels), starts[k], fine)
         if found is not None:
             break
     else:
