@@ -23,6 +23,8 @@ from semispline.solver.splines import (
 NODES_U, NODES_V, LEAST_V = 40, 2, 10
 # For a rough look: in u altogether, and in v spans at most, whatever the knots, and nodes at least.
 ROUGH_U, _ROUGH_SPANS, _ROUGH_LEAST_V = NODES_U // 2, 6, 6
+# Contact of third and fourth order leaves less room between, where the surface then bends.
+HIGH_ORDER_NODES_U = 48
 # Orders of derivatives by u that go with each order by v, and the highest of either.
 ORDERS_U = ((1, 2, 3), (0, 1, 2), (0, 1), (0,))
 HIGHEST = 3
@@ -89,7 +91,7 @@ def _lines(rows: tuple[Basis, ...]) -> FloatArray:
     return np.unique(np.concatenate(found))
 
 
-def across(u: Basis, nodes: int = NODES_U) -> Across:
+def across(u: Basis, nodes: int) -> Across:
     """Return Gauss nodes in u, at least so many altogether; problems of one size share them."""
     return _across(u.degree, u.knots.tobytes(), nodes)
 

@@ -65,10 +65,7 @@ class FairnessTable:
         self.least_cosine = least_cosine
         offsets = problem.form.offsets
         count, rows = len(layers), len(problem.rows)
-        points = [
-            layers[:, low:high].transpose(0, 2, 1).reshape(3 * count, -1)
-            for low, high in pairwise(offsets)
-        ]
+        points = [layers[:, low:high].transpose(0, 2, 1).reshape(3 * count, -1) for low, high in pairwise(offsets)]
         table = derivatives_along(points, problem.rows, along)
         self._shape = 3, rows, table.shape[-1]
         # Shape (K, 4, 3, rows, columns), flat but for the first.
