@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from semispline import Base, BSplineCurve, BSplineSurface, blend, reverse_u, revolve_polynomial, transform
-from semispline.solver.blending import state_problem
+from helpers.papers_set import blend, state_problem
+from semispline import Base, BSplineCurve, BSplineSurface, reverse_u, revolve_polynomial, transform
 from semispline.solver.judge import tied_directions
 
 LINE = [0.0, 0.0, 1.0, 1.0]

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from helpers.bases import facing_pair, moved, patch, tube
+from helpers.papers_set import blend, state_problem
 from semispline import (
     Base,
     BSplineCurve,
@@ -15,11 +16,9 @@ from semispline import (
     EdgeError,
     OptionError,
     SemiStructuredSurface,
-    blend,
 )
 from semispline.solver.blending import nlp, reduced
 from semispline.solver.blending.closing import seam_order, with_least_size
-from semispline.solver.blending.pipeline import state_problem
 from semispline.solver.blending.warnings import shape_warnings
 from semispline.solver.judge import measure_creases, measure_regularity
 from semispline.solver.judge.correspondence import Correspondence, correspond, is_closed, snapped_seam

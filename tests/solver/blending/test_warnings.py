@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from helpers.bases import facing_pair
-from semispline import Base, BSplineSurface, ContactError, FoldError, Regularity, blend
+from helpers.papers_set import blend
+from semispline import Base, BSplineSurface, ContactError, FoldError, Regularity
 from semispline.solver.blending.warnings import remedy, shape_warnings
 from semispline.solver.judge import Crease, NoNormal
 from semispline.solver.splines import greville

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from helpers.bases import facing_pair
-from semispline import Base, BSplineSurface, ComputationError, blend, clamped_surface
+from helpers.papers_set import blend, state_problem
+from semispline import Base, BSplineSurface, ComputationError, clamped_surface
 from semispline.solver.blending.nlp import constrained_problem
-from semispline.solver.blending.pipeline import state_problem
 from semispline.solver.c_export.files import c_files, c_functions
 
 pytestmark = pytest.mark.compiler

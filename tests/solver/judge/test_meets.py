@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from helpers.bases import cylinder, tube
+from helpers.papers_set import blend
 from helpers.shapes import arc, extruded, line, revolved, sheets, torus
-from semispline import Base, BSplineSurface, blend, measure_meets, transform
+from semispline import Base, BSplineSurface, measure_meets, transform
 from semispline.solver.judge import confirmed_meetings
 from semispline.solver.judge.box_tree import box_tree, overlapping
 from semispline.solver.judge.confirmed_meetings import search_itself

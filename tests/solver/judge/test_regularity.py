@@ -5,8 +5,9 @@ import pytest
 from hypothesis import given, settings
 
 from helpers.bases import facing_pair
+from helpers.papers_set import blend
 from helpers.splines import surfaces
-from semispline import BSplineCurve, BSplineSurface, SemiStructuredSurface, blend, measure_regularity, revolve
+from semispline import BSplineCurve, BSplineSurface, SemiStructuredSurface, measure_regularity, revolve
 from semispline.solver.judge import regularity
 from semispline.solver.judge.de_boor import surface_points
 from semispline.solver.judge.regularity import area_bound
