@@ -5,12 +5,15 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
+from flint import fmpq, fmpq_mat
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from semispline import ComputationError
+from semispline.solver.proof import squares as proof_squares
 from semispline.solver.proof.box_search import least_point
 from semispline.solver.proof.checker import CertificateError, check_certificate
+from semispline.solver.proof.squares import NoSquares, gram_matrices
 
 BOX = ((-2.0, 3.0), (-2.0, 2.5))
 ADMISSIBLE = ((0.125, 8.0), (0.125, 8.0))
@@ -120,3 +123,27 @@ def test_malformed_squares_are_refused(proof, squares):
 def test_a_tolerance_finer_than_floats_is_refused():
     with pytest.raises(ComputationError, match="spacing of floats"):
         least_point(CIRCLE + quartic(x0y0=1e9), BOX, 1e-12)
+
+
+@pytest.mark.parametrize("exponents", [None, (4, 1), (1, 4), (3, 2), (4, 4)])
+def test_no_squares_of_nothing_and_of_what_is_no_quartic(exponents):
+    table = fmpq_mat(5, 5)
+    if exponents:
+        table[exponents] = table[0, 0] = fmpq(1)
+    assert gram_matrices(table) == NoSquares((0.0, 0.0))
+
+
+def test_a_curve_of_equal_minima_of_higher_degree_is_given_up():
+    # (x^2 y - 1)^2 is zero along a curve, but no quartic.
+    with pytest.raises(ComputationError, match="nor by 20 sums of squares"):
+        least_point(quartic(x4y2=1, x2y1=-2, x0y0=1), BOX, 1e-10)
+
+
+def test_what_the_search_in_floats_finds_is_believed_only_where_it_is_definite(monkeypatch):
+    # 8 + 3 x^2 + ... as it is spread: Q0 is definite, Q1 and Q2 are zero until the search has found some.
+    table = fmpq_mat(5, 5)
+    for exponents, c in {(0, 0): 8, (2, 0): 3, (0, 2): 3, (4, 0): 2, (0, 4): 2, (2, 2): 3}.items():
+        table[exponents] = fmpq(c)
+    assert not isinstance(gram_matrices(table), NoSquares)
+    monkeypatch.setattr(proof_squares, "_definite", lambda start: [fmpq(0)] * 18)
+    assert gram_matrices(table) == NoSquares((0.0, 0.0))
