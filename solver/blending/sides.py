@@ -17,6 +17,8 @@ from semispline.solver.splines import Basis, BSplineCurve, BSplineSurface, affin
 
 # Contact up to second order reads three control rows and two knot spans.
 _ROWS = 3
+# Across a span beside the edge below this fraction of the base, derivatives are made of rounding.
+_LEAST_SPAN = 1e-10
 
 
 @dataclass(frozen=True, eq=False)
@@ -121,7 +123,8 @@ def make_side(base: Base, continuity: Continuity, name: str = "base") -> Side:
     Raises
     ------
     EdgeError
-        The base is rational or semi-structured, or has too many knots along the edge that count as one.
+        The base is rational or semi-structured, has too many knots along the edge that count as one, or next to no
+        span beside an edge where derivatives are asked for.
     """
     surface = base.surface
     if not isinstance(surface, BSplineSurface):
@@ -143,7 +146,14 @@ def make_side(base: Base, continuity: Continuity, name: str = "base") -> Side:
         steps = knots - knots[0]
     rows = net[[min(i, len(net) - 1) for i in range(_ROWS)]]
     spans = (float(steps[degree + 1]), float(steps[min(degree + 2, len(steps) - 1)]))
-    return Side(continuity, degree, spans, Basis(*along), rows, float(np.abs(rows).max()))
+    side = Side(continuity, degree, spans, Basis(*along), rows, float(np.abs(rows).max()))
+    if side.order > 0 and spans[0] < _LEAST_SPAN * steps[-1]:
+        raise EdgeError(
+            f"{name}: knots_{base.edge[0]} leave a span of {spans[0]:.1e} beside the edge, expected at least "
+            f"{_LEAST_SPAN:g} of the domain, or derivatives are made of rounding; remove these knots or take them "
+            "further apart, or ask for position only"
+        )
+    return side
 
 
 def matched_sides(a: Side, b: Side, matched: Correspondence) -> tuple[Side, Side]:

@@ -253,6 +253,17 @@ def test_what_a_narrow_span_across_the_edge_rounds_is_said(continuity, order, de
         assert 1 < result.energy_rounding / (2.2e-16 / width**order) < 2000
 
 
+@pytest.mark.parametrize("edge", ["u1", "u0", "v1", "v0"])
+def test_next_to_no_span_across_the_edge_is_the_reason_that_is_given(edge):
+    for width, said in ((0.9e-10, "9.0e-11"), (1e-12, "1.0e-12"), (1e-14, "1.0e-14")):
+        base = Base(turned(turned(cut(3, width).surface, "u1", False), edge, False), edge)
+        with pytest.raises(EdgeError, match=f"base a: knots_{edge[0]} leave a span of {said} beside the edge"):
+            blend(base, WALL, continuity=("C1", "G0"))
+        assert blend(base, WALL, continuity="G0").energy < 1e-12
+    # (10 long, so that its size is not what counts.)
+    assert blend(cut(3, 1.1e-10, 10.0), WALL, continuity=("C1", "G0")).contact_a.gap < 1e-12
+
+
 @pytest.mark.parametrize("degree", [2, 3])
 @pytest.mark.parametrize("long", [1.0, 0.1, 10.0])
 def test_the_shape_parameter_makes_up_for_how_fast_the_base_is(degree, long):
