@@ -39,6 +39,7 @@ from .parametric import geometry as geometry
 from .parametric import geometry_grid as geometry_grid
 from .regularity import Regularity as Regularity
 from .regularity import measure_regularity as measure_regularity
+from .sections import extent as extent
 from .turning import Turn as Turn
 from .turning import measure_turn as measure_turn
 from .waist import Waist as Waist
