@@ -11,7 +11,7 @@ from typing import Any, Literal, TypeAlias, cast, get_args
 from semispline.solver.errors import OptionError
 from semispline.solver.scalars import real_number, whole_number
 
-Continuity: TypeAlias = Literal["C0", "C1", "C2", "G0", "G1", "G2"]
+Continuity: TypeAlias = Literal["C0", "C1", "C2", "G0", "G1", "G2", "G3", "G4"]
 Method: TypeAlias = Literal["reduced", "casadi", "bfgs"]
 Flip: TypeAlias = Literal["auto", "yes", "no"]
 Shape: TypeAlias = float | Literal["fair", "energy", "natural"]

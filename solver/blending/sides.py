@@ -9,7 +9,7 @@ import numpy as np
 from semispline.solver.arrays import FloatArray
 from semispline.solver.blending.closing import reseamed
 from semispline.solver.blending.layout import check_knots_apart
-from semispline.solver.errors import EdgeError
+from semispline.solver.errors import EdgeError, OptionError
 from semispline.solver.generated import contact_numpy, rows_numpy, shape_numpy
 from semispline.solver.judge import Base, Correspondence
 from semispline.solver.options import Continuity
@@ -120,9 +120,13 @@ def make_side(base: Base, continuity: Continuity, name: str = "base") -> Side:
 
     Raises
     ------
+    OptionError
+        Contact of an order that blends do not have.
     EdgeError
         The base is rational or semi-structured, or has too many knots along the edge that count as one.
     """
+    if continuity in ("G3", "G4"):
+        raise OptionError(f"continuity: found {continuity}, which is measured but not yet blended, expected at most G2")
     surface = base.surface
     if not isinstance(surface, BSplineSurface):
         raise EdgeError(f"{name}: a semi-structured surface, expected a B-spline surface; convert it with to_bspline()")
