@@ -27,6 +27,7 @@ from .fairness import Fairness as Fairness
 from .fairness import measure_fairness as measure_fairness
 from .limits import doubtful as doubtful
 from .limits import required_limits as required_limits
+from .limits import shortfalls as shortfalls
 from .limits import untold as untold
 from .loops import Exits as Exits
 from .loops import Loop as Loop
