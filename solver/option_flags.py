@@ -16,11 +16,11 @@ from semispline.solver.options import BlendOptions
 # How the command line reads each form of option. None is unsaid.
 _READ_AS: dict[str, Any] = {
     "text": str | None,
-    "whole": int | None,
     "number-or-word": str | None,
+    "numbers-or-word": str | None,
     "range": tuple[float, float] | None,
     "numbers": str | None,
-    "lists": list[str] | None,
+    "lists-or-word": list[str] | None,
     "flag": bool | None,
 }
 
@@ -74,26 +74,38 @@ def _said(values: dict[str, Any]) -> Iterator[tuple[str, Any]]:
         first, second = values[option.name], values.get(f"{option.name}_b")
         if first is None and second is None:
             continue
-        name = "--" + option.name.replace("_", "-")
-        at_a = option.default if first is None else _value(option.metadata["form"], name, first)
-        yield option.name, at_a if second is None else (at_a, _value(option.metadata["form"], f"{name}-b", second))
+        form, name = option.metadata["form"], "--" + option.name.replace("_", "-")
+        at_a = option.default if first is None else _value(form, name, first)
+        at_b = at_a if second is None else _value(form, f"{name}-b", second)
+        # A pair on a side is no pair of sides.
+        is_pair = second is not None or (option.metadata["sides"] and isinstance(at_a, tuple))
+        yield option.name, (at_a, at_b) if is_pair else at_a
 
 
 def _value(form: str, name: str, said: Any) -> Any:
-    if form == "number-or-word":
-        try:
-            return float(said)
-        except ValueError:
-            return said
+    if form in ("number-or-word", "numbers-or-word"):
+        if form == "numbers-or-word" and ":" in said:
+            return tuple(_numbers(name, said, ":"))
+        return _number_or_word(said)
     if form == "numbers":
-        return _numbers(name, said)
-    if form == "lists":
-        return [_numbers(name, text) for text in said]
+        return _numbers(name, said, ",")
+    if form == "lists-or-word":
+        return said[0] if len(said) == 1 and said[0].isalpha() else [_numbers(name, text, ",") for text in said]
     return said
 
 
-def _numbers(name: str, text: str) -> list[float]:
+def _number_or_word(said: str) -> Any:
+    for kind in (int, float):
+        try:
+            return kind(said)
+        except ValueError:
+            continue
+    return said
+
+
+def _numbers(name: str, text: str, between: str) -> list[float]:
     try:
-        return [float(part) for part in text.split(",") if part.strip()]
+        return [float(part) for part in text.split(between) if part.strip()]
     except ValueError:
-        raise OptionError(f"{name}: found {text!r}, expected numbers with commas between them") from None
+        word = {",": "commas", ":": "colons"}[between]
+        raise OptionError(f"{name}: found {text!r}, expected numbers with {word} between them") from None

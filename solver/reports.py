@@ -39,6 +39,9 @@ def report_record(result: BlendResult) -> dict[str, Any]:
         "kind": "blend_report",
         "continuity": list(result.continuity),
         "method": result.method,
+        "options": {name: value for name, value in asdict(result.options).items() if value is not None},
+        "objective": asdict(result.objective),
+        "candidates": [asdict(candidate) for candidate in result.candidates],
         "energy": result.energy,
         "energy_rounding": result.energy_rounding,
         "alpha2": result.alpha2,
@@ -55,6 +58,8 @@ def report_record(result: BlendResult) -> dict[str, Any]:
         "seam": None if result.seam is None else contact_record(result.seam),
         "warnings": list(result.warnings),
         "control_points": result.surface.n_control_points,
+        "rows_stored": result.rows_stored,
+        "rows_converted": result.rows_converted,
         "iterations": result.iterations,
         "status": result.status,
         "search_excess": result.search_excess,
@@ -102,16 +107,18 @@ def print_result(result: BlendResult) -> None:
     rows = [
         ("continuity", " and ".join(result.continuity)),
         ("method", result.method),
-        ("energy", f"{result.energy:.6g}"),
+        ("layout", f"degree {result.options.degree_u} across, {result.options.middle_curves} middle curve(s)"),
+        ("minimised", _objective(result)),
+        ("free rows", result.objective.rows),
+        ("energy (11)", f"{result.energy:.6g}"),
         ("alpha\u00b2", shape(result.alpha2, result.alpha2_bounds)),
         ("beta\u00b2", shape(result.beta2, result.beta2_bounds)),
         ("active bounds", ", ".join(result.active_bounds) or "none"),
         ("edge B runs against A", "yes" if result.flipped else "no"),
-        ("control points", str(result.surface.n_control_points)),
+        ("p2", ", ".join(f"{x:.6g}" for x in result.p2)),
+        ("control points", f"{result.rows_stored}, {result.rows_converted} as an ordinary B-spline"),
         ("seconds", f"{result.seconds:.3f}"),
     ]
-    if result.proven_gap is not None:
-        rows.insert(3, ("least energy", f"proved to {result.proven_gap:.1e} of itself"))
     if result.seam_shift:
         rows.append(("seam of B moved by", f"{result.seam_shift:.6g} in B's parameter"))
     at_a, at_b = result.continuity
@@ -121,6 +128,12 @@ def print_result(result: BlendResult) -> None:
         rows.append(("seam", ", ".join(_figures(result.seam, None))))
     _print_table(rows)
     print_warnings(result.warnings)
+
+
+def _objective(result: BlendResult) -> str:
+    objective = result.objective
+    value = "" if objective.value is None else f", {objective.value:.6g}"
+    return f"{objective.name}{value}: {objective.known}"
 
 
 def _figures(contact: Contact, asked: Continuity | None) -> Iterator[str]:

@@ -102,7 +102,7 @@ class _Objective:
         return float(np.log(total)), np.asarray((slopes @ gradient + 2 * _TIE * self._off(y)) / total)
 
 
-def solve_fair(problem: BlendProblem, *, search_p2: bool = True) -> FairSolution:
+def solve_fair(problem: BlendProblem) -> FairSolution:
     """Find the shape parameters of the fairest blend.
 
     Raises
@@ -118,12 +118,12 @@ def solve_fair(problem: BlendProblem, *, search_p2: bool = True) -> FairSolution
     ]
     starts, refused = _scan(objective, bounds, _WIDE_CELLS if problem.exits.u_turn else _CELLS)
     best = min((_descend(objective, start, bounds) for start in starts), key=lambda found: found[0])
-    second_order = [side.has_shape_parameter and side.order == 2 for side in (problem.a, problem.b)]
-    if search_p2 and any(second_order):
+    second_order = [second.free for second in problem.p2]
+    if any(second_order):
         best = min(best, _descend(objective, best[1], bounds, second_order), key=lambda found: found[0])
     fine = _Objective(problem, FairnessTable(problem, layers, make_grid(problem, 2)), exponents)
     if abs(fine(best[1])[0] - best[0]) > _SETTLED or fine.table.folds(fine.monomials(best[1])[0]):
-        best = _descend(fine, best[1], bounds, second_order if search_p2 else None)
+        best = _descend(fine, best[1], bounds, second_order)
     if fine.table.folds(fine.monomials(best[1])[0]):
         raise ComputationError(
             "the fairest blend folds: every alpha in the window does; try another edge, direction or a middle curve"
@@ -135,10 +135,14 @@ def solve_fair(problem: BlendProblem, *, search_p2: bool = True) -> FairSolution
         min(max(float(np.exp(x)) * unit, low), high)
         for x, unit, (low, high) in zip((y[0], y[2]), problem.natural, problem.bounds, strict=True)
     )
+    p2_a, p2_b = (
+        float(x) * unit if second.free else second.at(alpha)
+        for x, unit, second, alpha in zip((y[1], y[3]), problem.natural, problem.p2, (a, b), strict=True)
+    )
     return FairSolution(
         a,
         b,
-        (float(y[1]) * problem.natural[0], float(y[3]) * problem.natural[1]),
+        (p2_a, p2_b),
         fine.table.value(fine.monomials(y)[0]),
         float(np.abs(gradient[inside]).max(initial=0.0)),
         objective.tried + fine.tried,

@@ -130,7 +130,7 @@ def contact_warnings(
         ("a", "b"), bases, contacts, continuity, (found.a, found.b), strict=True
     ):
         bare = bare_places(contact, name)
-        geometric = wanted in ("G1", "G2")
+        geometric = wanted[0] == "G" and wanted != "G0"
         for text in doubtful(contact, wanted):
             warnings.append(f"contact {name}: {text}; {remedy(base, surface, bare, shape if geometric else None)}")
         if geometric:

@@ -61,7 +61,7 @@ def write_c(folder: str | Path, problem_file: str | Path) -> list[Path]:
     surfaces = [next(read).surface if isinstance(base, str) else base for base in bases]
     edges: list[Any] = [stored.edge_a, stored.edge_b]
     a, b = (Base(surface, edge) for surface, edge in zip(surfaces, edges, strict=True))
-    texts = c_files(state_problem(a, b, stored.options))
+    texts = c_files(state_problem(a, b, stored.options.decided("generated C")))
     if Path(folder).is_dir():
         check_outputs(
             {name: Path(folder) / name for name in texts}, [problem_file, *(split_spec(spec)[0] for spec in specs)]
