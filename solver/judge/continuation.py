@@ -14,8 +14,9 @@ from semispline.solver.judge.bezier_pieces import in_pieces
 from semispline.solver.judge.parametric import ParametricSurface
 from semispline.solver.judge.sections import closed_directions, extent, lengths
 
-# How far apart the edges may be, as a fraction of their extent: contact that was made is far better.
-_APART = 1e-6
+# How far apart the edges may be, as a fraction of their extent: contact that was made is far better; and how many
+# roundings of their coordinates.
+_APART, _ROUNDINGS = 1e-6, 256
 _SAMPLES, _NEWTON_STEPS, _TRIED = 512, 20, 17
 
 
@@ -111,7 +112,7 @@ def continuation(surface: ParametricSurface, base: Base, end: int) -> Continuati
 
     distances = [float(lengths(way.evaluate_grid([0.0], v)[0] - target).max()) for way in ways]
     best = int(np.argmin(distances))
-    if not distances[best] <= _APART * size:
+    if not distances[best] <= _APART * size + _ROUNDINGS * np.finfo(np.float64).eps * np.abs(target).max():
         raise EdgeError(
             f"base: its edge {base.edge} is {distances[best]:.3g} away from the surface's end u{end}, "
             "expected the edge that the surface was made for"

@@ -121,9 +121,7 @@ def loop_on_samples(surface: ParametricSurface, u: FloatArray, v: FloatArray) ->
 
     def biarc(turn_0: float, turn_1: float) -> FloatArray:
         first, last = (theta[0] + turn_0)[:, None] * a, (theta[1] + turn_1)[:, None] * b
-        return np.asarray(
-            lengths(1.5 * first + 0.5 * last) + lengths(1.5 * last + 0.5 * first)
-        )
+        return np.asarray(lengths(1.5 * first + 0.5 * last) + lengths(1.5 * last + 0.5 * first))
 
     needed = np.min([biarc(*turns) for turns in product((0.0, -360.0), repeat=2)], axis=0)
     i = int((turning - needed).argmax())
