@@ -200,7 +200,7 @@ def _shape_rows(shape: ShapeReport) -> Iterator[tuple[str, str]]:
     yield "exits off the straight way", f"{exits.theta_0:.3g} and {exits.theta_1:.3g} degrees{sides}{u_turn}"
     yield (
         "turning beyond its exits",
-        f"{max(shape.loop.degrees, 0.0):.3g} degrees at v = {shape.loop.v:.3g}" + (", a loop" * shape.loop.is_loop),
+        f"{max(shape.loop.degrees, 0.0):.3g} degrees at v = {shape.loop.v:.3g}" + (": a loop or a wave" * shape.loop.is_loop),
     )
     for sentence in shape.meets.sentences:
         yield "meets", sentence
