@@ -78,6 +78,8 @@ class BlendOptions:
         Inner knots of each middle curve, in v of a's edge: every fourth of both contacts', the paper's rule, or given.
     strict : bool
         Refuse a blend with warnings.
+    search_meets : bool
+        Search a mesh for places where the blend meets itself or a base, where no direction shows that there are none.
 
     Notes
     -----
@@ -131,6 +133,12 @@ class BlendOptions:
         "Inner knots of a middle curve, in v of edge A; once for each curve. Or fourth, or paper: by that rule.",
     )
     strict: bool = _option(False, "flag", "", "Refuse a blend with any warning.")
+    search_meets: bool = _option(
+        False,
+        "flag",
+        "",
+        "Search a mesh for places where the blend meets itself or a base, if nothing rules them out.",
+    )
 
     def __post_init__(self) -> None:
         checked = {
@@ -148,8 +156,9 @@ class BlendOptions:
             "u_knots": None if self.u_knots is None else _knots(self.u_knots, "u_knots"),
             "middle_knots": None if self.middle_knots is None else _middle_knots(self.middle_knots),
         }
-        if not isinstance(self.strict, bool):
-            raise OptionError(f"strict: found {self.strict!r}, expected True or False")
+        for name in ("strict", "search_meets"):
+            if not isinstance(value := getattr(self, name), bool):
+                raise OptionError(f"{name}: found {value!r}, expected True or False")
         for name, value in checked.items():
             object.__setattr__(self, name, value)
         # What contradicts itself is refused here, before anything is done with it.

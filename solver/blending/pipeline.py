@@ -15,6 +15,7 @@ from semispline.solver.blending.problem import BlendProblem, make_problem
 from semispline.solver.blending.result import BlendResult, Objective
 from semispline.solver.blending.rounding import measure_energy_rounding, rounding_warning
 from semispline.solver.blending.shape_parameters import Found, active_bounds, bulged
+from semispline.solver.blending.shape_warnings import shape_warnings
 from semispline.solver.blending.sides import Side, make_side, matched_sides
 from semispline.solver.blending.warnings import (
     bare_places,
@@ -22,19 +23,20 @@ from semispline.solver.blending.warnings import (
     contact_warnings,
     remedy,
     seam_warning,
-    shape_warnings,
 )
-from semispline.solver.errors import ComputationError, ContactError, FoldError
+from semispline.solver.errors import ComputationError, ContactError, FoldError, InputError
 from semispline.solver.judge import (
     Base,
     Contact,
     Correspondence,
+    ShapeReport,
     check_regular_edge,
     correspond,
     local_origin,
     measure_contact,
     measure_creases,
     measure_regularity,
+    measure_shape,
     required_limits,
     snapped_seam,
     tied_directions,
@@ -111,8 +113,9 @@ def blend(
     seam = _seam(surface, problem)
     regularity = measure_regularity(surface)
     creases = measure_creases(surface)
+    shape = _measured_shape(surface, a, b, chosen)
     warnings = (
-        shape_warnings(regularity, creases)
+        shape_warnings(shape, regularity, creases)
         + bound_warnings(problem, layout.found)
         + rounding_warning(rounding, surface, energy)
         + seam_warning(a, b)
@@ -139,6 +142,7 @@ def blend(
         seam=seam,
         regularity=regularity,
         creases=creases,
+        shape=shape,
         warnings=warnings,
         iterations=found.iterations,
         status=found.status,
@@ -268,7 +272,8 @@ def _less_turning(a: Base, b: Base, directions: tuple[Flip, ...], options: Blend
             failures.append(failure)
     if not results:
         raise failures[0]
-    return min(results, key=lambda result: round(result.regularity.largest_turn_degrees / _EQUAL_TURNS))
+    least = min(result.shape.turn.degrees for result in results)
+    return next(result for result in results if result.shape.turn.degrees <= least + _EQUAL_TURNS)
 
 
 def _strictly(result: BlendResult, strict: bool) -> BlendResult:
@@ -340,3 +345,10 @@ def _seam(surface: SemiStructuredSurface, problem: BlendProblem) -> Contact | No
     if problem.seam_order < 0:
         return None
     return measure_contact(Base(surface, "v1"), Base(surface, "v0"), flip="no")
+
+
+def _measured_shape(surface: SemiStructuredSurface, a: Base, b: Base, options: BlendOptions) -> ShapeReport:
+    try:
+        return measure_shape(surface, a, b, search_meets=options.search_meets)
+    except InputError as error:
+        raise ComputationError(f"the blend is no surface: {error}; try other edges, or a higher continuity") from error

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from semispline.solver.blending.candidates import Candidate
-from semispline.solver.judge import Contact, Crease, Regularity
+from semispline.solver.judge import Contact, Crease, Regularity, ShapeReport
 from semispline.solver.options import BlendOptions, Continuity
 from semispline.solver.proof import Certificate
 from semispline.solver.splines import SemiStructuredSurface
@@ -72,12 +72,15 @@ class BlendResult:
     seam : Contact or None
         Closed contact curves: how the blend's own edges v0 and v1 meet.
     regularity : Regularity
-        How far the blend is from folding.
+        How far the blend is from being pinched to nothing.
     creases : tuple of Crease
         Knots of full multiplicity, across which (11) counts nothing, and how far the normal turns there.
+    shape : ShapeReport
+        How sharply it turns, how fair it is, how it curves and leaves its bases, whether it meets itself or them.
     warnings : tuple of str
-        What a user should look at: folds, steep turns, creases, shape parameters at their bounds or beyond, an energy
-        that is rounding, contact of which rounding hides a part, bases without a normal somewhere.
+        What a user should look at: folds, steep turns, pinches, loops, U-turns, creases, shape parameters at their
+        bounds or beyond, an energy that is rounding, contact of which rounding hides a part, bases without a normal
+        somewhere.
     iterations : int
         Of the nonlinear solver; 0 where there is none.
     status : str or None
@@ -122,6 +125,7 @@ class BlendResult:
     seam: Contact | None
     regularity: Regularity
     creases: tuple[Crease, ...]
+    shape: ShapeReport
     warnings: tuple[str, ...]
     iterations: int
     status: str | None

@@ -101,7 +101,5 @@ def relative_jumps(a, b, order, *, flipped=False):
     largest = np.max(values, axis=0)
     nets = [base.surface if isinstance(base.surface, BSplineSurface) else base.surface.to_bspline() for base in (a, b)]
     size = np.ptp(np.concatenate([net.control_points.reshape(-1, 3) for net in nets]), axis=0).max()
-    scales = [
-        max(value, largest[0] ** (k + 1), 1e-3 / size ** (k + 1)) for k, value in enumerate(largest)
-    ]
+    scales = [max(value, largest[0] ** (k + 1), 1e-3 / size ** (k + 1)) for k, value in enumerate(largest)]
     return np.max(jumps, axis=0) / scales

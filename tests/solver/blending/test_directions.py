@@ -105,7 +105,7 @@ def test_an_elbow_keeps_the_inside_inside(degrees):
     assert np.ptp(first) > 1.9
     np.testing.assert_allclose(first, second, atol=0.05)
     # Not a twist: it would pass through a point where there is no normal.
-    assert result.regularity.largest_turn_degrees < 30
+    assert result.shape.turn.degrees < 30
 
 
 def test_directions_that_closeness_decides_are_not_both_tried():
@@ -133,7 +133,7 @@ def test_flat_cones_do_not_tell_how_their_rims_circle(sine, tried):
 def test_mirrored_directions_turn_equally_and_the_choice_is_the_same_in_any_order():
     a, b = crossed()
     assert len(tied_directions(a, b)) == 2
-    turns = [blend(a, b, flip=flip, v_scale="length").regularity.largest_turn_degrees for flip in ("yes", "no")]
+    turns = [blend(a, b, flip=flip, v_scale="length").shape.turn.degrees for flip in ("yes", "no")]
     assert turns[0] == pytest.approx(turns[1], abs=1e-6)
     one, other = blend(a, b, v_scale="length"), blend(b, a, v_scale="length")
     u, v = np.linspace(0, 1, 5), np.linspace(0, 1, 9)
@@ -155,7 +155,7 @@ def test_open_edges_at_right_angles_take_the_way_that_turns_less():
     b = Base(strip([[2, 2, 0], [4, 2, 0]], [0, 2, 0]), "u0")
     assert len(tied_directions(a, b)) == 2
     result = blend(a, b)
-    turns = {flip: blend(a, b, flip=flip).regularity.largest_turn_degrees for flip in ("yes", "no")}
+    turns = {flip: blend(a, b, flip=flip).shape.turn.degrees for flip in ("yes", "no")}
     assert turns["yes"] > 90 > turns["no"] if not result.flipped else turns["no"] > 90 > turns["yes"]
     # In the plane z = 0 the inner corner (0, 1), (2, 2) and the outer one are joined, and nothing crosses.
     ends = result.surface.evaluate_grid([1.0], [0.0, 1.0])[0]

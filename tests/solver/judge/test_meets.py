@@ -360,7 +360,8 @@ def test_what_is_certified_is_not_searched():
 def test_a_search_may_be_left_out():
     found = measure_meets(extruded(loop(0.2), 1.0), search=False)
     assert (found.searched, found.found, found.seen_from) == ((), (), None)
-    assert found.sentences == ("no direction shows it whole, and no mesh was searched",)
+    assert found.answer("itself") is None
+    assert found.sentences == ("not known whether it meets itself: no direction shows it, and no mesh was searched",)
 
 
 def test_boxes_against_all_pairs():
