@@ -4,6 +4,8 @@ The section is followed as a curve in space, c(u) = X(u, eta(u)) with (c - X0) .
 by the product rule: formulas of their own, and no evaluation of ours.
 """
 
+from itertools import pairwise
+
 import numpy as np
 
 from helpers.occ import to_geom
@@ -84,13 +86,13 @@ def section(X, normal_like=None):
 
 
 def relative_jumps(a, b, order, *, flipped=False):
-    """Largest jumps of curvature and its rates up to those of `order`, from edge a into b, over the scales of G2..G4."""
+    """Largest jumps of curvature and its rates up to those of `order`, from edge a into b, over scales of G2..G4."""
     at_a, at_b = _derivatives(a, order), _derivatives(b, order)
     (a0, a1), (b0, b1) = a.range_along, b.range_along
     knots = [(base.breakpoints_along() - low) / (high - low) for base, (low, high) in ((a, (a0, a1)), (b, (b0, b1)))]
     breaks = np.unique(np.round(np.concatenate([knots[0], 1 - knots[1] if flipped else knots[1]]), 12))
     jumps, values = [], []
-    for low, high in zip(breaks[:-1], breaks[1:], strict=True):
+    for low, high in pairwise(breaks):
         for t in low + (high - low) * np.array(FRACTIONS):
             normal, of_a = section(at_a(a0 + t * (a1 - a0)))
             _, of_b = section(at_b(b0 + (1 - t if flipped else t) * (b1 - b0)), normal)
