@@ -9,7 +9,8 @@ from hypothesis import strategies as st
 
 from helpers.bases import FACING, facing_pair, moved, patch, turned
 from helpers.occ import analyse, edge_point
-from semispline import Base, BSplineSurface, ContactError, EdgeError, OptionError, blend, measure_turn
+from helpers.papers_set import blend
+from semispline import Base, BSplineSurface, ContactError, EdgeError, OptionError, measure_turn
 from semispline.solver.judge.de_boor import surface_points
 
 EDGES = ("u0", "u1", "v0", "v1")

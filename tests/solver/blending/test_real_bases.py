@@ -6,18 +6,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from helpers.bases import circle, cylinder, facing_pair, patch, turned
-from semispline import (
-    Base,
-    BSplineSurface,
-    EdgeError,
-    FoldError,
-    OptionError,
-    SemiStructuredSurface,
-    blend,
-    thin_plate_energy,
-)
+from helpers.papers_set import blend, state_problem
+from semispline import Base, BSplineSurface, EdgeError, FoldError, OptionError, SemiStructuredSurface, thin_plate_energy
 from semispline.solver.blending.closing import periodic_points, reseamed, seam_order
-from semispline.solver.blending.pipeline import state_problem
 from semispline.solver.judge.de_boor import curve_points, surface_points
 from semispline.solver.splines.operations import insert_knots, map_domain
 from semispline.solver.splines.quadrature import Basis
