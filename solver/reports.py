@@ -21,8 +21,8 @@ if TYPE_CHECKING:
 
 
 def contact_record(contact: Contact) -> dict[str, Any]:
-    """Return what a JSON file holds of a measured contact."""
-    return {name: _finite(value) for name, value in asdict(contact).items()}
+    """Return what a JSON file holds of a measured contact: nothing of what was not asked for."""
+    return {name: _finite(value) for name, value in asdict(contact).items() if value is not None}
 
 
 def _finite(value: Any) -> Any:
@@ -78,6 +78,10 @@ def report_record(result: BlendResult) -> dict[str, Any]:
     }
 
 
+# Surfaces that differ in lower order do so in these.
+_COUNTS_ONLY_WITH: dict[str, Continuity] = {"rate_jump_relative": "G2", "second_rate_jump_relative": "G3"}
+
+
 def shape_record(shape: ShapeReport) -> dict[str, Any]:
     """Return what a JSON file holds of the measures of shape; places beside their figures."""
     turn, waist = asdict(shape.turn), shape.waist
@@ -121,18 +125,30 @@ def meets_record(meets: Meets) -> dict[str, Any]:
 
 def print_contact(contact: Contact, unit: str | None) -> None:
     """Print what was measured of a contact, and where it is worst."""
+    from semispline.solver.judge import shortfalls
+
     length = unit or "model units"
-    bend = f"1/{unit}" if unit else "1/(model units)"
+    bend, rate, second_rate = (f"1/{unit or '(model units)'}{power}" for power in ("", "\u00b2", "\u00b3"))
     rows = [("measure", "worst", "allowed", "unit", "at parameter", "at point")]
     for name, measure, in_unit, place in (
         ("gap", "gap", length, contact.gap_at),
         ("angle", "angle_degrees", "degrees", contact.angle_at),
         ("curvature jump", "curvature_jump", bend, contact.curvature_at),
         ("curvature jump, relative", "curvature_jump_relative", "1", contact.curvature_at),
+        ("rate jump", "rate_jump", rate, contact.rate_at),
+        ("rate jump, relative", "rate_jump_relative", "1", contact.rate_at),
+        ("second rate jump", "second_rate_jump", second_rate, contact.second_rate_at),
+        ("second rate jump, relative", "second_rate_jump_relative", "1", contact.second_rate_at),
     ):
+        if place is None:
+            continue
         point = ", ".join(f"{x:.5g}" for x in place.point)
         value, limit = getattr(contact, measure), contact.allowed.get(measure)
-        allowed = "see below" if limit is None else f"{limit:.3g}"
+        below = _COUNTS_ONLY_WITH.get(measure)
+        if below is not None and shortfalls(contact, below):
+            allowed = f"counts only with {below}"
+        else:
+            allowed = "see below" if limit is None else f"{limit:.3g}"
         rows.append((name, f"{value:.3g}", allowed, in_unit, f"{place.parameter:.5g}", f"({point})"))
     _print_table(rows)
     for bare in contact.no_normal:
@@ -200,7 +216,8 @@ def _shape_rows(shape: ShapeReport) -> Iterator[tuple[str, str]]:
     yield "exits off the straight way", f"{exits.theta_0:.3g} and {exits.theta_1:.3g} degrees{sides}{u_turn}"
     yield (
         "turning beyond its exits",
-        f"{max(shape.loop.degrees, 0.0):.3g} degrees at v = {shape.loop.v:.3g}" + (": a loop or a wave" * shape.loop.is_loop),
+        f"{max(shape.loop.degrees, 0.0):.3g} degrees at v = {shape.loop.v:.3g}"
+        + (": a loop or a wave" * shape.loop.is_loop),
     )
     for sentence in shape.meets.sentences:
         yield "meets", sentence
@@ -221,7 +238,11 @@ def _figures(contact: Contact, asked: Continuity | None) -> Iterator[str]:
         ("gap", "gap", ""),
         ("angle_degrees", "angle", " degrees"),
         ("curvature_jump_relative", "relative curvature jump", ""),
+        ("rate_jump_relative", "relative jump of its rate", ""),
+        ("second_rate_jump_relative", "relative jump of its second rate", ""),
     ):
+        if getattr(contact, name) is None:
+            continue
         limit = f" ({allowed[name]:.2g} allowed)" if name in allowed else ""
         yield f"{words} {getattr(contact, name):.2g}{unit}{limit}"
 

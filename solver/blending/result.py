@@ -20,7 +20,7 @@ class Objective:
     ----------
     name : str
         "fairness": area times integral of |grad H|^2, jumps of H included, by alpha and p2 (before a bulge).
-        "thin plate": (11) with the v-domain's length as `v_scale` has it, by the free rows and alpha, whichever is free.
+        "thin plate": (11) with the v-domain's length as `v_scale` has it, by whichever of free rows and alpha is free.
         "nothing" where contacts and options prescribe all.
     value : float or None
     known : str

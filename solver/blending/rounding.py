@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -41,7 +41,7 @@ class EnergyRounding:
 def measure_energy_rounding(
     problem: BlendProblem, surface: SemiStructuredSurface, frame: tuple[FloatArray, float], energy: float
 ) -> EnergyRounding:
-    """Bound what errors of 1e-16 of the largest coordinate, in every control point, may do to the energy.
+    """Bound what errors of 1e-16 of the largest coordinate, in all points of the blend and its bases, do to the energy.
 
     Parameters
     ----------
@@ -56,12 +56,12 @@ def measure_energy_rounding(
     centre, size = frame
     points = np.concatenate([curve.control_points for curve in surface.control_curves])
     sides = np.concatenate([side.rows.reshape(-1, 3) for side in (problem.a, problem.b)]) * size + centre
-    # Prescribed rows are combinations of those of the bases, and are as coarse as these.
     errors = np.finfo(float).eps * np.maximum(np.abs(points).max(axis=0), np.abs(sides).max(axis=0))
     own = problem.form if problem.form.rows is problem.rows else EnergyForm(problem.form.u, problem.rows)
     # Of the surface as it is, and with v stretched as in the energy that is minimised; vv, uv, uu stretch unlike.
     stretch = (_length(problem.form) / _length(own)) ** np.array([-3.0, -1.0, 1.0])
-    parts = own.error_energies() * float(np.sum(errors**2))
+    largest = _error_factors(problem, points / size)
+    parts = own.error_energies(largest) * float(np.sum(errors**2))
     least = energy * float(stretch.min())
     floor, minimised_floor = (_ZERO_ENERGY * _bent(form) * size**2 for form in (own, problem.form))
     change = _change(energy, float(parts.sum()))
@@ -69,13 +69,35 @@ def measure_energy_rounding(
     if share <= ROUNDING_SHARE:
         return EnergyRounding(change, share)
     # Only where that is not enough: place by place.
-    change = own.change_by_errors(points - centre, errors)
+    change = own.change_by_errors(points - centre, errors, largest)
     share = change / max(energy, floor)
     if own is not problem.form:
         minimised = float(problem.form.products(points[None] - centre)[0, 0])
-        change_there = problem.form.change_by_errors(points - centre, errors)
+        change_there = problem.form.change_by_errors(points - centre, errors, largest)
         share = max(share, change_there / max(minimised, minimised_floor))
     return EnergyRounding(change, share)
+
+
+def _error_factors(problem: BlendProblem, points: FloatArray) -> FloatArray:
+    """Return how much larger than in the bases errors are in each row, shape (m + 1,); 1 for free rows.
+
+    Prescribed rows are combinations of rows of the bases, with large weights of both signs where these have a narrow
+    span beside the edge. What p2 adds is small beside that.
+    """
+    factors = np.ones(len(problem.rows))
+    offsets = problem.form.offsets
+    for side, rows, spans in problem.contacts:
+        if side.order == 0:
+            continue
+        # The combinations themselves: of rows (1, 0, 0), (0, 1, 0) and (0, 0, 1).
+        weights = replace(side, rows=np.eye(3)[:, None])
+        # alpha^2 as the blend has it: how far its second row is from the first.
+        first, second = (points[offsets[row] : offsets[row + 1]] for row in rows[:2])
+        at_one = side.contact_rows(1.0, problem.form.u.degree, spans)
+        a = np.abs(second - first).max() / np.abs(at_one[1] - at_one[0]).max() if side.has_shape_parameter else 1.0
+        sums = np.abs(weights.contact_rows(float(a), problem.form.u.degree, spans)).sum(axis=(1, 2))
+        factors[rows[: side.order + 1]] = np.maximum(sums, 1.0)
+    return factors
 
 
 def _change(energy: float, errors: float) -> float:

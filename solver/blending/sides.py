@@ -9,11 +9,14 @@ import numpy as np
 from semispline.solver.arrays import FloatArray
 from semispline.solver.blending.closing import reseamed
 from semispline.solver.blending.layout import check_knots_apart
-from semispline.solver.errors import EdgeError
+from semispline.solver.errors import EdgeError, OptionError
 from semispline.solver.generated import contact_numpy, rows_numpy, shape_numpy
 from semispline.solver.judge import Base, Correspondence
 from semispline.solver.options import ROWS_PER_SIDE, Continuity
 from semispline.solver.splines import Basis, BSplineCurve, BSplineSurface, affine_knots, elevate_curve, reversed_knots
+
+# Across a span beside the edge below this fraction of the base, derivatives are made of rounding.
+_LEAST_SPAN = 1e-10
 
 
 @dataclass(frozen=True, eq=False)
@@ -120,9 +123,14 @@ def make_side(base: Base, continuity: Continuity, name: str = "base") -> Side:
 
     Raises
     ------
+    OptionError
+        Contact of an order that blends do not have.
     EdgeError
-        The base is rational or semi-structured, or has too many knots along the edge that count as one.
+        The base is rational or semi-structured, has too many knots along the edge that count as one, or next to no
+        span beside an edge where derivatives are asked for.
     """
+    if continuity in ("G3", "G4"):
+        raise OptionError(f"continuity: found {continuity}, which is measured but not yet blended, expected at most G2")
     surface = base.surface
     if not isinstance(surface, BSplineSurface):
         raise EdgeError(f"{name}: a semi-structured surface, expected a B-spline surface; convert it with to_bspline()")
@@ -144,7 +152,14 @@ def make_side(base: Base, continuity: Continuity, name: str = "base") -> Side:
     order = int(continuity[1])
     rows = net[[min(i, len(net) - 1) for i in range(max(ROWS_PER_SIDE, order + 1))]]
     spans = tuple(float(steps[min(degree + i, len(steps) - 1)]) for i in range(1, max(2, order) + 1))
-    return Side(continuity, degree, spans, Basis(*along), rows, float(np.abs(rows).max()))
+    side = Side(continuity, degree, spans, Basis(*along), rows, float(np.abs(rows).max()))
+    if side.order > 0 and spans[0] < _LEAST_SPAN * steps[-1]:
+        raise EdgeError(
+            f"{name}: knots_{base.edge[0]} leave a span of {spans[0]:.1e} beside the edge, expected at least "
+            f"{_LEAST_SPAN:g} of the domain, or derivatives are made of rounding; remove these knots or take them "
+            "further apart, or ask for position only"
+        )
+    return side
 
 
 def matched_sides(a: Side, b: Side, matched: Correspondence) -> tuple[Side, Side]:

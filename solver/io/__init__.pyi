@@ -24,5 +24,5 @@ from .surface_files import list_file as list_file
 from .surface_files import read_all as read_all
 from .surface_files import read_surfaces as read_surfaces
 from .surface_files import split_spec as split_spec
-from .surface_files import trimmed_edge_warning as trimmed_edge_warning
+from .surface_files import trim_warnings as trim_warnings
 from .surface_files import write_surface as write_surface
