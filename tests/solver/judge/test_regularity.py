@@ -22,7 +22,8 @@ def test_nothing_is_proved_of_a_fold():
     assert measure_regularity(flat).proved_area_ratio == pytest.approx(1)
     net = [[[u, v, 0.0] for v in (0, 1)] for u in (0, 1, 0.2)]
     folded = measure_regularity(BSplineSurface(2, 1, BEZIER_2, BEZIER_1, net))
-    assert folded.least_area_ratio < 0.1
+    # Samples miss where the area element vanishes.
+    assert folded.least_area_ratio < 0.2
     assert folded.proved_area_ratio is None
 
 
