@@ -24,7 +24,9 @@ def derivative_noises(base: Base, origin: FloatArray, order: int = 2) -> FloatAr
     across, along = _directions(base, order)
     rational = isinstance(base.surface, BSplineSurface) and base.surface.weights is not None
     at_end = base.edge[1] == "1"
-    first = np.max([_factors(degree, _end_widths(degree, knots, at_end, order), rational) for degree, knots in across], 0)
+    first = np.max(
+        [_factors(degree, _end_widths(degree, knots, at_end, order), rational) for degree, knots in across], 0
+    )
     second = np.max([_factors(degree, _inner_widths(degree, knots, order), rational) for degree, knots in along], 0)
     return np.asarray((stored + worked) * np.multiply.outer(first, second))
 
