@@ -29,11 +29,11 @@ _MOST_BULGE = 100.0
 ROWS_PER_SIDE = 3
 
 
-def _option(default: Any, form: str, metavar: str, text: str, *, sides: bool = False) -> Any:
+def _option(default: Any, form: str, metavar: str, text: str, *, sides: Literal["", "both", "each"] = "") -> Any:
     """Return a field; what the command line says of it and how it reads it stand beside its default.
 
-    `form` is text, number-or-word, numbers-or-word, range, numbers, lists-or-word or flag; with `sides` it may differ
-    at the two edges.
+    `form` is text, number-or-word, numbers-or-word, range, numbers, lists-or-word or flag. With `sides` it may differ
+    at the two edges: "both" is said once for both unless B differs, "each" is said for one edge at a time.
     """
     return field(default=default, metadata={"form": form, "metavar": metavar, "help": text, "sides": sides})
 
@@ -78,6 +78,8 @@ class BlendOptions:
         Inner knots of each middle curve, in v of a's edge: every fourth of both contacts', the paper's rule, or given.
     strict : bool
         Refuse a blend with warnings.
+    search_meets : bool
+        Search a mesh for places where the blend meets itself or a base, where no direction shows that there are none.
 
     Notes
     -----
@@ -95,7 +97,7 @@ class BlendOptions:
     """
 
     continuity: Continuity | tuple[Continuity, Continuity] = _option(
-        "G2", "text", "C", "At both edges: C0, C1, C2, G0, G1, G2, G3 or G4.", sides=True
+        "G2", "text", "C", "At both edges: C0, C1, C2, G0, G1, G2, G3 or G4.", sides="both"
     )
     middle_curves: int | Auto = _option("auto", "number-or-word", "N", "Free v-control curves in between, or auto.")
     degree_u: int | Auto = _option("auto", "number-or-word", "P", "Degree of the blend across, or auto.")
@@ -106,14 +108,14 @@ class BlendOptions:
         "numbers-or-word",
         "ALPHA",
         "For G1 to G4: fair (the default) or energy (searched), natural, a number, or X:Y at the ends of v.",
-        sides=True,
+        sides="both",
     )
     alpha_v: AlphaV = _option("auto", "text", "WAY", "A searched alpha² along v: auto, constant or linear.")
     p2: Literal["auto", "zero"] | tuple[float, float] = _option(
         "auto", "numbers-or-word", "P2", "Second shape parameters: auto, zero, or X:Y at A and B."
     )
     bulge: float | tuple[float, float] = _option(
-        1.0, "number-or-word", "X", "Multiplies the alpha² that was chosen at A and at B.", sides=True
+        1.0, "number-or-word", "X", "Multiplies the alpha² that was chosen.", sides="each"
     )
     box: tuple[float, float] | None = _option(
         None, "range", "LOW HIGH", "Range of a searched alpha² and beta², times an arc's (energy: their natural sizes)."
@@ -131,6 +133,12 @@ class BlendOptions:
         "Inner knots of a middle curve, in v of edge A; once for each curve. Or fourth, or paper: by that rule.",
     )
     strict: bool = _option(False, "flag", "", "Refuse a blend with any warning.")
+    search_meets: bool = _option(
+        False,
+        "flag",
+        "",
+        "Search a mesh for places where the blend meets itself or a base, if nothing rules them out.",
+    )
 
     def __post_init__(self) -> None:
         checked = {
@@ -148,8 +156,9 @@ class BlendOptions:
             "u_knots": None if self.u_knots is None else _knots(self.u_knots, "u_knots"),
             "middle_knots": None if self.middle_knots is None else _middle_knots(self.middle_knots),
         }
-        if not isinstance(self.strict, bool):
-            raise OptionError(f"strict: found {self.strict!r}, expected True or False")
+        for name in ("strict", "search_meets"):
+            if not isinstance(value := getattr(self, name), bool):
+                raise OptionError(f"{name}: found {value!r}, expected True or False")
         for name, value in checked.items():
             object.__setattr__(self, name, value)
         # What contradicts itself is refused here, before anything is done with it.

@@ -15,6 +15,7 @@ from semispline.solver.blending.problem import BlendProblem, make_problem
 from semispline.solver.blending.result import BlendResult, Objective
 from semispline.solver.blending.rounding import measure_energy_rounding, rounding_warning
 from semispline.solver.blending.shape_parameters import Found, active_bounds, bulged
+from semispline.solver.blending.shape_warnings import shape_warnings
 from semispline.solver.blending.sides import Side, make_side, matched_sides
 from semispline.solver.blending.warnings import (
     bare_places,
@@ -22,19 +23,20 @@ from semispline.solver.blending.warnings import (
     contact_warnings,
     remedy,
     seam_warning,
-    shape_warnings,
 )
-from semispline.solver.errors import ComputationError, ContactError, FoldError
+from semispline.solver.errors import ComputationError, ContactError, FoldError, InputError
 from semispline.solver.judge import (
     Base,
     Contact,
     Correspondence,
+    ShapeReport,
     check_regular_edge,
     correspond,
     local_origin,
     measure_contact,
     measure_creases,
     measure_regularity,
+    measure_shape,
     required_limits,
     snapped_seam,
     tied_directions,
@@ -103,7 +105,7 @@ def blend(
     surface = _surface(problem, found, sides, frame)
     energy = thin_plate_energy(surface)
     seconds = time.perf_counter() - started
-    rounding = measure_energy_rounding(problem, surface, frame, energy)
+    rounding = measure_energy_rounding(problem, found, surface, frame, energy)
     # What came out, judged by code that knows nothing of the above.
     contact_a, contact_b = _checked_contacts(a, b, surface, chosen.continuities, matched, found)
     if found.certificate is not None:
@@ -111,8 +113,9 @@ def blend(
     seam = _seam(surface, problem)
     regularity = measure_regularity(surface)
     creases = measure_creases(surface)
+    shape = _measured_shape(surface, a, b, chosen)
     warnings = (
-        shape_warnings(regularity, creases)
+        shape_warnings(shape, regularity, creases)
         + bound_warnings(problem, layout.found)
         + rounding_warning(rounding, surface, energy)
         + seam_warning(a, b)
@@ -139,6 +142,7 @@ def blend(
         seam=seam,
         regularity=regularity,
         creases=creases,
+        shape=shape,
         warnings=warnings,
         iterations=found.iterations,
         status=found.status,
@@ -148,7 +152,6 @@ def blend(
         certificate=None if rounding.matters else found.certificate,
         proven_gap=None if rounding.matters else found.proven_gap,
         p2=found.p2,
-        fairness=found.fairness,
         constraint_rank=found.constraint_rank,
         seconds=seconds,
     )
@@ -268,7 +271,8 @@ def _less_turning(a: Base, b: Base, directions: tuple[Flip, ...], options: Blend
             failures.append(failure)
     if not results:
         raise failures[0]
-    return min(results, key=lambda result: round(result.regularity.largest_turn_degrees / _EQUAL_TURNS))
+    least = min(result.shape.turn.degrees for result in results)
+    return next(result for result in results if result.shape.turn.degrees <= least + _EQUAL_TURNS)
 
 
 def _strictly(result: BlendResult, strict: bool) -> BlendResult:
@@ -310,8 +314,9 @@ def _checked_contacts(
     found: Found,
 ) -> tuple[Contact, Contact]:
     """Let the referee measure both contacts, and refuse a result that misses its limits."""
-    contact_a = measure_contact(a, Base(surface, "u0"), correspondence=Correspondence(flipped=False))
-    contact_b = measure_contact(Base(surface, "u1"), b, correspondence=matched)
+    order = max(2, *(int(wanted[1]) for wanted in continuity))
+    contact_a = measure_contact(a, Base(surface, "u0"), correspondence=Correspondence(flipped=False), order=order)
+    contact_b = measure_contact(Base(surface, "u1"), b, correspondence=matched, order=order)
     for name, base, contact, wanted, shape in (
         ("a", a, contact_a, continuity[0], found.a),
         ("b", b, contact_b, continuity[1], found.b),
@@ -340,3 +345,10 @@ def _seam(surface: SemiStructuredSurface, problem: BlendProblem) -> Contact | No
     if problem.seam_order < 0:
         return None
     return measure_contact(Base(surface, "v1"), Base(surface, "v0"), flip="no")
+
+
+def _measured_shape(surface: SemiStructuredSurface, a: Base, b: Base, options: BlendOptions) -> ShapeReport:
+    try:
+        return measure_shape(surface, a, b, search_meets=options.search_meets)
+    except InputError as error:
+        raise ComputationError(f"the blend is no surface: {error}; try other edges, or a higher continuity") from error

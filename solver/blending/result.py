@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from semispline.solver.blending.candidates import Candidate
-from semispline.solver.judge import Contact, Crease, Regularity
+from semispline.solver.judge import Contact, Crease, Regularity, ShapeReport
 from semispline.solver.options import BlendOptions, Continuity
 from semispline.solver.proof import Certificate
 from semispline.solver.splines import SemiStructuredSurface
@@ -20,7 +20,7 @@ class Objective:
     ----------
     name : str
         "fairness": area times integral of |grad H|^2, jumps of H included, by alpha and p2 (before a bulge).
-        "thin plate": (11) with the v-domain's length as `v_scale` has it, by the free rows and alpha, whichever is free.
+        "thin plate": (11) with the v-domain's length as `v_scale` has it, by whichever of free rows and alpha is free.
         "nothing" where contacts and options prescribe all.
     value : float or None
     known : str
@@ -72,12 +72,15 @@ class BlendResult:
     seam : Contact or None
         Closed contact curves: how the blend's own edges v0 and v1 meet.
     regularity : Regularity
-        How far the blend is from folding.
+        How far the blend is from being pinched to nothing.
     creases : tuple of Crease
         Knots of full multiplicity, across which (11) counts nothing, and how far the normal turns there.
+    shape : ShapeReport
+        How sharply it turns, how fair it is, how it curves and leaves its bases, whether it meets itself or them.
     warnings : tuple of str
-        What a user should look at: folds, steep turns, creases, shape parameters at their bounds or beyond, an energy
-        that is rounding, contact of which rounding hides a part, bases without a normal somewhere.
+        What a user should look at: folds, steep turns, pinches, loops, U-turns, creases, shape parameters at their
+        bounds or beyond, an energy that is rounding, contact of which rounding hides a part, bases without a normal
+        somewhere.
     iterations : int
         Of the nonlinear solver; 0 where there is none.
     status : str or None
@@ -94,8 +97,6 @@ class BlendResult:
         What the proof leaves open, as a fraction of the energy.
     p2 : (float, float)
         The second shape parameter of each side, P_uu = alpha^4 R_ww + p2 R_w; 0 where nobody asked for it.
-    fairness : float or None
-        Area times integral of |grad H|^2, no units, where that was minimised: the least of all that was tried.
     constraint_rank : (int, int) or None
         Rank of the constraint Jacobian at the solution, and its number of rows; only for method casadi.
     seconds : float
@@ -122,6 +123,7 @@ class BlendResult:
     seam: Contact | None
     regularity: Regularity
     creases: tuple[Crease, ...]
+    shape: ShapeReport
     warnings: tuple[str, ...]
     iterations: int
     status: str | None
@@ -130,7 +132,6 @@ class BlendResult:
     certificate: Certificate | None
     proven_gap: float | None
     p2: tuple[float, float]
-    fairness: float | None
     constraint_rank: tuple[int, int] | None
     seconds: float
 

@@ -29,7 +29,10 @@ class Found:
 
 
 def find_shape_parameters(problem: BlendProblem, options: BlendOptions) -> Found:
-    """Find alpha^2 and beta^2 of least energy or fairest shape; where both are fixed there is nothing to find."""
+    """Find alpha^2 and beta^2 of least energy or fairest shape; where both are fixed there is nothing to find.
+
+    Each method waits inside the function until it is asked for: CasADi alone takes longer to load than to solve.
+    """
     method = options.method
     if not any(problem.free):
         a, b = problem.start
@@ -43,7 +46,6 @@ def find_shape_parameters(problem: BlendProblem, options: BlendOptions) -> Found
             f"refused: {fair.refused['folds']} candidates for folds, {fair.refused['loops']} for loops"
         )
         return Found(fair.a, fair.b, method, fair.tried, p2=fair.p2, fairness=fair.value, known=known)
-    # Each method waits until it is asked for: CasADi alone takes longer to load than a blend to solve.
     if method == "reduced":
         from semispline.solver.blending.reduced import solve_reduced
 

@@ -15,6 +15,9 @@ from semispline.solver.judge import Base, Correspondence
 from semispline.solver.options import ROWS_PER_SIDE, Continuity
 from semispline.solver.splines import Basis, BSplineCurve, BSplineSurface, affine_knots, elevate_curve, reversed_knots
 
+# Across a span beside the edge below this fraction of the base, derivatives are made of rounding.
+_LEAST_SPAN = 1e-10
+
 
 @dataclass(frozen=True, eq=False)
 class Side:
@@ -121,7 +124,8 @@ def make_side(base: Base, continuity: Continuity, name: str = "base") -> Side:
     Raises
     ------
     EdgeError
-        The base is rational or semi-structured, or has too many knots along the edge that count as one.
+        The base is rational or semi-structured, has too many knots along the edge that count as one, or next to no
+        span beside an edge where derivatives are asked for.
     """
     surface = base.surface
     if not isinstance(surface, BSplineSurface):
@@ -144,7 +148,14 @@ def make_side(base: Base, continuity: Continuity, name: str = "base") -> Side:
     order = int(continuity[1])
     rows = net[[min(i, len(net) - 1) for i in range(max(ROWS_PER_SIDE, order + 1))]]
     spans = tuple(float(steps[min(degree + i, len(steps) - 1)]) for i in range(1, max(2, order) + 1))
-    return Side(continuity, degree, spans, Basis(*along), rows, float(np.abs(rows).max()))
+    side = Side(continuity, degree, spans, Basis(*along), rows, float(np.abs(rows).max()))
+    if side.order > 0 and spans[0] < _LEAST_SPAN * steps[-1]:
+        raise EdgeError(
+            f"{name}: knots_{base.edge[0]} leave a span of {spans[0]:.1e} beside the edge, expected at least "
+            f"{_LEAST_SPAN:g} of the domain, or derivatives are made of rounding; remove these knots or take them "
+            "further apart, or ask for position only"
+        )
+    return side
 
 
 def matched_sides(a: Side, b: Side, matched: Correspondence) -> tuple[Side, Side]:

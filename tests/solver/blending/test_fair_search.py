@@ -70,7 +70,7 @@ def test_what_is_minimised_is_what_the_judge_measures(inner):
     result = blend(*sheets(inner=inner), **FAIR)
     measured = measure_fairness(result.surface)
     assert measured.settled
-    assert result.fairness == pytest.approx(measured.value, rel=0.01)
+    assert result.objective.value == pytest.approx(measured.value, rel=0.01)
     assert (measured.jumps > 1e-3) is bool(inner)
 
 
@@ -203,7 +203,7 @@ def test_what_is_flat_takes_the_arc():
     result = blend(Base(left, "u1"), Base(right, "u0"), **FAIR)
     # Gap 2 over speeds 1 and 2, and the arc of a straight way is its chord.
     assert (result.alpha2, result.beta2) == pytest.approx((2.0, 1.0), rel=1e-4)
-    assert result.fairness == pytest.approx(0.0, abs=1e-9)
+    assert result.objective.value == pytest.approx(0.0, abs=1e-9)
 
 
 def test_the_real_pair_turns_evenly():
