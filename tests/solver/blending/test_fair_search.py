@@ -236,9 +236,9 @@ def test_units_place_order_and_parameters_do_not_matter():
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        ({"method": "casadi"}, "alpha: found fair with method casadi, expected method reduced"),
+        ({"method": "casadi"}, "alpha: found fair with method casadi, which minimises"),
         ({"method": "bfgs"}, "alpha: found fair with method bfgs"),
-        ({"alpha": ("fair", "energy")}, "alpha: found fair with energy on the other side"),
+        ({"alpha": ("fair", "energy")}, "alpha: found fair with alpha energy, which minimises"),
     ],
 )
 def test_fair_is_for_the_reduced_method(options, message):
