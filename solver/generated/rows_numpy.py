@@ -398,7 +398,7 @@ def chain_table_4() -> FloatArray:
 
 
 def linear_powers_4() -> FloatArray:
-    """Rows (i, i0, i1, c): a^i is the sum of c a0^i0 a1^i1 (1 - s)^i0 s^i1, a = a0 (1 - s) + a1 s, i <= 4.
+    """Rows (i, i0, i1, c): (a0 (1 - s) + a1 s)^i sums c a0^i0 a1^i1 (1 - s)^i0 s^i1; i <= 4.
 
     Returns
     -------
