@@ -1,0 +1,87 @@
+"""Problems whose alpha^2 is linear in v: when they are worth it, and how they are made of those with a constant."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from semispline.solver.arrays import FloatArray
+from semispline.solver.blending.gram import EnergyForm
+from semispline.solver.blending.linear_alpha import LinearEnds, raised_basis
+from semispline.solver.blending.problem import BlendProblem
+from semispline.solver.splines import Basis, basis_matrix
+
+# Ends of the linear function that follows gap / |R_w|, over its mean, are at least this.
+_LEAST_SHAPE = 0.25
+# Where gap / |R_w| is compared.
+_PLACES = np.arange(65) / 64
+
+
+def gap_ratio(problem: BlendProblem) -> float:
+    """Return the largest over the smallest gap / |R_w| along the contact, of the side where it varies more.
+
+    1 where neither side has a shape parameter, or the contacts are closed: there alpha is constant.
+    """
+    if problem.seam_order >= 0:
+        return 1.0
+    ratios = [1.0]
+    for index in (0, 1):
+        if problem.free[index]:
+            sizes = _natural_along(problem, index)
+            ratios.append(float(sizes.max() / max(sizes.min(), np.finfo(float).tiny)))
+    return max(ratios)
+
+
+def with_linear_alpha(problem: BlendProblem) -> BlendProblem:
+    """Return the problem with alpha^2 linear in v wherever it is searched.
+
+    Each end has a window of its own, around the linear function that fits gap / |R_w| best.
+    """
+    ends = [_fitted(problem, index) if problem.free[index] else None for index in (0, 1)]
+    return _with_ends(problem, (ends[0], ends[1]))
+
+
+def with_given_ends(
+    problem: BlendProblem, a: tuple[float, float] | None = None, b: tuple[float, float] | None = None
+) -> BlendProblem:
+    """Return the problem with alpha^2 or beta^2 given by its end values; none leaves a side as it is."""
+    bounds, ends = list(problem.bounds), list(problem.linear)
+    for index, given in enumerate((a, b)):
+        if given is not None:
+            first, last = given
+            ends[index] = LinearEnds(((first, first), (last, last)), (1.0, 1.0))
+            # No unknown.
+            bounds[index] = (1.0, 1.0)
+    return _with_ends(replace(problem, bounds=(bounds[0], bounds[1])), (ends[0], ends[1]))
+
+
+def _with_ends(problem: BlendProblem, linear: tuple[LinearEnds | None, LinearEnds | None]) -> BlendProblem:
+    """Raise the degrees of the rows that hold a linear alpha^2."""
+    rows, scaled = list(problem.rows), list(problem.form.rows)
+    for (side, indices, _), ends, before in zip(problem.contacts, linear, problem.linear, strict=True):
+        if ends is not None and before is None:
+            for r in range(side.order + 1):
+                i = indices[r]
+                rows[i], scaled[i] = raised_basis(rows[i], r), raised_basis(scaled[i], r)
+    return replace(problem, form=EnergyForm(problem.form.u, tuple(scaled)), rows=tuple(rows), linear=linear)
+
+
+def _fitted(problem: BlendProblem, index: int) -> LinearEnds:
+    sizes = _natural_along(problem, index)
+    slope, start = np.polyfit(_PLACES, sizes / sizes.mean(), 1)
+    shape = max(float(start), _LEAST_SHAPE), max(float(start + slope), _LEAST_SHAPE)
+    low, high = problem.bounds[index]
+    return LinearEnds(((low * shape[0], high * shape[0]), (low * shape[1], high * shape[1])), shape)
+
+
+def _natural_along(problem: BlendProblem, index: int) -> FloatArray:
+    """Return gap / |R_w| along the contact."""
+    sides = problem.a, problem.b
+    basis: Basis = sides[0].along
+    v = basis.knots[0] + (basis.knots[-1] - basis.knots[0]) * _PLACES
+    values = [basis_matrix(side.along.degree, side.along.knots, v) for side in sides]
+    gap = np.linalg.norm(values[0] @ sides[0].rows[0] - values[1] @ sides[1].rows[0], axis=1)
+    side = sides[index]
+    across = values[index] @ (side.rows[1] - side.rows[0]) * (side.degree / side.spans[0])
+    return np.asarray(gap / np.maximum(np.linalg.norm(across, axis=1), np.finfo(float).tiny))
