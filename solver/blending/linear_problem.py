@@ -14,6 +14,8 @@ from semispline.solver.splines import Basis, basis_matrix
 
 # Ends of the linear function that follows gap / |R_w|, over its mean, are at least this.
 _LEAST_SHAPE = 0.25
+# The window of an end is so much wider than that of a constant, on both sides: one end gives way to the other.
+_WIDER = 2.0
 # Where gap / |R_w| is compared.
 _PLACES = np.arange(65) / 64
 
@@ -71,7 +73,7 @@ def _fitted(problem: BlendProblem, index: int) -> LinearEnds:
     sizes = _natural_along(problem, index)
     slope, start = np.polyfit(_PLACES, sizes / sizes.mean(), 1)
     shape = max(float(start), _LEAST_SHAPE), max(float(start + slope), _LEAST_SHAPE)
-    low, high = problem.bounds[index]
+    low, high = problem.bounds[index][0] / _WIDER, problem.bounds[index][1] * _WIDER
     return LinearEnds(((low * shape[0], high * shape[0]), (low * shape[1], high * shape[1])), shape)
 
 
