@@ -169,7 +169,7 @@ def continuity_name(value: object, name: str = "continuity") -> Continuity:
     Raises
     ------
     OptionError
-        It is none of the six.
+        It is none of the eight.
     """
     upper = value.upper() if isinstance(value, str) else ""
     return cast("Continuity", upper if upper in get_args(Continuity) else _word(value, name, get_args(Continuity)))
