@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Annotated, Any, cast
 
 import typer
 
-from semispline.solver.errors import ContactError, EdgeError, TrimError
+from semispline.solver.errors import ContactError, EdgeError
 from semispline.solver.exit_status import ANSWER_IS_NO, reports_errors
 from semispline.solver.option_flags import takes_blend_options
 from semispline.solver.options import BlendOptions, Continuity, continuity_name
@@ -27,7 +27,6 @@ from semispline.solver.reports import (
 )
 
 if TYPE_CHECKING:
-    from semispline.solver.io import LoadedSurface
     from semispline.solver.judge import Contact
 
 app = typer.Typer(no_args_is_help=True, add_completion=False, pretty_exceptions_enable=False)
@@ -56,16 +55,21 @@ def blend_command(
     report: Annotated[str | None, typer.Option(metavar="FILE", help="JSON with energy, alpha, beta, contact.")] = None,
 ) -> None:
     """Join an edge of A and an edge of B by a semi-structured surface of least energy."""
-    from semispline.solver.io import atomic_path, check_surface_output, read_surfaces, to_text, write_surface
+    from semispline.solver.io import (
+        atomic_path,
+        check_surface_output,
+        read_surfaces,
+        to_text,
+        trim_warnings,
+        write_surface,
+    )
 
     _check_edges(edge_a, edge_b)
     check_surface_output(out)
     _check_outputs({"--out": out, "--report": report}, [a, b])
     with _progress("reading"):
         first, second = read_surfaces([a, b])
-    trims = _trim_warnings((a, edge_a, first), (b, edge_b, second))
-    if options.strict and trims:
-        raise TrimError(f"{'; '.join(trims)}; name another edge, give the untrimmed surface, or leave out --strict")
+    trims = trim_warnings((a, edge_a, first), (b, edge_b, second), strict=options.strict)
     with _progress("blending"):
         from semispline.solver.blending import blend
         from semispline.solver.judge import Base
@@ -96,7 +100,7 @@ def check_command(
     ] = None,
 ) -> None:
     """Measure how an edge of A and an edge of B meet: gap, angle, jumps of curvature and its rates, and where."""
-    from semispline.solver.io import read_surfaces
+    from semispline.solver.io import read_surfaces, trim_warnings
     from semispline.solver.judge import Base, measure_contact
 
     _check_edges(edge_a, edge_b)
@@ -109,7 +113,7 @@ def check_command(
         contact = measure_contact(*bases, order=4)
     misses = _misses(contact, required)
     doubts = _doubts(contact, required, misses)
-    warnings = _trim_warnings((a, edge_a, first), (b, edge_b, second))
+    warnings = trim_warnings((a, edge_a, first), (b, edge_b, second))
     if json_file is not None:
         record = {"a": a, "edge_a": edge_a, "b": b, "edge_b": edge_b, "unit": first.unit, **contact_record(contact)}
         record["warnings"] = list(warnings)
@@ -220,14 +224,6 @@ def _write_json(path: str, record: dict[str, Any]) -> None:
         typer.echo(to_text(record), nl=False)
     else:
         write_text(path, to_text(record))
-
-
-def _trim_warnings(*edges: tuple[str, str, LoadedSurface]) -> tuple[str, ...]:
-    """Return a warning for each edge that is not an edge of the face that the file holds."""
-    from semispline.solver.io import trimmed_edge_warning
-
-    found = (trimmed_edge_warning(*edge) for edge in edges)
-    return tuple(warning for warning in found if warning)
 
 
 def _misses(contact: Contact, require: Continuity | None) -> list[str]:

@@ -11,7 +11,8 @@ from scipy.integrate import quad
 from scipy.interpolate import BSpline
 
 from helpers.bases import facing_pair, random_knots
-from semispline import BSplineCurve, BSplineSurface, InputError, SemiStructuredSurface, blend, thin_plate_energy
+from helpers.papers_set import blend
+from semispline import BSplineCurve, BSplineSurface, InputError, SemiStructuredSurface, thin_plate_energy
 from semispline.solver.blending.gram import EnergyForm, gram_matrix
 from semispline.solver.judge.de_boor import surface_points
 from semispline.solver.splines.quadrature import Basis, gauss_rule

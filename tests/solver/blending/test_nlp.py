@@ -11,12 +11,12 @@ from hypothesis import strategies as st
 from scipy.optimize import minimize
 
 from helpers.bases import FACING, facing_pair, moved, patch
-from semispline import Base, BlendOptions, BSplineSurface, ComputationError, blend
+from helpers.papers_set import blend, make_problem
+from semispline import Base, BSplineSurface, ComputationError
 from semispline.derivations.energy import Basis as ExactBasis
 from semispline.derivations.energy import ExactSurface
 from semispline.derivations.problem import ExactBase, blend_problem, derivatives_at, lagrangian
 from semispline.solver.blending.nlp import constrained_problem, solve_constrained, sparse_rank
-from semispline.solver.blending.problem import make_problem
 from semispline.solver.blending.sides import make_side, matched_sides
 from semispline.solver.judge.correspondence import Correspondence
 
@@ -40,7 +40,7 @@ def small_pair():
 def small_problem(middle_curves):
     a, b = small_pair()
     sides = make_side(Base(a, "u0"), "G2"), make_side(Base(b, "u0"), "G2")
-    return make_problem(*sides, BlendOptions(middle_curves=middle_curves))
+    return make_problem(*sides, middle_curves=middle_curves)
 
 
 def exact_basis(basis):
@@ -211,7 +211,7 @@ def test_ipopt_is_not_beaten_near_its_answer(seed):
     # Nelder-Mead on (a, b) over linear solves knows nothing of CasADi.
     a, b = facing_pair(np.random.default_rng(seed), edges=("u0", "u0"), backwards=(False, False))
     sides = matched_sides(make_side(a, "G2"), make_side(b, "G2"), Correspondence(flipped=False))
-    problem = make_problem(*sides, BlendOptions())
+    problem = make_problem(*sides)
     found = solve_constrained(problem)
 
     def energy(z):
