@@ -79,7 +79,8 @@ def find_layout(a: Side, b: Side, said: BlendOptions) -> tuple[Layout, tuple[Can
     best = attempt(first)
     if best is not None and not _is_searched(best.problem, first):
         return best, ()
-    if (best is None or active_bounds(best.problem, best.found)) and said.degree_u == "auto" and first.degree_u == 5:
+    doubtful = best is None or best.found.condoned or active_bounds(best.problem, best.found)
+    if doubtful and said.degree_u == "auto" and first.degree_u == 5:
         best = _fairer(best, attempt(replace(first, degree_u=4)))
     if best is None:
         raise cast("ComputationError", tried[0][1])
@@ -93,7 +94,7 @@ def _is_searched(problem: BlendProblem, options: BlendOptions) -> bool:
 def _fairer(one: Layout | None, other: Layout | None) -> Layout | None:
     """Return the fairer layout; the first one where they are equal."""
     found = [layout for layout in (one, other) if layout is not None]
-    return min(found, key=_fairness, default=None)
+    return min(found, key=lambda layout: (len(layout.found.condoned), _fairness(layout)), default=None)
 
 
 def _fairness(layout: Layout) -> float:

@@ -21,7 +21,7 @@ from semispline.solver.blending.fairness_grid import (
     along,
     rough_along,
 )
-from semispline.solver.blending.fairness_table import LEAST_COSINE, FairnessTable
+from semispline.solver.blending.fairness_table import FOLDS, LEAST_COSINE, LOOPS, FairnessTable
 from semispline.solver.blending.problem import BlendProblem
 from semispline.solver.blending.projected import Point, descend, unbound
 from semispline.solver.errors import ComputationError
@@ -64,6 +64,8 @@ class FairSolution:
         Evaluations of J.
     refused : dict
         How many candidates were refused for each reason, "folds" and "loops".
+    condoned : tuple of str
+        What is no longer refused, because every candidate was: "folds", then "loops" too.
     """
 
     a: float
@@ -73,16 +75,43 @@ class FairSolution:
     slope: float
     tried: int
     refused: dict[str, int]
+    condoned: tuple[str, ...] = ()
 
 
 def solve_fair(problem: BlendProblem) -> FairSolution:
     """Find the shape parameters of the fairest blend.
 
+    Where the bases are so rough, or face each other so badly, that every candidate is refused, the fairest of them is
+    taken all the same: what is wrong with it is measured on the finished surface, and said.
+
     Raises
     ------
     ComputationError
-        Every candidate is refused, or what is left cannot be measured.
+        No candidate can be measured.
     """
+    refused: dict[str, int] = {}
+    for refusable, condoned in (((FOLDS, LOOPS), ()), ((LOOPS,), ("folds",))):
+        try:
+            found = _solved(problem, refusable)
+        except _AllRefusedError as refusal:
+            refused = refused or refusal.counts
+            continue
+        return replace(found, refused=refused or found.refused, condoned=condoned)
+    return replace(_solved(problem, ()), refused=refused, condoned=("folds", "loops"))
+
+
+class _AllRefusedError(ComputationError):
+    def __init__(self, counts: dict[str, int]) -> None:
+        reasons = " and ".join(f"{n} run loops" if name == "loops" else f"{n} fold" for name, n in counts.items() if n)
+        super().__init__(
+            f"no candidate is left: {reasons or 'none can be measured'}; try another edge, another direction (flip), "
+            "or a middle curve"
+        )
+        self.counts = counts
+
+
+def _solved(problem: BlendProblem, refusable: tuple[int, ...]) -> FairSolution:
+    """Find them with what is refused; `_AllRefusedError` where that leaves nothing."""
     # Where a large block was freed, the C library keeps what is freed after it: else half of the time goes into pages.
     np.empty(_WORKSPACE)
     layers, exponents = problem.shape_layers()
@@ -90,7 +119,7 @@ def solve_fair(problem: BlendProblem) -> FairSolution:
     u, rows = problem.form.u, problem.rows
 
     def grid(in_u: Across, in_v: Along, least_cosine: float = LEAST_COSINE) -> FairObjective:
-        return FairObjective(unknowns, FairnessTable(problem, layers, in_u, in_v, least_cosine))
+        return FairObjective(unknowns, FairnessTable(problem, layers, in_u, in_v, least_cosine, refusable))
 
     # The tips of U-turns are sharp.
     rough = grid(across(u, NODES_U) if problem.exits.u_turn else across(u, ROUGH_U), rough_along(rows), _SCAN_COSINE)
@@ -115,10 +144,7 @@ def solve_fair(problem: BlendProblem) -> FairSolution:
         start = kept[np.argmin(search.values(kept))]
         found = _settled(_refined(search.point(start), start, levels[-1:]), start, fine)
     if found is None:
-        name = "folds" if fine.refused["folds"] + search.refused["folds"] else "runs a loop"
-        raise ComputationError(
-            f"the fairest blend found {name}; try another edge, another direction (flip), or a middle curve"
-        )
+        raise _AllRefusedError({name: refused[name] + fine.refused[name] for name in refused})
     tried = sum(objective.tried for objective in (rough, between, search, fine) if objective is not None)
     return _solution(problem, unknowns, found, fine, tried, refused)
 
@@ -136,15 +162,7 @@ def _scan(objective: FairObjective, cells: int) -> tuple[FloatArray, FloatArray]
     points[..., is_scanned] = np.stack(grids, axis=-1)
     values = objective.values(points.reshape(-1, points.shape[-1])).reshape(points.shape[:-1])
     if not np.isfinite(values).any():
-        reasons = " and ".join(
-            f"{count} run loops" if name == "loops" else f"{count} fold"
-            for name, count in objective.refused.items()
-            if count
-        )
-        raise ComputationError(
-            f"each of {values.size} candidates is refused: {reasons}; try another edge, another direction (flip), or a "
-            "middle curve"
-        )
+        raise _AllRefusedError(dict(objective.refused))
     return points.reshape(-1, points.shape[-1]), values
 
 

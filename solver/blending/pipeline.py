@@ -115,7 +115,7 @@ def blend(
     creases = measure_creases(surface)
     shape = _measured_shape(surface, a, b, chosen)
     warnings = (
-        shape_warnings(shape, regularity, creases)
+        shape_warnings(shape, regularity, creases, is_fair=found.fairness is not None)
         + bound_warnings(problem, layout.found)
         + rounding_warning(rounding, surface, energy)
         + seam_warning(a, b)

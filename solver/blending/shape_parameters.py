@@ -26,6 +26,7 @@ class Found:
     p2: tuple[float, float] = (0.0, 0.0)
     fairness: float | None = None
     known: str = ""
+    condoned: tuple[str, ...] = ()
 
 
 def find_shape_parameters(problem: BlendProblem, options: BlendOptions) -> Found:
@@ -44,8 +45,11 @@ def find_shape_parameters(problem: BlendProblem, options: BlendOptions) -> Found
         known = (
             f"least of {fair.tried} evaluations from several starts, not proved; slope at the end {fair.slope:.1e}, "
             f"refused: {fair.refused['folds']} candidates for folds, {fair.refused['loops']} for loops"
+            + (f"; these were all, so that {' and '.join(fair.condoned)} were let pass" if fair.condoned else "")
         )
-        return Found(fair.a, fair.b, method, fair.tried, p2=fair.p2, fairness=fair.value, known=known)
+        return Found(
+            fair.a, fair.b, method, fair.tried, p2=fair.p2, fairness=fair.value, known=known, condoned=fair.condoned
+        )
     if method == "reduced":
         from semispline.solver.blending.reduced import solve_reduced
 
