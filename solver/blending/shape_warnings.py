@@ -74,8 +74,8 @@ def _exits(shape: ShapeReport) -> Iterator[str]:
         )
     if loop.degrees > LOOP_DEGREES:
         yield (
-            f"the blend loops or waves: its section v = {loop.v:.3g} turns by {loop.turning_degrees:.0f} degrees, and its "
-            f"exits need {loop.needed_degrees:.0f}; try a smaller alpha, a box that ends lower, or alpha fair"
+            f"the blend loops or waves: its section v = {loop.v:.3g} turns by {loop.turning_degrees:.0f} degrees, and "
+            f"its exits need {loop.needed_degrees:.0f}; try a smaller alpha, a box that ends lower, or alpha fair"
         )
 
 
