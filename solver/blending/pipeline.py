@@ -105,7 +105,7 @@ def blend(
     surface = _surface(problem, found, sides, frame)
     energy = thin_plate_energy(surface)
     seconds = time.perf_counter() - started
-    rounding = measure_energy_rounding(problem, surface, frame, energy)
+    rounding = measure_energy_rounding(problem, found, surface, frame, energy)
     # What came out, judged by code that knows nothing of the above.
     contact_a, contact_b = _checked_contacts(a, b, surface, chosen.continuities, matched, found)
     if found.certificate is not None:
@@ -152,7 +152,6 @@ def blend(
         certificate=None if rounding.matters else found.certificate,
         proven_gap=None if rounding.matters else found.proven_gap,
         p2=found.p2,
-        fairness=found.fairness,
         constraint_rank=found.constraint_rank,
         seconds=seconds,
     )
@@ -315,8 +314,9 @@ def _checked_contacts(
     found: Found,
 ) -> tuple[Contact, Contact]:
     """Let the referee measure both contacts, and refuse a result that misses its limits."""
-    contact_a = measure_contact(a, Base(surface, "u0"), correspondence=Correspondence(flipped=False))
-    contact_b = measure_contact(Base(surface, "u1"), b, correspondence=matched)
+    order = max(2, *(int(wanted[1]) for wanted in continuity))
+    contact_a = measure_contact(a, Base(surface, "u0"), correspondence=Correspondence(flipped=False), order=order)
+    contact_b = measure_contact(Base(surface, "u1"), b, correspondence=matched, order=order)
     for name, base, contact, wanted, shape in (
         ("a", a, contact_a, continuity[0], found.a),
         ("b", b, contact_b, continuity[1], found.b),

@@ -97,8 +97,6 @@ class BlendResult:
         What the proof leaves open, as a fraction of the energy.
     p2 : (float, float)
         The second shape parameter of each side, P_uu = alpha^4 R_ww + p2 R_w; 0 where nobody asked for it.
-    fairness : float or None
-        Area times integral of |grad H|^2, no units, where that was minimised: the least of all that was tried.
     constraint_rank : (int, int) or None
         Rank of the constraint Jacobian at the solution, and its number of rows; only for method casadi.
     seconds : float
@@ -134,7 +132,6 @@ class BlendResult:
     certificate: Certificate | None
     proven_gap: float | None
     p2: tuple[float, float]
-    fairness: float | None
     constraint_rank: tuple[int, int] | None
     seconds: float
 

@@ -9,7 +9,7 @@ import numpy as np
 from semispline.solver.arrays import FloatArray
 from semispline.solver.blending.closing import reseamed
 from semispline.solver.blending.layout import check_knots_apart
-from semispline.solver.errors import EdgeError, OptionError
+from semispline.solver.errors import EdgeError
 from semispline.solver.generated import contact_numpy, rows_numpy, shape_numpy
 from semispline.solver.judge import Base, Correspondence
 from semispline.solver.options import ROWS_PER_SIDE, Continuity
@@ -123,14 +123,10 @@ def make_side(base: Base, continuity: Continuity, name: str = "base") -> Side:
 
     Raises
     ------
-    OptionError
-        Contact of an order that blends do not have.
     EdgeError
         The base is rational or semi-structured, has too many knots along the edge that count as one, or next to no
         span beside an edge where derivatives are asked for.
     """
-    if continuity in ("G3", "G4"):
-        raise OptionError(f"continuity: found {continuity}, which is measured but not yet blended, expected at most G2")
     surface = base.surface
     if not isinstance(surface, BSplineSurface):
         raise EdgeError(f"{name}: a semi-structured surface, expected a B-spline surface; convert it with to_bspline()")

@@ -1,6 +1,6 @@
 """Rates of curvature, by arc length, of the section of a surface with the plane square to an edge.
 
-In the plane through a point of the edge, square to the edge, with the tangent t and the normal N of the surface as axes,
+In the plane through a point of the edge, square to the edge, with a tangent t and the normal N of the surface as axes,
 the section is z = f(x) with f'(0) = 0. There curvature, its rate and its second rate are f'', f''' and
 f'''' - 3 f''^3.
 """

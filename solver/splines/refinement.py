@@ -16,7 +16,7 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import ArrayLike, NDArray
 
-from semispline.solver.arrays import FloatArray, SparseMatrix, finite_array
+from semispline.solver.arrays import FloatArray, SparseMatrix, exact_origin, finite_array
 from semispline.solver.errors import ControlPointError, KnotError
 from semispline.solver.scalars import is_whole, whole_number
 from semispline.solver.splines.knots import MERGE_TOLERANCE, clamped
@@ -119,6 +119,17 @@ def refinement_matrix(degree: int, knots: FloatArray, refined: FloatArray) -> Sp
         )
     n = len(refined) - degree - 1
     return blossom_matrix(degree, knots, refined[:n], _windows(refined, degree, n))
+
+
+def combined(matrix: SparseMatrix, points: FloatArray) -> FloatArray:
+    """Return affine combinations of points, shape (n, ...), formed around an origin near them.
+
+    So they round as their distance from each other asks for, wherever the points lie; but for the last addition.
+    """
+    flat = points.reshape(len(points), -1)
+    width = points.shape[-1]
+    origin = np.tile(exact_origin(points.reshape(-1, width)), flat.shape[1] // width)
+    return np.asarray(matrix @ (flat - origin) + origin).reshape(-1, *points.shape[1:])
 
 
 def elevated_knots(knots: FloatArray, by: int = 1) -> FloatArray:

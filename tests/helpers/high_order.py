@@ -4,8 +4,8 @@ from math import comb, factorial
 
 import numpy as np
 
-from helpers.bases import turned
-from semispline import Base, BSplineCurve, SemiStructuredSurface
+from helpers.bases import FACING, moved, turned
+from semispline import Base, BSplineCurve, BSplineSurface, SemiStructuredSurface
 
 # The inner knots that carry order n at both ends without a free row.
 SIZES = {3: ((4, 3), (5, 2), (6, 1), (7, 0)), 4: ((5, 4), (6, 3), (7, 2), (8, 1), (9, 0))}
@@ -89,19 +89,33 @@ def hand_made(a, b, order, *, p_a, p_b, size=None, faults=None):
     return SemiStructuredSurface(degree, knots, curves)
 
 
-def facing(rng, order, edges=("u0", "u0"), counts=(6, 7)):
-    """Two random bases of degree 4 over a gap of about 1, and p_1.. of a sensible size for both."""
-    from helpers.bases import FACING, moved, patch
+def sheet(rng, ranges):
+    """A wavy patch of degrees 4 and 3 over a sheared unit square, u away from its edge u0."""
+    net = np.zeros((7, 6, 3))
+    knots = []
+    for axis, (degree, n) in enumerate(((4, 7), (3, 6))):
+        t = uniform(degree, n - degree - 1)
+        greville = np.array([t[i + 1 : i + degree + 1].mean() for i in range(n)])
+        net[..., axis] = greville[:, None] if axis == 0 else greville
+        low, high = ranges[axis]
+        knots.append(low + t * (high - low))
+    net[..., 1] += rng.uniform(-0.4, 0.4) * net[..., 0]
+    net += rng.uniform(-0.02, 0.02, net.shape)
+    net[..., 2] += 0.1 * rng.uniform(-1, 1, (7, 6))
+    return BSplineSurface(4, 3, *knots, net)
 
+
+def facing(rng, order, edges=("u0", "u0")):
+    """Two random bases over a gap of about 1, and p_1, .., p_order of a sensible size for both."""
     found = []
     for k, edge in enumerate(edges):
-        ranges = [(lo := float(rng.uniform(-2, 2)), lo + float(rng.uniform(0.5, 4))) for _ in range(2)]
-        surface = patch(rng, degrees=(4, 3), counts=counts, ranges=ranges)
+        ranges = [(low := float(rng.uniform(-2, 2)), low + float(rng.uniform(0.5, 4))) for _ in range(2)]
+        surface = sheet(rng, ranges)
         if k:
             surface = moved(surface, FACING, (-1.0, 0.1, 0.4))
-        width = np.ptp(ranges[0])
-        # The blend runs over 1, the base's unit square over `width`.
-        p = [-width * rng.uniform(0.7, 1.4)] + [width * rng.uniform(-1, 1) for _ in range(order - 1)]
+        # The blend runs over 1, and so do the bases over the width of their parameter.
+        width = ranges[0][1] - ranges[0][0]
+        p = width * np.concatenate([[-rng.uniform(0.7, 1.4)], rng.uniform(0.3, 1, order - 1)])
         found.append((Base(turned(surface, edge, False), edge), p))
     (a, p_a), (b, p_b) = found
     return a, b, p_a, p_b

@@ -9,7 +9,11 @@ import numpy as np
 from helpers.occ import to_geom
 from semispline import BSplineSurface
 
-FRACTIONS = (0.03, 0.35, 0.71, 0.96)
+FRACTIONS = np.array([0.03, 0.35, 0.71, 0.96])
+
+
+def _plain(base):
+    return base.surface if isinstance(base.surface, BSplineSurface) else base.surface.to_bspline()
 
 
 def _geometry(base):
@@ -17,8 +21,7 @@ def _geometry(base):
 
     At the end of a span of high degree Open CASCADE's derivatives lose a few digits.
     """
-    surface = base.surface if isinstance(base.surface, BSplineSurface) else base.surface.to_bspline()
-    geometry, across_u = to_geom(surface), base.edge[0] == "u"
+    geometry, across_u = to_geom(_plain(base)), base.edge[0] == "u"
     if base.edge[1] == "1":
         geometry = geometry.UReversed() if across_u else geometry.VReversed()
     u0, _, v0, _ = geometry.Bounds()
@@ -83,23 +86,35 @@ def section(X, normal_like=None):
     return normal, sign * np.array(found)
 
 
-def relative_jumps(a, b, order, *, flipped=False):
-    """Largest jumps of curvature and its rates up to those of `order`, from edge a into b, over the scales of G2..G4."""
-    at_a, at_b = _derivatives(a, order), _derivatives(b, order)
-    (a0, a1), (b0, b1) = a.range_along, b.range_along
-    knots = [(base.breakpoints_along() - low) / (high - low) for base, (low, high) in ((a, (a0, a1)), (b, (b0, b1)))]
-    breaks = np.unique(np.round(np.concatenate([knots[0], 1 - knots[1] if flipped else knots[1]]), 12))
-    jumps, values = [], []
-    for low, high in zip(breaks[:-1], breaks[1:], strict=True):
-        for t in low + (high - low) * np.array(FRACTIONS):
-            normal, of_a = section(at_a(a0 + t * (a1 - a0)))
-            _, of_b = section(at_b(b0 + (1 - t if flipped else t) * (b1 - b0)), normal)
-            # Both are followed away from the edge, so in opposite directions: the rate changes its sign.
-            of_a[1:2] *= -1
-            jumps.append(np.abs(of_a - of_b))
-            values.append(np.abs([of_a, of_b]).max(axis=0))
-    largest = np.max(values, axis=0)
-    nets = [base.surface if isinstance(base.surface, BSplineSurface) else base.surface.to_bspline() for base in (a, b)]
-    size = np.ptp(np.concatenate([net.control_points.reshape(-1, 3) for net in nets]), axis=0).max()
-    scales = [max(value, largest[0] ** (k + 1), 1e-3 / size ** (k + 1)) for k, value in enumerate(largest)]
-    return np.max(jumps, axis=0) / scales
+class Contact:
+    """Two edges that meet, b's parameter running affinely with a's, against it where `flipped`."""
+
+    def __init__(self, a, b, order, *, flipped=False):
+        self.a, self.b, self.flipped = a, b, flipped
+        self.at_a, self.at_b = _derivatives(a, order), _derivatives(b, order)
+
+    def rates(self, s):
+        """(kappa, kappa_s, kappa_ss) of both sides, at a parameter along edge a, with one normal, in one direction."""
+        (a0, a1), (b0, b1) = self.a.range_along, self.b.range_along
+        t = (s - a0) / (a1 - a0)
+        normal, of_a = section(self.at_a(s))
+        _, of_b = section(self.at_b(b0 + (1 - t if self.flipped else t) * (b1 - b0)), normal)
+        # Both are followed away from the edge, so in opposite directions: the rate changes its sign.
+        of_a[1:2] *= -1
+        return of_a, of_b
+
+    def relative_jumps(self):
+        """Largest jumps at a few places in each span of both edges, over the scales of G2, G3 and G4."""
+        (a0, a1), (b0, b1) = self.a.range_along, self.b.range_along
+        of_b = (self.b.breakpoints_along() - b0) / (b1 - b0)
+        breaks = np.concatenate([(self.a.breakpoints_along() - a0) / (a1 - a0), 1 - of_b if self.flipped else of_b])
+        # At a knot of either side its derivatives along the edge have two values.
+        breaks = np.unique(np.round(breaks, 12))
+        places = (breaks[:-1, None] + np.diff(breaks)[:, None] * FRACTIONS).ravel()
+        found = np.array([self.rates(a0 + t * (a1 - a0)) for t in places])
+        largest = np.abs(found).max(axis=(0, 1))
+        points = [_plain(side).control_points.reshape(-1, 3) for side in (self.a, self.b)]
+        size = np.ptp(np.concatenate(points), axis=0).max()
+        powers = 1 + np.arange(len(largest))
+        scale = np.maximum(np.maximum(largest, largest[0] ** powers), 1e-3 / size**powers)
+        return np.abs(found[:, 0] - found[:, 1]).max(axis=0) / scale

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+import semispline
 from helpers.papers_set import blend, state_problem
 from semispline import Base, BSplineCurve, BSplineSurface, reverse_u, revolve_polynomial, transform
 from semispline.solver.judge import tied_directions
@@ -98,7 +99,7 @@ def test_a_rim_run_backwards_gives_the_same_surface(pair):
 @pytest.mark.parametrize("degrees", [60, 89.9, 90, 90.1, 95, 150])
 def test_an_elbow_keeps_the_inside_inside(degrees):
     a, b = elbow(degrees)
-    result = blend(a, b, v_scale="length")
+    result = semispline.blend(a, b)
     v = np.linspace(*result.surface.domain[1], 101)
     # The distance from the axis of the bend, the y-axis: from 2 inside to 4 outside, on both rims alike.
     first, second = (np.hypot(*result.surface.evaluate_grid([u], v)[0][:, [0, 2]].T) for u in (0, 1))

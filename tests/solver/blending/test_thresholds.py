@@ -80,6 +80,27 @@ def test_seams_are_closed_up_to_a_billionth_and_rounding(times, order, largest, 
     assert (seam_order(along, rows, largest) >= 0) is (order == 0)
 
 
+@pytest.mark.parametrize(("times", "order"), [(0.5, 0), (0.9, 0), (1.1, -1), (2.0, -1)])
+@pytest.mark.parametrize("length", [1e-3, 1.0])
+def test_seams_are_smooth_up_to_a_billionth_of_the_largest_derivative(times, order, length):
+    along, rows = ring()
+    along = Basis(along.degree, length * along.knots)
+    # Closed still, and turned a little where it begins: derivatives do not go with the extent.
+    first = along.degree / along.knots[along.degree + 1]
+    derivatives = along.degree * np.diff(rows[0], axis=0) / (along.knots[4:-1] - along.knots[1:-4])[:, None]
+    rows[0, 1, 2] += times * 1e-9 * max(np.abs(derivatives).max(), np.ptp(rows, axis=1).max()) / first
+    assert (seam_order(along, rows, 1.0) >= 1) is (order == 0)
+
+
+@pytest.mark.parametrize(("times", "order"), [(0.9, 0), (1.1, -1)])
+def test_where_a_ring_is_counts_on_both_sides_of_the_origin(times, order):
+    for offset in (100.0, -100.0):
+        along, rows = ring()
+        rows += offset
+        rows[0, -1, 2] += times * (1e-9 * np.abs(rows).max() + 16 * EPS * 100)
+        assert (seam_order(along, rows, 100.0) >= 0) is (order == 0)
+
+
 @pytest.mark.parametrize("distance", [1e3, 1e5, 1e7])
 def test_a_closed_pair_far_away_keeps_its_seam_smooth(distance):
     rng = np.random.default_rng(0)
