@@ -223,6 +223,20 @@ def test_no_shift_at_all_within_a_billionth():
         assert (correspond(a, Base(moved(a.surface, matrix), "u1")).shift == 0) is is_none
 
 
+@pytest.mark.parametrize("spans", [1, 3, 700])
+def test_the_natural_size_is_a_mean_over_the_contact(spans):
+    # A gap of sqrt(1 + (5 v)^2) over a speed of 2 on one side and 1 on the other: no polynomial.
+    knots = np.concatenate([[0.0], np.linspace(0, 1, spans + 1), [1.0]])
+    v = knots[1:-1]
+    row = np.stack([np.zeros_like(v), v, np.zeros_like(v)], axis=1)
+    tilted = np.stack([np.ones_like(v), v, 5 * v], axis=1)
+    a = BSplineSurface(1, 1, K1, knots, np.stack([row - [2.0, 0, 0], row]))
+    b = BSplineSurface(1, 1, K1, knots, np.stack([tilted, tilted + [1.0, 0, 0]]))
+    mean = (np.sqrt(26) + np.arcsinh(5) / 5) / 2
+    problem = state_problem(Base(a, "u1"), Base(b, "u0")).problem
+    assert problem.natural == pytest.approx((mean / 2, mean), rel=1e-9)
+
+
 @pytest.mark.parametrize(("times", "refused"), [(0.5, True), (0.9, True), (1.1, False), (2.0, False)])
 @pytest.mark.parametrize(
     ("bases", "size", "message"),
