@@ -34,7 +34,7 @@ app = typer.Typer(no_args_is_help=True, add_completion=False, pretty_exceptions_
 _EDGES = ("u0", "u1", "v0", "v1")
 _SURFACE_HELP = "PATH, or PATH#N as `semispline list PATH` numbers it (JSON, STEP, IGES, BREP, 3dm)."
 _EDGE_HELP = "Edge of {}: u0, u1, v0 or v1, the parameter that is constant along it and at which end."
-_CONTINUITY_HELP = "C0, C1, C2, G0, G1 or G2."
+_CONTINUITY_HELP = "C0, C1, C2, G0, G1, G2, G3 or G4."
 
 SurfaceA = Annotated[str, typer.Argument(metavar="A", help=_SURFACE_HELP)]
 SurfaceB = Annotated[str, typer.Argument(metavar="B", help="The same for the other surface.")]
@@ -99,7 +99,7 @@ def check_command(
         str | None, typer.Option("--json", metavar="FILE", help="Write the figures; - is standard output.")
     ] = None,
 ) -> None:
-    """Measure how an edge of A and an edge of B meet: gap, angle, curvature jump, and where they are worst."""
+    """Measure how an edge of A and an edge of B meet: gap, angle, jumps of curvature and its rates, and where."""
     from semispline.solver.io import read_surfaces, trim_warnings
     from semispline.solver.judge import Base, measure_contact
 
@@ -109,7 +109,8 @@ def check_command(
     with _progress("reading"):
         first, second = read_surfaces([a, b])
     with _progress("measuring"):
-        contact = measure_contact(Base(first.surface, cast(Any, edge_a)), Base(second.surface, cast(Any, edge_b)))
+        bases = Base(first.surface, cast(Any, edge_a)), Base(second.surface, cast(Any, edge_b))
+        contact = measure_contact(*bases, order=4)
     misses = _misses(contact, required)
     doubts = _doubts(contact, required, misses)
     warnings = trim_warnings((a, edge_a, first), (b, edge_b, second))
@@ -229,14 +230,13 @@ def _misses(contact: Contact, require: Continuity | None) -> list[str]:
     """Return, of each measure that falls short, its name, value and limit."""
     if require is None:
         return []
-    from semispline.solver.judge import required_limits
+    from semispline.solver.judge import shortfalls
 
     return [
         f"{name.replace('_', ' ')} is {value:.3g}, at most {limit:.3g} allowed"
         if not isnan(value)
         else f"{name.replace('_', ' ')} does not exist where there is no normal"
-        for name, value, limit in required_limits(contact, require)
-        if not value <= limit
+        for name, value, limit in shortfalls(contact, require)
     ]
 
 
@@ -258,7 +258,7 @@ def _doubts(contact: Contact, require: Continuity | None, misses: list[str]) -> 
             f"{require} cannot be told: {'; '.join(hidden)}; move both surfaces nearer to the origin, in the program "
             "that made them, or choose knots that are further apart"
         )
-    places = contact.no_normal if require in ("G1", "G2") else ()
+    places = contact.no_normal if require in ("G1", "G2", "G3", "G4") else ()
     return [f"{place.surface.upper()} has {place}" for place in places] + doubtful(contact, require)
 
 

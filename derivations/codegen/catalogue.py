@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from sympy import Expr, Integer, Matrix, Symbol, diag
 
-from semispline.derivations.codegen.program_backend import program_module
+from semispline.derivations.codegen.program_backend import program_function, program_module, pullback_function
 from semispline.derivations.codegen.python_backends import CASADI, NUMPY, python_module
 from semispline.derivations.codegen.routines import Argument, Routine, plain_symbols
 from semispline.derivations.contact import (
@@ -18,7 +18,7 @@ from semispline.derivations.contact import (
     rows_from_derivatives,
 )
 from semispline.derivations.energy import SECOND_DERIVATIVES, gram_block, thin_plate_density
-from semispline.derivations.fairness import fairness_program, reversed_program
+from semispline.derivations.fairness import fairness_program
 from semispline.derivations.shape import MAX_POWER, contact_row_powers, energy_polynomial, product_symbol
 from semispline.derivations.splines import end_derivatives, span_symbols
 
@@ -264,13 +264,14 @@ def generated_files() -> dict[str, str]:
     )
     title = "Rows of a blend from its derivatives at a contact, and these from the chain rule"
     files["rows_numpy.py"] = python_module(title, contact_sources, rows, NUMPY)
-    program = fairness_program()
+    source, program = "derivations/fairness.py", fairness_program()
+    summary = "|grad H|^2 per du dv, area element, mean curvature, speed along u"
     files["fairness_numpy.py"] = program_module(
         "Fairness: |grad H|^2 dA of a surface from its derivatives, and the gradient of what is made of it",
-        "derivations/fairness.py",
+        source,
         (
-            ("fairness", "|grad H|^2 per du dv, area element, mean curvature, speed along u.", program),
-            ("fairness_gradient", "Adjoints of the derivatives.", reversed_program(program)),
+            program_function("fairness", f"{summary}.", source, program),
+            pullback_function("fairness_pullback", f"{summary}; and the adjoints of the derivatives.", source, program),
         ),
     )
     return dict(sorted(files.items()))

@@ -11,7 +11,9 @@ from semispline.solver.options import Method as Search
 
 def blend_semistructured(search: Search, task: BlendTask) -> Outcome:
     """Blend with G2 contact."""
-    return outcome_of(blend(task.a, task.b, continuity="G2", middle_curves=task.middle_curves, method=search))
+    return outcome_of(
+        blend(task.a, task.b, continuity="G2", middle_curves=task.middle_curves, alpha="energy", method=search)
+    )
 
 
 def outcome_of(result: BlendResult) -> Outcome:

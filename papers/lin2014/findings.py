@@ -195,7 +195,7 @@ def _real_pair(comparisons: Comparisons) -> Iterator[Finding]:
             continue
         words = "; ".join(
             f"the {contact} blend {'folds over itself' if m.folds else 'does not fold'}: its normal turns by up to "
-            f"{m.largest_turn_degrees:.0f} degrees between neighbouring samples, its least area element is "
+            f"{m.turn_degrees:.0f} degrees within a fiftieth of its length, its least area element is "
             f"{m.least_area_ratio:.2g} of the mean"
             for contact, m in shown
         )

@@ -124,7 +124,7 @@ def _pair_drawings(task: BlendTask) -> list[Drawing]:
 def draw_pair(name: str, continuity: Continuity, zebra: bool, path: Path) -> None:
     """Draw the blend of a pair between its bases: shaded with its control points, or with zebra stripes."""
     task = pair(name).task
-    result = blend(task.a, task.b, continuity=continuity, middle_curves=task.middle_curves)
+    result = blend(task.a, task.b, continuity=continuity, middle_curves=task.middle_curves, alpha="energy")
     surfaces = [task.a.surface, task.b.surface, result.surface]
     if zebra:
         render(surfaces, path, field="zebra")

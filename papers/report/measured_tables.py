@@ -33,7 +33,7 @@ def methods_table(comparisons: Sequence[Comparison]) -> Table:
             continue
         values = (
             number, comparison.method.title, reached(comparison.task, m), outcome.control_points, m.energy, m.bending,
-            m.gap, m.angle_degrees, m.curvature_jump_relative, m.c2_residual, m.folds, m.largest_turn_degrees,
+            m.gap, m.angle_degrees, m.curvature_jump_relative, m.c2_residual, m.folds, m.turn_degrees,
             m.least_area_ratio, m.mean_curvature, outcome.alpha2, outcome.beta2, outcome.iterations, m.seconds,
             _remark(outcome, m),
         )  # fmt: skip
@@ -48,13 +48,13 @@ METHODS_NOTE = (
     "in model units; the jump is that of the normal curvature across the contact, relative to the largest one there; "
     "the C2 residual that of second derivatives, each in its own parameter. Energy is (11) in the blend's parameters; "
     "∫ κ₁²+κ₂² is over the surface, so it does not depend on them (– where it does not settle). |H|: least and largest "
-    "mean curvature of the blend, 1/length. Folds: the normal turns by more than 90 degrees at a contact or between "
-    "neighbouring samples inside. Seconds: the method alone, one run on this machine."
+    "mean curvature of the blend, 1/length. Folds: the normal turns by more than 90 degrees at a contact, or inside "
+    "within 1/50 of the blend's length: that is the turn inside. Seconds: the method alone, one run on this machine."
 )
 
 _SIDE_HEAD = (
     "pair", "contact", "energy", "α²", "β²", "gap a", "angle a [°]", "curvature jump a", "gap b", "angle b [°]",
-    "curvature jump b", "largest turn inside [°]", "least area / mean", "control points", "seconds", "bounds hit",
+    "curvature jump b", "turn inside [°]", "least area / mean", "control points", "seconds", "bounds hit",
 )  # fmt: skip
 
 
@@ -68,7 +68,7 @@ def blends_table(chosen: Iterable[tuple[str, Comparison]]) -> Table:
         a, b = m.contact_a, m.contact_b
         values = (
             comparison.task.name, contact, m.energy, outcome.alpha2, outcome.beta2, a.gap, a.angle_degrees,
-            a.curvature_jump_relative, b.gap, b.angle_degrees, b.curvature_jump_relative, m.largest_turn_degrees,
+            a.curvature_jump_relative, b.gap, b.angle_degrees, b.curvature_jump_relative, m.turn_degrees,
             m.least_area_ratio, outcome.control_points, m.seconds, outcome.note or "none",
         )  # fmt: skip
         rows.append(tuple(map(cell, values)))

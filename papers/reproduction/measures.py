@@ -11,7 +11,6 @@ from semispline.papers.reproduction.contact_measures import (
     FOLD,
     ContactMeasure,
     SeamMeasure,
-    angle_degrees,
     contact_measure,
     samples,
     seam_measure,
@@ -22,6 +21,7 @@ from semispline.solver.judge import (
     ParametricSurface,
     geometry_grid,
     measure_regularity,
+    measure_turn,
     model_size,
 )
 from semispline.solver.splines import BSplineSurface, SemiStructuredSurface
@@ -51,8 +51,8 @@ class Measures:
     seconds : float
     least_area_ratio : float
         Least |P_u x P_v| over its mean, on samples in every span.
-    largest_turn_degrees : float
-        Largest angle between the normals of neighbouring samples.
+    turn_degrees : float
+        Largest angle between the normals at two points of one section that lie 1/50 of its mean length apart.
     mean_curvature : (float, float)
         Least and largest |mean curvature| of the blend, 1/length.
     mean_curvature_with_bases : (float, float)
@@ -70,7 +70,7 @@ class Measures:
     iterations: int | None
     seconds: float
     least_area_ratio: float
-    largest_turn_degrees: float
+    turn_degrees: float
     mean_curvature: tuple[float, float]
     mean_curvature_with_bases: tuple[float, float]
     seam: SeamMeasure | None
@@ -99,7 +99,7 @@ class Measures:
     @property
     def folds(self) -> bool:
         """Whether the blend turns back, at a contact or inside."""
-        turns = (self.contact_a.turn_degrees, self.contact_b.turn_degrees, self.largest_turn_degrees)
+        turns = (self.contact_a.turn_degrees, self.contact_b.turn_degrees, self.turn_degrees)
         return max(turns) > FOLD
 
 
@@ -111,7 +111,6 @@ def measure(task: BlendTask, outcome: Outcome) -> Measures:
         contact_measure(side, surface, end, aligned=outcome.aligned) for end, side in enumerate(sides)
     )
     bending, area = bending_and_area(surface)
-    least_area, largest_turn = regularity(surface)
     own = mean_curvature_range(surface)
     others = [mean_curvature_range(side.surface) for side in sides]
     return Measures(
@@ -123,8 +122,8 @@ def measure(task: BlendTask, outcome: Outcome) -> Measures:
         outcome.control_points,
         outcome.iterations,
         outcome.seconds,
-        least_area,
-        largest_turn,
+        least_area_ratio(surface),
+        measure_turn(surface).degrees,
         own,
         (min(own[0], *(low for low, _ in others)), max(own[1], *(high for _, high in others))),
         seam_measure(surface) if task.closed else None,
@@ -156,21 +155,14 @@ def bending_and_area(surface: ParametricSurface) -> tuple[float | None, float]:
     return (fine if abs(fine - rough) <= _SETTLED * abs(fine) else None), area
 
 
-def regularity(surface: ParametricSurface) -> tuple[float, float]:
-    """Return the least area element over its mean, and the largest angle between neighbouring normals in degrees.
-
-    The samples are those of `semispline.solver.measure_regularity`, which serves splines.
-    """
+def least_area_ratio(surface: ParametricSurface) -> float:
+    """Return the least area element over its mean, on samples in every span."""
     if isinstance(surface, BSplineSurface | SemiStructuredSurface):
-        found = measure_regularity(surface)
-        return found.least_area_ratio, found.largest_turn_degrees
+        return measure_regularity(surface).least_area_ratio
     u, v = (samples(breaks) for breaks in surface.breakpoints)
     cross = np.cross(surface.evaluate_grid(u, v, 1, 0), surface.evaluate_grid(u, v, 0, 1))
     area = np.linalg.norm(cross, axis=2)
-    turn = max(
-        float(angle_degrees(cross[:-1], cross[1:]).max()), float(angle_degrees(cross[:, :-1], cross[:, 1:]).max())
-    )
-    return float(area.min() / area.mean()), turn
+    return float(area.min() / area.mean())
 
 
 def mean_curvature_range(surface: ParametricSurface) -> tuple[float, float]:

@@ -9,6 +9,7 @@ import numpy as np
 from semispline.solver.arrays import FloatArray
 from semispline.solver.blending.gram import EnergyForm
 from semispline.solver.blending.problem import BlendProblem
+from semispline.solver.blending.shape_parameters import Found
 from semispline.solver.splines import SemiStructuredSurface, breakpoints
 
 # An energy that rounding may change by more than this fraction is said to be rounding, and nothing is proved of it.
@@ -39,13 +40,15 @@ class EnergyRounding:
 
 
 def measure_energy_rounding(
-    problem: BlendProblem, surface: SemiStructuredSurface, frame: tuple[FloatArray, float], energy: float
+    problem: BlendProblem, found: Found, surface: SemiStructuredSurface, frame: tuple[FloatArray, float], energy: float
 ) -> EnergyRounding:
     """Bound what errors of 1e-16 of the largest coordinate, in all points of the blend and its bases, do to the energy.
 
     Parameters
     ----------
     problem : BlendProblem
+    found : Found
+        The shape parameters of the blend.
     surface : SemiStructuredSurface
         The blend, model units.
     frame : (ndarray of shape (3,), float)
@@ -60,7 +63,7 @@ def measure_energy_rounding(
     own = problem.form if problem.form.rows is problem.rows else EnergyForm(problem.form.u, problem.rows)
     # Of the surface as it is, and with v stretched as in the energy that is minimised; vv, uv, uu stretch unlike.
     stretch = (_length(problem.form) / _length(own)) ** np.array([-3.0, -1.0, 1.0])
-    largest = _error_factors(problem, points / size)
+    largest = _error_factors(problem, found)
     parts = own.error_energies(largest) * float(np.sum(errors**2))
     least = energy * float(stretch.min())
     floor, minimised_floor = (_ZERO_ENERGY * _bent(form) * size**2 for form in (own, problem.form))
@@ -78,24 +81,17 @@ def measure_energy_rounding(
     return EnergyRounding(change, share)
 
 
-def _error_factors(problem: BlendProblem, points: FloatArray) -> FloatArray:
+def _error_factors(problem: BlendProblem, found: Found) -> FloatArray:
     """Return how much larger than in the bases errors are in each row, shape (m + 1,); 1 for free rows.
 
     Prescribed rows are combinations of rows of the bases, with large weights of both signs where these have a narrow
-    span beside the edge. What p2 adds is small beside that.
+    span beside the edge.
     """
     factors = np.ones(len(problem.rows))
-    offsets = problem.form.offsets
-    for side, rows, spans in problem.contacts:
-        if side.order == 0:
-            continue
-        # The combinations themselves: of rows (1, 0, 0), (0, 1, 0) and (0, 0, 1).
-        weights = replace(side, rows=np.eye(3)[:, None])
-        # alpha^2 as the blend has it: how far its second row is from the first.
-        first, second = (points[offsets[row] : offsets[row + 1]] for row in rows[:2])
-        at_one = side.contact_rows(1.0, problem.form.u.degree, spans)
-        a = np.abs(second - first).max() / np.abs(at_one[1] - at_one[0]).max() if side.has_shape_parameter else 1.0
-        sums = np.abs(weights.contact_rows(float(a), problem.form.u.degree, spans)).sum(axis=(1, 2))
+    for (side, rows, spans), a, p2 in zip(problem.contacts, (found.a, found.b), found.p2, strict=True):
+        # The combinations themselves: of rows (1, 0, ..), (0, 1, ..) and so on.
+        weights = replace(side, rows=np.eye(side.count)[:, None])
+        sums = np.abs(weights.contact_rows(a, problem.form.u.degree, spans, p2)).sum(axis=(1, 2))
         factors[rows[: side.order + 1]] = np.maximum(sums, 1.0)
     return factors
 

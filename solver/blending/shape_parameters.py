@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from semispline.solver.blending.problem import BlendProblem
 from semispline.solver.options import BlendOptions
@@ -25,6 +25,7 @@ class Found:
     search_excess: float | None = None
     p2: tuple[float, float] = (0.0, 0.0)
     fairness: float | None = None
+    known: str = ""
 
 
 def find_shape_parameters(problem: BlendProblem, options: BlendOptions) -> Found:
@@ -34,17 +35,24 @@ def find_shape_parameters(problem: BlendProblem, options: BlendOptions) -> Found
     """
     method = options.method
     if not any(problem.free):
-        return Found(*problem.start, method="linear")
+        a, b = problem.start
+        return Found(a, b, method="linear", p2=(problem.p2[0].at(a), problem.p2[1].at(b)))
     if "fair" in options.alphas:
         from semispline.solver.blending.fair_search import solve_fair
 
         fair = solve_fair(problem)
-        return Found(fair.a, fair.b, method, fair.tried, p2=fair.p2, fairness=fair.value)
+        known = (
+            f"least of {fair.tried} evaluations from several starts, not proved; slope at the end {fair.slope:.1e}, "
+            f"refused: {fair.refused['folds']} candidates for folds, {fair.refused['loops']} for loops"
+        )
+        return Found(fair.a, fair.b, method, fair.tried, p2=fair.p2, fairness=fair.value, known=known)
     if method == "reduced":
         from semispline.solver.blending.reduced import solve_reduced
 
         proved = solve_reduced(problem)
-        return Found(proved.a, proved.b, method, certificate=proved.certificate, proven_gap=proved.gap)
+        objective = f"thin plate (11), v_scale {options.v_scale}, by alpha^2 and beta^2"
+        certificate = replace(proved.certificate, objective=objective)
+        return Found(proved.a, proved.b, method, certificate=certificate, proven_gap=proved.gap)
     if method == "casadi":
         from semispline.solver.blending.nlp import solve_constrained
 
@@ -82,3 +90,9 @@ def active_bounds(problem: BlendProblem, found: Found) -> tuple[str, ...]:
         # 1e-9: what the ways there and back between alpha and alpha^2 in natural units may round.
         active += [f"{name} lower"] * (value <= low * (1 + 1e-9)) + [f"{name} upper"] * (value >= high * (1 - 1e-9))
     return tuple(active)
+
+
+def bulged(found: Found, bulges: tuple[float, float]) -> Found:
+    """Return what was found with the u-lines run through faster: alpha^2 times the bulge, and p2 times its square."""
+    (a, b), (p2_a, p2_b) = bulges, found.p2
+    return replace(found, a=found.a * a, b=found.b * b, p2=(p2_a * a**2, p2_b * b**2))

@@ -76,7 +76,7 @@ def write_c(folder: str | Path, problem_file: str | Path) -> tuple[list[Path], t
     named = [edge for base, edge in zip(bases, edges, strict=True) if isinstance(base, str)]
     warnings = trim_warnings(*zip(specs, named, loaded, strict=True), strict=stored.options.strict)
     a, b = (Base(surface, edge) for surface, edge in zip(surfaces, edges, strict=True))
-    texts = c_files(state_problem(a, b, stored.options))
+    texts = c_files(state_problem(a, b, stored.options.decided("generated C")))
     if Path(folder).is_dir():
         check_outputs(
             {name: Path(folder) / name for name in texts}, [problem_file, *(split_spec(spec)[0] for spec in specs)]

@@ -34,7 +34,7 @@ def made_blend(continuity: Continuity = "G2") -> BlendResult:
 
 @cache
 def _blend_of(pair: Callable[[], tuple[Base, Base]], continuity: Continuity) -> BlendResult:
-    return blend(*pair(), continuity=continuity, middle_curves=1)
+    return blend(*pair(), continuity=continuity, alpha="energy")
 
 
 def with_printed_rows(
@@ -69,7 +69,7 @@ def with_printed_rows(
     return replace(surface, control_curves=tuple(curves))
 
 
-def _numbers(result: BlendResult, side: Side, base_degree: int, spans: tuple[float, float]) -> dict[Any, float]:
+def _numbers(result: BlendResult, side: Side, base_degree: int, spans: tuple[float, ...]) -> dict[Any, float]:
     """Return the number that each printed letter stands for in this blend."""
     surface = result.surface
     k, m = surface.degree_u + 1, len(surface.control_curves) - 1

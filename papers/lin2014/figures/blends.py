@@ -38,7 +38,7 @@ _COLORS = (BASE_COLOR, BASE_COLOR, BLEND_COLOR)
 def figure_blend(figure: int) -> BlendResult:
     """Return the blend that the figure shows: C2 or G2 as there, and with as many middle curves."""
     task = example(figure)
-    return blend(task.a, task.b, continuity=task.continuity, middle_curves=task.middle_curves)
+    return blend(task.a, task.b, continuity=task.continuity, middle_curves=task.middle_curves, alpha="energy")
 
 
 def common_knots_task() -> BlendTask:

@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from semispline import Base, BSplineCurve, BSplineSurface, blend
+from helpers.papers_set import blend
+from semispline import Base, BSplineCurve, BSplineSurface
 from semispline.papers.baselines.contacts import contact_sides
 from semispline.papers.baselines.interface import BlendTask, FormulaSurface, Outcome
 from semispline.papers.lin2014.examples.section5 import example

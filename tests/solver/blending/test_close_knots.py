@@ -8,6 +8,7 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from helpers.bases import tube, turned
+from helpers.papers_set import blend
 from semispline import (
     Base,
     BSplineCurve,
@@ -18,7 +19,6 @@ from semispline import (
     OptionError,
     SemisplineError,
     SemiStructuredSurface,
-    blend,
     insert_knots,
     read_surface,
 )

@@ -11,12 +11,12 @@ from hypothesis import strategies as st
 from scipy.optimize import minimize
 
 from helpers.bases import FACING, facing_pair, moved, patch
-from semispline import Base, BlendOptions, BSplineSurface, ComputationError, blend
+from helpers.papers_set import blend, make_problem
+from semispline import Base, BSplineSurface, ComputationError
 from semispline.derivations.energy import Basis as ExactBasis
 from semispline.derivations.energy import ExactSurface
 from semispline.derivations.problem import ExactBase, blend_problem, derivatives_at, lagrangian
 from semispline.solver.blending.nlp import constrained_problem, solve_constrained, sparse_rank
-from semispline.solver.blending.problem import make_problem
 from semispline.solver.blending.sides import make_side, matched_sides
 from semispline.solver.judge.correspondence import Correspondence
 
@@ -40,7 +40,7 @@ def small_pair():
 def small_problem(middle_curves):
     a, b = small_pair()
     sides = make_side(Base(a, "u0"), "G2"), make_side(Base(b, "u0"), "G2")
-    return make_problem(*sides, BlendOptions(middle_curves=middle_curves))
+    return make_problem(*sides, middle_curves=middle_curves)
 
 
 def exact_basis(basis):
@@ -168,6 +168,12 @@ def test_a_redundant_constraint_would_be_seen():
     assert sparse_rank(doubled) == jacobian.shape[0]
 
 
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_what_is_below_rounding_of_its_row_makes_no_rank(sign):
+    for noise, rank in ((1e-16, 1), (4e-16, 2)):
+        assert sparse_rank(sp.csr_array([[sign, sign * noise], [sign, 0.0]])) == rank
+
+
 @given(st.integers(0, 10**6), st.integers(1, 12), st.integers(1, 12), st.sampled_from([0.1, 0.3, 0.8]))
 def test_sparse_rank_is_the_dense_one(seed, rows, columns, density):
     # Small whole numbers: the dense rank is beyond doubt, and dependent rows are common.
@@ -211,7 +217,7 @@ def test_ipopt_is_not_beaten_near_its_answer(seed):
     # Nelder-Mead on (a, b) over linear solves knows nothing of CasADi.
     a, b = facing_pair(np.random.default_rng(seed), edges=("u0", "u0"), backwards=(False, False))
     sides = matched_sides(make_side(a, "G2"), make_side(b, "G2"), Correspondence(flipped=False))
-    problem = make_problem(*sides, BlendOptions())
+    problem = make_problem(*sides)
     found = solve_constrained(problem)
 
     def energy(z):

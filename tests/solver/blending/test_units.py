@@ -6,7 +6,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from helpers.bases import facing_pair, moved, ring
-from semispline import Base, BSplineSurface, blend
+from helpers.papers_set import blend
+from semispline import Base, BSplineSurface
 
 # Moving rounds the input itself: eps times 10^4 sizes is 2e-12 of the size, and the blend, whose rows are differences
 # of such points, repeats that a few times over. What is asked for leaves a factor of a hundred.

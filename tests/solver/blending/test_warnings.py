@@ -1,4 +1,4 @@
-"""What a user should look at is a warning: steep turns and shape parameters at their bounds, from both sides."""
+"""What a user should look at is a warning: shape parameters at their bounds, from both sides, and rounding."""
 
 import re
 from dataclasses import replace
@@ -6,10 +6,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from helpers.bases import facing_pair, turned
-from semispline import Base, BSplineSurface, ContactError, FoldError, Regularity, blend
-from semispline.solver.blending.warnings import remedy, shape_warnings
-from semispline.solver.judge import Crease, NoNormal
+from helpers.bases import turned
+from helpers.papers_set import blend
+from semispline import Base, BSplineSurface, ContactError, FoldError
+from semispline.solver.blending.warnings import remedy
+from semispline.solver.judge import NoNormal
 from semispline.solver.splines import greville
 from semispline.solver.splines.operations import all_control_points
 
@@ -20,39 +21,6 @@ WALL = Base(BSplineSurface(1, 1, LINE, LINE, [[[2, 0, 1], [2, 1, 1]], [[2, 0, 2]
 BEST = 64 / 39
 # Natural size: a gap of sqrt(2) over a speed of 1.
 NATURAL = np.sqrt(2)
-
-
-@pytest.mark.parametrize(
-    ("turn", "bend", "said"),
-    [
-        (60.0, 0.0, None),
-        (60.001, 0.0, "turns steeply"),
-        (89.999, 0.0, "turns steeply"),
-        (90.0, 0.0, "folds"),
-        # A crease explains the rest.
-        (100.0, 40.0, None),
-        (100.0, 39.99, "turns steeply"),
-    ],
-)
-def test_turns_from_both_sides(turn, bend, said):
-    found = shape_warnings(Regularity(0.5, turn, None), (Crease("v", 0.5, bend),) if bend else ())
-    found = [warning for warning in found if "creased" not in warning]
-    assert len(found) == (said is not None)
-    assert all(said in warning for warning in found)
-
-
-def test_a_steep_turn_does_not_hide_a_pinch():
-    found = shape_warnings(Regularity(1e-4, 75.0, None), ())
-    assert ["steeply" in found[0], "pinched" in found[1]] == [True, True]
-
-
-def test_a_blend_that_turns_steeply_is_warned_of_and_strict_refuses_it():
-    a, b = facing_pair(np.random.default_rng(4))
-    result = blend(a, b, alpha="natural")
-    assert 60 < result.regularity.largest_turn_degrees < 90
-    assert [w for w in result.warnings if "turns steeply" in w]
-    with pytest.raises(FoldError, match="turns steeply"):
-        blend(a, b, alpha="natural", strict=True)
 
 
 @pytest.mark.parametrize("method", ["reduced", "casadi"])

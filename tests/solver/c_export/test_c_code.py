@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from helpers.bases import facing_pair, ring
-from semispline import Base, BSplineSurface, ComputationError, blend
+from helpers.papers_set import blend, state_problem
+from semispline import Base, BSplineSurface, ComputationError
 from semispline.solver.blending.nlp import constrained_problem
-from semispline.solver.blending.pipeline import state_problem
 from semispline.solver.c_export.files import c_files, c_functions
 
 pytestmark = pytest.mark.compiler
