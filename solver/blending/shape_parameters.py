@@ -43,7 +43,7 @@ def find_shape_parameters(problem: BlendProblem, options: BlendOptions) -> Found
         fair = solve_fair(problem)
         known = (
             f"least of {fair.tried} evaluations from several starts, not proved; slope at the end {fair.slope:.1e}, "
-            f"{fair.refused} candidates refused"
+            f"refused: {fair.refused['folds']} candidates for folds, {fair.refused['loops']} for loops"
         )
         return Found(fair.a, fair.b, method, fair.tried, p2=fair.p2, fairness=fair.value, known=known)
     if method == "reduced":

@@ -22,11 +22,12 @@ from semispline.solver.judge.sections import (
 # A surface whose normal turns by more than this within one window is folded.
 FOLD_DEGREES = 90.0
 # Steps along a section are at most this part of a window; where it turns most they are parted once more.
-_STEPS_IN_WINDOW, _FINER = 2, 5
+_STEPS_IN_WINDOW, _FINER = 2, 4
 # Sections altogether, and at least in each span; steps in each span before long ones are divided.
 _SECTIONS, _SECTIONS_IN_SPAN, _STEPS_IN_SPAN = 12, 3, 8
-# The places that are looked at closely, and into how many parts the sections beside each are parted.
-_CLOSELY, _PARTS_BESIDE = 3, 4
+# The places that are looked at closely, how often, into how many parts the sections beside each are parted, and how
+# much of the largest turn there must be.
+_CLOSELY, _TIMES, _PARTS_BESIDE, _NEARLY = 3, 2, 4, 0.75
 # A single step is divided into no more than these, and so many samples are held at once.
 _MOST_PARTS, _AT_ONCE = 64, 2**15
 
@@ -105,8 +106,17 @@ def turn_on_samples(surface: ParametricSurface, fineness: int) -> Turn:
     if looks[0].turn.degrees < 0:
         raise no_tangent_plane()
     # It may turn more between the samples of where it turns most.
-    closely = [look.sections.closely(look, fineness) for look in looks[:_CLOSELY]]
-    return max([looks[0].turn, *closely], key=lambda turn: turn.degrees)
+    chosen: list[_Look] = []
+    for look in looks:
+        much = look.turn.degrees > _NEARLY * looks[0].turn.degrees
+        if much and len(chosen) < _CLOSELY and not any(look.is_beside(other) for other in chosen):
+            chosen.append(look)
+    for first in chosen:
+        look = first
+        for _ in range(_TIMES):
+            look = look.sections.closely(look, fineness)
+            looks.append(look)
+    return max((look.turn for look in looks), key=lambda turn: turn.degrees)
 
 
 @dataclass(frozen=True, eq=False)
@@ -118,6 +128,11 @@ class _Look:
     run: FloatArray
     beside: FloatArray
     at: int
+
+    def is_beside(self, other: _Look) -> bool:
+        """Tell whether it is on a section that looking closely at the other one takes in."""
+        same = self.sections is other.sections
+        return same and bool(other.beside[0] <= self.turn.at <= other.beside[-1])
 
 
 def _first_looks(sections: _Sections, fineness: int) -> list[_Look]:
@@ -171,8 +186,8 @@ class _Sections:
         x, y, z = self.values(np.array(between[:1]), np.array([at]))[0, 0].tolist()
         return Turn(degrees, self.section, at, between, (x, y, z), self.window)
 
-    def closely(self, look: _Look, fineness: int) -> Turn:
-        """Return the largest turn around a first look: on more sections beside it, in shorter steps."""
+    def closely(self, look: _Look, fineness: int) -> _Look:
+        """Return the largest turn around another one: on more sections beside it, in shorter steps."""
         at = np.array([look.turn.at])
         length = np.append(0.0, np.cumsum(lengths(np.diff(self.values(look.run, at)[0], axis=0))))
         # From one window before it to where a window ends that begins one window after it.
@@ -184,7 +199,8 @@ class _Sections:
         part = _Sections(self.surface, self.section, self.window, closed=False)
         turns, ends = part.turns(near, beside)
         k, i = divmod(int(turns.argmax()), turns.shape[1])
-        return self.turn(float(turns[k, i]), float(beside[k]), (float(near[i]), float(ends[k, i])))
+        turn = self.turn(float(turns[k, i]), float(beside[k]), (float(near[i]), float(ends[k, i])))
+        return _Look(turn, part, near, beside[max(k - 1, 0) : k + 2], i)
 
 
 def _divided(run: FloatArray, parts: np.ndarray) -> FloatArray:

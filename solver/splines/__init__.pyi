@@ -33,6 +33,7 @@ from .quadrature import Basis as Basis
 from .quadrature import Samples as Samples
 from .quadrature import first_on_spans as first_on_spans
 from .quadrature import gauss_rule as gauss_rule
+from .quadrature import local_bases as local_bases
 from .quadrature import sample as sample
 from .refinement import blossom_matrix as blossom_matrix
 from .refinement import clamp_knots as clamp_knots
