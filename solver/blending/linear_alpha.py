@@ -92,6 +92,17 @@ def linear_rows(
     return total
 
 
+def scaled(value: LinearInV, factor: float) -> LinearInV:
+    """Return a multiple.
+
+    Examples
+    --------
+    >>> scaled((1.0, 2.0), 3.0)
+    (3.0, 6.0)
+    """
+    return (value[0] * factor, value[1] * factor) if isinstance(value, tuple) else value * factor
+
+
 def _ends(value: LinearInV) -> tuple[float, float]:
     return value if isinstance(value, tuple) else (value, value)
 

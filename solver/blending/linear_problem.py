@@ -44,33 +44,16 @@ def with_linear_alpha(problem: BlendProblem) -> BlendProblem:
 
     Each end has a window of its own, around the linear function that fits gap / |R_w| best.
     """
-    ends = [_fitted(problem, index) if problem.free[index] else None for index in (0, 1)]
-    return _with_ends(problem, (ends[0], ends[1]))
-
-
-def with_given_ends(
-    problem: BlendProblem, a: tuple[float, float] | None = None, b: tuple[float, float] | None = None
-) -> BlendProblem:
-    """Return the problem with alpha^2 or beta^2 given by its end values; none leaves a side as it is."""
-    bounds, ends = list(problem.bounds), list(problem.linear)
-    for index, given in enumerate((a, b)):
-        if given is not None:
-            first, last = given
-            ends[index] = LinearEnds(((first, first), (last, last)), (1.0, 1.0))
-            # No unknown.
-            bounds[index] = (1.0, 1.0)
-    return _with_ends(replace(problem, bounds=(bounds[0], bounds[1])), (ends[0], ends[1]))
-
-
-def _with_ends(problem: BlendProblem, linear: tuple[LinearEnds | None, LinearEnds | None]) -> BlendProblem:
-    """Raise the degrees of the rows that hold a linear alpha^2."""
+    linear = list(problem.linear)
     rows, scaled = list(problem.rows), list(problem.form.rows)
-    for (side, indices, _), ends, before in zip(problem.contacts, linear, problem.linear, strict=True):
-        if ends is not None and before is None:
+    for index, (side, indices, _) in enumerate(problem.contacts):
+        if problem.free[index]:
+            linear[index] = _fitted(problem, index)
             for r in range(side.order + 1):
                 i = indices[r]
                 rows[i], scaled[i] = raised_basis(rows[i], r), raised_basis(scaled[i], r)
-    return replace(problem, form=EnergyForm(problem.form.u, tuple(scaled)), rows=tuple(rows), linear=linear)
+    form = EnergyForm(problem.form.u, tuple(scaled))
+    return replace(problem, form=form, rows=tuple(rows), linear=(linear[0], linear[1]))
 
 
 def _fitted(problem: BlendProblem, index: int) -> LinearEnds:

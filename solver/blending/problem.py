@@ -17,9 +17,9 @@ from semispline.solver.blending.facing import VANISHING, measure_facing
 from semispline.solver.blending.free_system import FreeSystem
 from semispline.solver.blending.gram import EnergyForm
 from semispline.solver.blending.layout import blend_u_basis, middle_bases
-from semispline.solver.blending.linear_alpha import LinearEnds, LinearInV, linear_rows, monomials_of_ends
+from semispline.solver.blending.linear_alpha import LinearEnds, LinearInV, linear_rows, monomials_of_ends, raised_basis
 from semispline.solver.blending.sides import Side
-from semispline.solver.errors import EdgeError
+from semispline.solver.errors import EdgeError, OptionError
 from semispline.solver.options import Alpha, BlendOptions
 from semispline.solver.splines import (
     Basis,
@@ -244,7 +244,15 @@ def make_problem(a: Side, b: Side, options: BlendOptions) -> BlendProblem:
     middle = middle_bases(a.along, b.along, middle_curves, given, closed=closed >= 0)
     if closed >= 0 and isinstance(given, str):
         middle = [with_least_size(basis, 2 * basis.degree) for basis in middle]
-    rows = ((a.along,) * a.count) + tuple(middle) + ((b.along,) * b.count)
+    linear_a, linear_b = (
+        _given_ends(alpha) if side.has_shape_parameter else None
+        for side, alpha in zip((a, b), options.alphas, strict=True)
+    )
+    if closed >= 0 and (linear_a or linear_b):
+        raise OptionError(
+            "alpha: found two values for the ends of v on closed contacts, where both are one place; expected one"
+        )
+    rows = (*side_bases(a, linear_a), *middle, *side_bases(b, linear_b)[::-1])
     means = measure_facing(a, b)
     natural_a, natural_b = (
         means.gap / speed if _checked_speed(side, speed, name) else 1.0
@@ -260,7 +268,33 @@ def make_problem(a: Side, b: Side, options: BlendOptions) -> BlendProblem:
     if options.v_scale != "paper":
         length = 1.0 if options.v_scale == "unit" else sum(means.lengths) / 2 / means.gap
         form = EnergyForm(u, tuple(Basis(row.degree, affine_knots(row.knots, 0.0, length)) for row in rows))
-    return BlendProblem(form, rows, a, b, (natural_a, natural_b), (bounds_a, bounds_b), closed, exits, (p2_a, p2_b))
+    return BlendProblem(
+        form,
+        rows,
+        a,
+        b,
+        (natural_a, natural_b),
+        (bounds_a, bounds_b),
+        closed,
+        exits,
+        (p2_a, p2_b),
+        (linear_a, linear_b),
+    )
+
+
+def side_bases(side: Side, linear: LinearEnds | None) -> list[Basis]:
+    """Return the bases of the rows that are a side's own, from the contact on."""
+    return [
+        raised_basis(side.along, r) if linear is not None and r <= side.order else side.along for r in range(side.count)
+    ]
+
+
+def _given_ends(alpha: Alpha | None) -> LinearEnds | None:
+    """Return alpha^2 as given at both ends of v; none where it is not given so."""
+    if not isinstance(alpha, tuple):
+        return None
+    first, last = (float(value) ** 2 for value in alpha)
+    return LinearEnds(((first, first), (last, last)), (1.0, 1.0))
 
 
 def _bounds(
@@ -273,6 +307,9 @@ def _bounds(
     if alpha == "fair":
         low, high = box or (LOW_WINDOW if order > 2 else WIDE_WINDOW if exits.u_turn else WINDOW)
         return natural * exits.arc * low, natural * exits.arc * high
+    if isinstance(alpha, tuple):
+        # `LinearEnds` has them.
+        return 1.0, 1.0
     fixed = natural if alpha == "natural" else float(cast("float", alpha)) ** 2
     return fixed, fixed
 

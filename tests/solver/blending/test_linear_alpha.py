@@ -33,7 +33,6 @@ from semispline.solver.blending.linear_problem import (
     TAKEN_SHARE,
     gap_ratio,
     try_linear_alpha,
-    with_given_ends,
     with_linear_alpha,
 )
 from semispline.solver.blending.pipeline import state_problem
@@ -126,8 +125,8 @@ def test_contact_is_exact_with_any_ends(seed, order, degree, sides):
     stated = state_problem(*pair, **options, flip="no")
     (unit_a, unit_b), p2 = stated.problem.natural, (0.3, -0.2) if order == 2 else (0.0, 0.0)
     a, b = (0.6 * unit_a, 1.4 * unit_a), (1.2 * unit_b, 0.5 * unit_b)
-    given = (a, b) if sides == "both" else (a, None)
-    problem = with_given_ends(stated.problem, *given)
+    given = tuple(tuple(np.sqrt(ends)) for ends in (a, b)) if sides == "both" else (tuple(np.sqrt(a)), "fair")
+    problem = state_problem(*pair, **(options | {"alpha": given}), flip="no").problem
     assert problem.free == ((False, False) if sides == "both" else (False, True))
     second = (p2[0] * unit_a, p2[1] * unit_b)
     surface = finished(stated, problem, a, b if sides == "both" else unit_b, second)
@@ -143,6 +142,7 @@ def test_a_row_that_stays_too_low_is_seen(monkeypatch):
     stated = state_problem(*pair, **QUINTIC, flip="no")
     unit_a, unit_b = stated.problem.natural
     ends = (0.6 * unit_a, 1.4 * unit_a), (1.2 * unit_b, 0.5 * unit_b)
+    linear = with_linear_alpha(stated.problem)
     times = linear_alpha._times
 
     def too_low(points, basis, linear, degrees):
@@ -152,9 +152,9 @@ def test_a_row_that_stays_too_low_is_seen(monkeypatch):
             linear = [(low * low_2, high * high_2)]
         return times(points, basis, linear, degrees)
 
-    right = finished(stated, with_given_ends(stated.problem, *ends), *ends)
+    right = finished(stated, linear, *ends, (0.0, 0.0))
     monkeypatch.setattr(linear_alpha, "_times", too_low)
-    wrong = finished(stated, with_given_ends(stated.problem, *ends), *ends)
+    wrong = finished(stated, linear, *ends, (0.0, 0.0))
     assert contacts(right, pair)[0].curvature_jump_relative < 1e-10
     assert contacts(wrong, pair)[0].curvature_jump_relative > 1e-3
     assert contacts(wrong, pair)[0].angle_degrees < 1e-9
@@ -164,7 +164,7 @@ def test_equal_ends_are_the_constant():
     pair = random_facing(np.random.default_rng([21, 1]), most_angle=50)
     stated = state_problem(*pair, **QUINTIC)
     unit_a, unit_b = stated.problem.natural
-    linear = with_given_ends(stated.problem, (unit_a, unit_a), (unit_b, unit_b))
+    linear = with_linear_alpha(stated.problem)
     u, v = np.linspace(0, 1, 9), np.linspace(*pair[0].surface.domain[1], 9)
     one = finished(stated, stated.problem, unit_a, unit_b, (0.0, 0.0))
     other = finished(stated, linear, (unit_a, unit_a), (unit_b, unit_b), (0.0, 0.0))
