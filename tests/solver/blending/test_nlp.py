@@ -218,6 +218,37 @@ def test_what_is_off_in_one_place_counts_with_either_sign(monkeypatch, name, sai
         solve_constrained(small_problem(0))
 
 
+@pytest.mark.parametrize("times", [0.5, 2.0])
+def test_a_multiplier_of_a_bound_that_is_not_met_counts(monkeypatch, times):
+    # Least energy for shape parameters off the best: stationary but for them, where multipliers pretend a bound.
+    problem = small_problem(0)
+    best = solve_constrained(problem)
+    stated = constrained_problem(problem)
+    points = problem.control_points(times * best.a, times * best.b)
+    shape = np.sqrt(times * np.array([best.a, best.b]) / problem.natural)
+    x = np.concatenate([points.T.ravel(), shape])
+    slope, jacobian = (
+        np.asarray(ca.Function("f", [stated.x], [of])(x).full())
+        for of in (ca.gradient(stated.f, stated.x), ca.jacobian(stated.g, stated.x))
+    )
+    lam_g = np.linalg.lstsq(jacobian[:, :-2].T, -slope[:-2], rcond=None)[0]
+    lam_x = np.zeros((len(x), 1))
+    lam_x[-2:] = -(slope + jacobian.T @ lam_g)[-2:]
+    assert (lam_x[-2:] > 0).all() == (times < 1)
+    assert (lam_x[-2:] < 0).all() == (times > 1)
+    result = {
+        "x": ca.DM(x),
+        "f": 1.0,
+        "g": ca.DM.zeros(stated.g.shape[0]),
+        "lam_g": ca.DM(lam_g),
+        "lam_x": ca.DM(lam_x),
+    }
+    monkeypatch.setattr(nlp, "_optimum", lambda *_, **__: (result, {"iter_count": 1, "return_status": "Made_Up"}))
+    with pytest.raises(ComputationError, match="IPOPT ended with Made_Up after 1 steps, KKT residual") as error:
+        solve_constrained(problem)
+    assert "constraints missed by 0.0e+00" in str(error.value)
+
+
 @pytest.mark.parametrize(("low", "high", "start"), [(0.25, 4.0, 1.0), (1.44, 4.0, 1.2), (0.25, 0.81, 0.9)])
 def test_the_search_starts_at_the_natural_size_or_the_nearest_bound(low, high, start):
     problem = small_problem(0)
