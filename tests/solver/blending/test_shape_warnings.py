@@ -267,3 +267,15 @@ def test_where_a_surface_folds_is_told_by_both_parameters(section):
         creases = tuple(Crease("v", 0.5, angle) for angle in angles)
         found = kinds(shape_warnings(replace(report, turn=turn), regular, creases))
         assert [one for one in found if "creased" not in one] == kind
+
+
+@pytest.mark.parametrize(("places", "more"), [(4, None), (5, None), (6, 1), (9, 4)])
+def test_five_places_where_it_meets_something_are_named(places, more):
+    report, regular = measure_shape(sheets(1, 1)[0]), measure_regularity(sheets(1, 1)[0])
+    found = tuple(f"meets itself at place {i}" for i in range(places))
+    said = shape_warnings(replace(report, meets=replace(report.meets, found=found)), regular, ())
+    named = [f"the blend {place}; try" for place in found[:5]]
+    assert [text.startswith(start) for text, start in zip(said, named, strict=False)] == [True] * len(named)
+    assert list(said[len(named) :]) == (
+        [f"the blend meets itself or its bases in {more} more place(s)"] if more else []
+    )
