@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from functools import cache
-from math import comb, perm
+from itertools import pairwise
+from math import perm
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -70,8 +71,14 @@ def bezier_matrix(degree: int, knots: FloatArray, breaks: FloatArray) -> SparseM
 
 def bernstein(degree: int, t: FloatArray) -> FloatArray:
     """Return the Bernstein polynomials at t, shape (len(t), degree + 1)."""
-    i, t = np.arange(degree + 1), t[:, None]
-    return np.asarray([comb(degree, k) for k in range(degree + 1)] * t**i * (1 - t) ** i[::-1])
+    values = np.zeros((len(t), degree + 1))
+    values[:, 0] = 1.0
+    t = t[:, None]
+    for k in range(1, degree + 1):
+        raised = t * values[:, :k]
+        values[:, :k] -= raised
+        values[:, 1 : k + 1] += raised
+    return values
 
 
 @dataclass(frozen=True, eq=False)
@@ -151,9 +158,9 @@ class _Pieces:
         turned = rows.reshape(len(at_v), -1, 3).transpose(1, 2, 0).reshape(-1, 3 * len(at_v))
         pieces = (self.cut_u @ turned).reshape(-1, self.degree_u + 1, turned.shape[1])
         found = np.empty((len(at_u), turned.shape[1]))
-        for run in np.split(np.arange(len(at_u)), np.flatnonzero(np.diff(at_u)) + 1):
-            here = slice(run[0], run[-1] + 1)
-            found[here] = of_u[here] @ pieces[at_u[run[0]]]
+        ends = [0, *(np.flatnonzero(at_u[1:] != at_u[:-1]) + 1).tolist(), len(at_u)]
+        for start, end in pairwise(ends):
+            found[start:end] = of_u[start:end] @ pieces[at_u[start]]
         return found.reshape(len(at_u), 3, len(at_v)).transpose(0, 2, 1)
 
     def _basis(self, axis: int, x: ArrayLike, order: int) -> tuple[NDArray[np.intp], FloatArray]:
@@ -162,7 +169,7 @@ class _Pieces:
         key = axis, order, x.tobytes()
         if key not in self.known:
             breaks = self.breakpoints[axis]
-            at = np.clip(np.searchsorted(breaks, x, side="right") - 1, 0, len(breaks) - 2)
+            at = np.searchsorted(breaks[1:-1], x, side="right")
             self.known[key] = at, _derivatives(self._degree(axis), x, breaks, at, order)
         return self.known[key]
 

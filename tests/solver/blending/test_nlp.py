@@ -168,6 +168,12 @@ def test_a_redundant_constraint_would_be_seen():
     assert sparse_rank(doubled) == jacobian.shape[0]
 
 
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_what_is_below_rounding_of_its_row_makes_no_rank(sign):
+    for noise, rank in ((1e-16, 1), (4e-16, 2)):
+        assert sparse_rank(sp.csr_array([[sign, sign * noise], [sign, 0.0]])) == rank
+
+
 @given(st.integers(0, 10**6), st.integers(1, 12), st.integers(1, 12), st.sampled_from([0.1, 0.3, 0.8]))
 def test_sparse_rank_is_the_dense_one(seed, rows, columns, density):
     # Small whole numbers: the dense rank is beyond doubt, and dependent rows are common.
