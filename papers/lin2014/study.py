@@ -21,6 +21,8 @@ from semispline.solver.judge import Base
 from semispline.solver.pictures import BASE_COLOR, BLEND_COLOR, render
 
 IMPELLER_FACES = (102, 131)
+# From where both blades and the whole blend are seen.
+_TOWARDS_EYE = {"impeller": (-1.0, -1.0, 0.4)}
 PREFACE = (
     "The paper prints no control points. The bases below are our own stand-ins: they match its descriptions, its knot "
     "vectors and its model sizes. Energies, times and curvatures can therefore not be compared digit by digit with "
@@ -119,11 +121,12 @@ def draw_pair(name: str, zebra: bool, path: Path) -> None:
     task = pair(name).task
     result = blend(task.a, task.b)
     surfaces = [task.a.surface, task.b.surface, result.surface]
+    view = _TOWARDS_EYE.get(name)
     if zebra:
-        render(surfaces, path, field="zebra")
+        render(surfaces, path, field="zebra", towards_eye=view)
     else:
         colors = [BASE_COLOR, BASE_COLOR, BLEND_COLOR]
-        render(surfaces, path, colors=colors, control_points=[False, False, True])
+        render(surfaces, path, colors=colors, control_points=[False, False, True], towards_eye=view)
 
 
 _TABLE_1_HEAD = (
