@@ -140,6 +140,19 @@ def test_far_away_the_blend_is_rounded_once(closed):
         assert np.abs((second.rows - offset) - first.rows).max() <= most
 
 
+def test_degrees_and_knots_at_the_ends_of_their_ranges():
+    pair = Base(flat((-1.0, 0.0)), "u1"), Base(flat((1.0, 2.0), z=1.0), "u0")
+    # Six rows without middle curves: one span of degree 5.
+    assert len(state_problem(*pair, degree_u=5, middle_curves=0).problem.rows) == 6
+    with pytest.raises(OptionError, match=r"degree_u: found 6, expected 2 to 5 with 0 middle curve\(s\)"):
+        state_problem(*pair, degree_u=6, middle_curves=0)
+    for at in (0.0, 1.0):
+        with pytest.raises(OptionError, match=r"middle_knots\[0\]: found .*, expected values inside \(0.0, 1.0\)"):
+            state_problem(*pair, middle_knots=[[0.5, at]], middle_curves=1)
+        with pytest.raises(OptionError, match=r"u_knots: found .*, expected values inside"):
+            state_problem(*pair, u_knots=[0.5, at], middle_curves=0, degree_u=3)
+
+
 def test_spans_within_a_billionth_are_equally_long():
     for apart, inner in ((0.5e-9, 3), (2e-9, 2)):
         # Two spans, the second a little longer: halved together or alone.
@@ -170,6 +183,20 @@ def test_no_shift_at_all_within_a_billionth():
         angle = 2 * np.pi * turn
         matrix = np.array([[np.cos(angle), -np.sin(angle), 0], [np.sin(angle), np.cos(angle), 0], [0, 0, 1]])
         assert (correspond(a, Base(moved(a.surface, matrix), "u1")).shift == 0) is is_none
+
+
+@pytest.mark.parametrize("spans", [1, 3, 700])
+def test_the_natural_size_is_a_mean_over_the_contact(spans):
+    # A gap of sqrt(1 + (5 v)^2) over a speed of 2 on one side and 1 on the other: no polynomial.
+    knots = np.concatenate([[0.0], np.linspace(0, 1, spans + 1), [1.0]])
+    v = knots[1:-1]
+    row = np.stack([np.zeros_like(v), v, np.zeros_like(v)], axis=1)
+    tilted = np.stack([np.ones_like(v), v, 5 * v], axis=1)
+    a = BSplineSurface(1, 1, K1, knots, np.stack([row - [2.0, 0, 0], row]))
+    b = BSplineSurface(1, 1, K1, knots, np.stack([tilted, tilted + np.array([1.0, 0, 0])]))
+    mean = (np.sqrt(26) + np.arcsinh(5) / 5) / 2
+    problem = state_problem(Base(a, "u1"), Base(b, "u0")).problem
+    assert problem.natural == pytest.approx((mean / 2, mean), rel=1e-9)
 
 
 @pytest.mark.parametrize(("times", "refused"), [(0.5, True), (0.9, True), (1.1, False), (2.0, False)])
