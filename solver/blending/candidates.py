@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import cast
 
-from semispline.solver.blending.linear_problem import gap_ratio, try_linear_alpha
+from semispline.solver.blending.linear_problem import WIDER, gap_ratio, try_linear_alpha
 from semispline.solver.blending.problem import BlendProblem, make_problem
 from semispline.solver.blending.shape_parameters import Found, active_bounds, find_shape_parameters, found_fair
 from semispline.solver.blending.sides import Side
@@ -103,7 +103,9 @@ def _with_linear_alpha(constant: Layout, alpha_v: AlphaV) -> tuple[Layout, tuple
         return constant, ()
     if alpha_v == "linear" and constant.problem.seam_order >= 0:
         raise OptionError("alpha_v: found linear on closed contacts, expected auto or constant")
-    trial = try_linear_alpha(constant.problem, fair, always=alpha_v == "linear")
+    # A box that was asked for is not widened.
+    wider = WIDER if constant.options.box is None else 1.0
+    trial = try_linear_alpha(constant.problem, fair, always=alpha_v == "linear", wider=wider)
     if trial.problem is None or trial.solution is None:
         return constant, ()
     options = replace(constant.options, alpha_v="linear")

@@ -118,7 +118,7 @@ class _AllRefusedError(ComputationError):
         self.counts = counts
 
 
-def _solved(problem: BlendProblem, refusable: tuple[int, ...], known: FairSolution | None) -> FairSolution:
+def _solved(problem: BlendProblem, refusable: tuple[int, ...], known: FairSolution | None = None) -> FairSolution:
     """Find them with what is refused; `_AllRefusedError` where that leaves nothing."""
     # Where a large block was freed, the C library keeps what is freed after it: else half of the time goes into pages.
     np.empty(_WORKSPACE)
