@@ -125,9 +125,9 @@ def _spread(rows: Sequence[Row]) -> str:
             )
         )
     text = (
-        "Least, 10 %, median, 90 %, largest. Gap: mean distance of corresponding points in mean contact lengths; exit: "
-        "mean angle on each side between the way out and the straight way across; speed: across the contact, in contact "
-        "lengths over the base's own parameter; domain: length of the parameter range along the contact.\n\n"
+        "Least, 10 %, median, 90 %, largest. Gap: mean distance of corresponding points in mean contact lengths; "
+        "exit: mean angle on each side between the way out and the straight way across; speed: across the contact, "
+        "in contact lengths over the base's own parameter; domain: length of the parameter range along the contact.\n\n"
     )
     head = ("family", "pairs", "seeds", "gap", "exit, degrees", "speed", "domain")
     kinds = {row.kind: 0 for row in _of(rows, "closed rims")}
@@ -185,9 +185,9 @@ def _ratios(rows: Sequence[Row]) -> str:
 
 def _wants(rows: Sequence[Row]) -> str:
     text = (
-        "Energy (11), cubic, one middle curve, the paper's scale: its least point without any box, by the proved search "
-        "over -1024 to 1024 natural sizes. Where alpha² or beta² is not positive the blend would leave its base backwards; "
-        "below 1/8 of its natural size it has a crease at the seam. *Folds*: within 1/8 to 8, by its turn.\n\n"
+        "Energy (11), cubic, one middle curve, the paper's scale: its least point without any box, by the proved "
+        "search over -1024 to 1024 natural sizes. Where alpha² or beta² is not positive the blend would leave its base "
+        "backwards; below 1/8 of its natural size it has a crease at the seam. *Folds*: within 1/8 to 8, by turn.\n\n"
     )
     lines = []
     for family in FAMILIES:
@@ -220,8 +220,9 @@ def _listed(rows: Sequence[Row]) -> str:
 
 def _candidates(compared: Compared) -> str:
     text = (
-        'alpha by fairness with each; middle curves by thin plate with `v_scale="length"`. In how many pairs it is the best '
-        "of the six; A · GH over that of the best (median, 90 %, largest); how often refused; median of converted points.\n\n"
+        'alpha by fairness with each; middle curves by thin plate with `v_scale="length"`. In how many pairs it is the '
+        "best of the six; A · GH over that of the best (median, 90 %, largest); how often refused; median of converted "
+        "points.\n\n"
     )
     parts = []
     for family in FAMILIES:

@@ -33,7 +33,8 @@ def open_pair(family: Family, seed: int) -> ShapeProblem:
     Examples
     --------
     >>> pair = open_pair("u-turn", 3)
-    >>> pair.name, pair.kind, round(pair.measures.gap, 3), [round(x) for x in pair.measures.exit_degrees]
+    >>> pair.name, pair.kind, round(pair.measures.gap, 2), [round(x) for x in pair.measures.exit_degrees]
+    ('u-turn-003', 'exits to the same side', 1.07, [115, 122])
     """
     for attempt in range(1000):
         rng = np.random.default_rng([_NUMBERS[family], seed, attempt])
