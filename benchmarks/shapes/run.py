@@ -14,6 +14,7 @@ import os
 from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from pathlib import Path
+from typing import get_args
 
 import candidates
 import pictures
@@ -62,7 +63,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--resume", action="store_true")
     parser.add_argument("--tables", action="store_true")
-    parser.add_argument("--only", choices=["facing", "u-turn", "closed rims", "real"])
+    parser.add_argument("--only", choices=get_args(Family))
     asked = parser.parse_args()
     BUILD.mkdir(parents=True, exist_ok=True)
     path = BUILD / "rows.jsonl"

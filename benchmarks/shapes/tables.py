@@ -122,14 +122,17 @@ def _spread(rows: Sequence[Row]) -> str:
                 _quantiles([x for m in measures for x in m.exit_degrees]),
                 _quantiles([x for m in measures for x in m.speeds]),
                 _quantiles([x for m in measures for x in m.domains]),
+                _quantiles([x for m in measures for x in m.bends]),
+                _quantiles([x for m in measures for x in m.edge_turn_degrees]),
             )
         )
     text = (
         "Least, 10 %, median, 90 %, largest. Gap: mean distance of corresponding points in mean contact lengths; "
         "exit: mean angle on each side between the way out and the straight way across; speed: across the contact, "
-        "in contact lengths over the base's own parameter; domain: length of the parameter range along the contact.\n\n"
+        "in contact lengths over the base's own parameter; domain: length of the parameter range along the contact; "
+        "bend: largest curvature across the contact times the mean gap; turn along: of the normal in all, degrees.\n\n"
     )
-    head = ("family", "pairs", "seeds", "gap", "exit, degrees", "speed", "domain")
+    head = ("family", "pairs", "seeds", "gap", "exit, degrees", "speed", "domain", "bend", "turn along")
     kinds = {row.kind: 0 for row in _of(rows, "closed rims")}
     for row in _of(rows, "closed rims"):
         kinds[row.kind] += 1

@@ -34,7 +34,7 @@ class Row:
     Attributes
     ----------
     name : str
-    family : {"facing", "u-turn", "closed rims", "real"}
+    family : {"facing", "u-turn", "closed rims", "rough", "real"}
     kind : str
     seed : int
     measures : PairMeasures

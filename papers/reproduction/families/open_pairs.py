@@ -13,12 +13,37 @@ from semispline.solver.splines import BSplineSurface, clamped, greville
 # Inner knots along and across a contact, at most.
 ALONG, ACROSS = 5, 2
 GAPS = (0.2, 2.0)
-EXITS: dict[Family, tuple[float, float]] = {"facing": (0.0, 80.0), "u-turn": (90.0, 150.0)}
+EXITS: dict[Family, tuple[float, float]] = {"facing": (0.0, 80.0), "u-turn": (90.0, 150.0), "rough": (0.0, 80.0)}
 # Parameter domains spread over so many decades.
 DECADES = 2.0
 # The way out keeps so far from the edge itself: closer to it a base is a sliver.
 LEAST_TO_EDGE = 25.0
-_NUMBERS: dict[Family, int] = {"facing": 1, "u-turn": 2}
+_NUMBERS: dict[Family, int] = {"facing": 1, "u-turn": 2, "rough": 4}
+
+
+@dataclass(frozen=True)
+class _Roughness:
+    """How far bases are from even ones.
+
+    Attributes
+    ----------
+    bow : float
+        How far a contact leaves its chord, as an arch and as an S, in each of three directions.
+    depth : float
+        How far a base reaches at the least, in contact lengths; across this way it bends by up to 60 degrees.
+    uneven : float
+        c of the way s + c s^2 that is run through across, at most; -0.4 at the least.
+    dent : float
+        Of control points, in the least distance between their rows.
+    """
+
+    bow: float
+    depth: float
+    uneven: float
+    dent: float
+
+
+_EVEN, _ROUGH = _Roughness(0.06, 0.5, 1.0, 0.08), _Roughness(0.12, 0.3, 1.5, 0.15)
 
 
 def open_pair(family: Family, seed: int) -> ShapeProblem:
@@ -28,7 +53,9 @@ def open_pair(family: Family, seed: int) -> ShapeProblem:
     ("u-turn"), to the same side of the chord or to opposite ones, sideways by up to 30 degrees, 0 to 5 inner knots
     along and 0 to 2 across; contacts bow, lean and are twisted against each other by up to 40 degrees; bases bend by up
     to 60 degrees, are dented and run through at uneven speeds; edges and directions at random, logarithms of the
-    lengths of domains over two decades. Drawn again until what is measured is within these ranges.
+    lengths of domains over two decades. Drawn again until what is measured is within these ranges. The family "rough"
+    is "facing" with twice the bows and dents: contacts may turn by half a circle, radii at a contact be a tenth of the
+    gap. It is there to see what is said of what nobody can blend well.
 
     Examples
     --------
@@ -39,7 +66,7 @@ def open_pair(family: Family, seed: int) -> ShapeProblem:
     for attempt in range(1000):
         rng = np.random.default_rng([_NUMBERS[family], seed, attempt])
         same_side = bool(rng.random() < 0.5)
-        surfaces = _surfaces(rng, EXITS[family], same_side)
+        surfaces = _surfaces(rng, EXITS[family], same_side, _ROUGH if family == "rough" else _EVEN)
         a, b = (on_edge(rng, surface, DECADES) for surface in surfaces)
         measures = measure_pair(a, b)
         if _is_within(measures, EXITS[family]):
@@ -77,7 +104,7 @@ class _Contact:
 
 
 def _surfaces(
-    rng: np.random.Generator, exits: tuple[float, float], same_side: bool
+    rng: np.random.Generator, exits: tuple[float, float], same_side: bool, roughness: _Roughness
 ) -> tuple[BSplineSurface, BSplineSurface]:
     """Return two bases, each met along u0."""
     gap = rng.uniform(*GAPS)
@@ -92,20 +119,26 @@ def _surfaces(
         way = chord if which == 0 else -chord
         side = np.cross(chord, along)
         contact = _Contact(
-            rng.uniform(-0.12, 0.12, (2, 3)), along, way, sign * side / np.linalg.norm(side), chord * gap * which
+            roughness.bow * rng.uniform(-1, 1, (2, 3)),
+            along,
+            way,
+            sign * side / np.linalg.norm(side),
+            chord * gap * which,
         )
-        made.append(_surface(rng, contact, np.radians(rng.uniform(*exits)), gap))
+        made.append(_surface(rng, contact, np.radians(rng.uniform(*exits)), gap, roughness))
     return made[0], made[1]
 
 
-def _surface(rng: np.random.Generator, contact: _Contact, exit_angle: float, gap: float) -> BSplineSurface:
+def _surface(
+    rng: np.random.Generator, contact: _Contact, exit_angle: float, gap: float, roughness: _Roughness
+) -> BSplineSurface:
     knots_u, knots_v = (_knots(rng, int(rng.integers(0, most + 1))) for most in (ACROSS, ALONG))
     s, t = greville(knots_u, 3), greville(knots_v, 3)
     # How far the base reaches; one that reaches towards the other stays short of the middle.
-    depth = rng.uniform(0.3, 1.2)
+    depth = rng.uniform(roughness.depth, 1.2)
     towards = -np.cos(exit_angle)
     depth = min(depth, 0.45 * gap / towards) if towards > 0 else depth
-    uneven = rng.uniform(-0.4, 1.5)
+    uneven = rng.uniform(-0.4, roughness.uneven)
     reach = depth * (s + uneven * s**2) / (1 + uneven)
     bend = np.radians(rng.uniform(-60, 60)) / depth
     angle = exit_angle + np.radians(rng.uniform(-10, 10)) * (2 * t - 1)
@@ -122,7 +155,7 @@ def _surface(rng: np.random.Generator, contact: _Contact, exit_angle: float, gap
     net = curve + reach[:, None, None] * (
         np.sinc(turned / np.pi) * inwards + np.sin(turned / 2) * np.sinc(turned / 2 / np.pi) * normal
     )
-    dent = rng.uniform(0, 0.15) * min(float(np.diff(reach).min()), float(np.diff(t).min()))
+    dent = rng.uniform(0, roughness.dent) * min(float(np.diff(reach).min()), float(np.diff(t).min()))
     return BSplineSurface(3, 3, knots_u, knots_v, net + rng.uniform(-dent, dent, net.shape))
 
 

@@ -11,7 +11,7 @@ from semispline.solver.arrays import FloatArray
 from semispline.solver.judge import Base, Edge, correspond, corresponding
 from semispline.solver.splines import BSplineSurface, map_domain, reverse_u, reverse_v, swap_directions
 
-Family: TypeAlias = Literal["facing", "u-turn", "closed rims", "real"]
+Family: TypeAlias = Literal["facing", "u-turn", "closed rims", "rough", "real"]
 
 # Places along the contacts over which a pair is measured.
 _PLACES = 256
@@ -33,6 +33,10 @@ class PairMeasures:
         Mean speed across the contact, in mean contact lengths over the base's own parameter.
     domains : (float, float)
         Lengths of the parameter ranges along the contacts.
+    bends : (float, float)
+        Largest normal curvature across the contact times the mean gap: with G2 a blend begins with that bend.
+    edge_turn_degrees : (float, float)
+        How far the normal turns in all along the contact.
     """
 
     gap: float
@@ -40,6 +44,8 @@ class PairMeasures:
     least_exit_to_edge_degrees: float
     speeds: tuple[float, float]
     domains: tuple[float, float]
+    bends: tuple[float, float]
+    edge_turn_degrees: tuple[float, float]
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,7 +56,7 @@ class ShapeProblem:
     ----------
     name : str
         Family and seed, or the file and its faces.
-    family : {"facing", "u-turn", "closed rims", "real"}
+    family : {"facing", "u-turn", "closed rims", "rough", "real"}
     kind : str
         What it is within its family.
     seed : int
@@ -83,24 +89,40 @@ def measure_pair(a: Base, b: Base) -> PairMeasures:
     start, end = a.range_along
     s = start + (end - start) * (np.arange(_PLACES) + 0.5) / _PLACES
     places = s, corresponding(a, b, correspond(a, b), s)
-    points, inwards, along = (
-        [base.derivative(t, *orders) for base, t in zip((a, b), places, strict=True)]
-        for orders in ((0, 0), (1, 0), (0, 1))
+    (p, across_p, along_p), (q, across_q, along_q) = (
+        [base.derivative(t, *orders) for orders in ((0, 0), (1, 0), (0, 1))]
+        for base, t in zip((a, b), places, strict=True)
     )
-    domains = tuple(base.range_along[1] - base.range_along[0] for base in (a, b))
-    length = np.mean([float(_norm(d).mean()) * domain for d, domain in zip(along, domains, strict=True)])
-    chord = points[1] - points[0]
-    exits = [-d if base.edge[1] == "0" else d for base, d in zip((a, b), inwards, strict=True)]
-    angles = [float(_degrees(exit_, way).mean()) for exit_, way in zip(exits, (chord, -chord), strict=True)]
-    to_edge = np.array([_degrees(d, t) for d, t in zip(inwards, along, strict=True)])
-    speeds = [float(_norm(d).mean() / length) for d in inwards]
+    domains = [float(base.range_along[1] - base.range_along[0]) for base in (a, b)]
+    lengths = [float(_norm(x).mean()) * domain for x, domain in zip((along_p, along_q), domains, strict=True)]
+    length, gap = (lengths[0] + lengths[1]) / 2, float(_norm(q - p).mean())
+    exits = (-_inwards(base) * across for base, across in zip((a, b), (across_p, across_q), strict=True))
+    exit_a, exit_b = (float(_degrees(x, way).mean()) for x, way in zip(exits, (q - p, p - q), strict=True))
+    to_edge = np.stack([_degrees(across_p, along_p), _degrees(across_q, along_q)])
+    (bend_a, turn_a), (bend_b, turn_b) = (_bend_and_turn(base) for base in (a, b))
     return PairMeasures(
-        float(_norm(chord).mean() / length),
-        (angles[0], angles[1]),
+        gap / length,
+        (exit_a, exit_b),
         float(np.minimum(to_edge, 180 - to_edge).min()),
-        (speeds[0], speeds[1]),
-        (float(domains[0]), float(domains[1])),
+        (float(_norm(across_p).mean() / length), float(_norm(across_q).mean() / length)),
+        (domains[0], domains[1]),
+        (bend_a * gap, bend_b * gap),
+        (turn_a, turn_b),
     )
+
+
+def _inwards(base: Base) -> int:
+    return 1 if base.edge[1] == "0" else -1
+
+
+def _bend_and_turn(base: Base) -> tuple[float, float]:
+    """Return the largest normal curvature across an edge, and how far the normal turns along it in degrees."""
+    s = np.linspace(*base.range_along, _PLACES)
+    across, second, along = (base.derivative(s, *orders) for orders in ((1, 0), (2, 0), (0, 1)))
+    normal = np.cross(across, along)
+    normal /= _norm(normal)[:, None]
+    curvature = np.abs(np.sum(second * normal, axis=1)) / np.sum(across**2, axis=1)
+    return float(curvature.max()), float(_degrees(normal[1:], normal[:-1]).sum())
 
 
 def on_edge(rng: np.random.Generator, surface: BSplineSurface, decades: float) -> Base:

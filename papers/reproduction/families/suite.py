@@ -12,7 +12,7 @@ from semispline.papers.reproduction.families.problems import Family, ShapeProble
 from semispline.papers.reproduction.families.real_pairs import REAL_PAIRS, real_pair
 
 # The seeds of each family are 0, 1, ... below its size.
-SIZES: dict[Family, int] = {"facing": 400, "u-turn": 100, "closed rims": 112, "real": len(REAL_PAIRS)}
+SIZES: dict[Family, int] = {"facing": 400, "u-turn": 100, "closed rims": 112, "rough": 60, "real": len(REAL_PAIRS)}
 
 
 def shape_problem(family: Family, seed: int, shared: Path | None = None) -> ShapeProblem | None:
@@ -20,7 +20,7 @@ def shape_problem(family: Family, seed: int, shared: Path | None = None) -> Shap
 
     Parameters
     ----------
-    family : {"facing", "u-turn", "closed rims", "real"}
+    family : {"facing", "u-turn", "closed rims", "rough", "real"}
     seed : int
         The same seed gives the same pair.
     shared : Path, optional
