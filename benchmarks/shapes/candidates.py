@@ -6,8 +6,8 @@ import json
 from pathlib import Path
 from typing import Any, TypeAlias
 
-from semispline import SemisplineError, blend, measure_fairness
-from semispline.papers.reproduction.families.problems import Family
+from semispline import SemisplineError, blend, measure_fairness, measure_turn
+from semispline.papers.reproduction.families.problems import Family, ShapeProblem
 from semispline.papers.reproduction.families.suite import SIZES, shape_problem
 
 CANDIDATES = {
@@ -20,10 +20,12 @@ CANDIDATES = {
     for degree in (3, 4, 5)
     for middle in (0, 1)
 }
+# Two that may be tried both.
+PAIR = ("degree 5, none", "degree 5, one middle curve")
 # So many of each family, evenly spread over its seeds.
-SAMPLE: dict[Family, int] = {"facing": 60, "u-turn": 20, "closed rims": 28, "real": 16}
+SAMPLE: dict[Family, int] = {"facing": 60, "u-turn": 20, "closed rims": 28, "rough": 15, "real": 16}
 
-# Of each problem: family, name, and of each candidate A * GH and converted points, None where it is refused.
+# Of each problem: family, name, and what each candidate comes to; None where it is refused.
 Compared: TypeAlias = list[dict[str, Any]]
 
 
@@ -37,14 +39,22 @@ def compared(path: Path, shared: Path, *, again: bool) -> Compared:
             problem = shape_problem(family, k * SIZES[family] // number, shared)
             if problem is None:
                 continue
-            shapes: dict[str, tuple[float, int] | None] = {}
-            for name, options in CANDIDATES.items():
-                try:
-                    surface = blend(problem.a, problem.b, **options).surface
-                    n_u, n_v = surface.to_bspline().control_points.shape[:2]
-                    shapes[name] = (measure_fairness(surface).value, n_u * n_v)
-                except SemisplineError:
-                    shapes[name] = None
+            shapes = {name: shape_with(problem, options) for name, options in CANDIDATES.items()}
             found.append({"family": family, "name": problem.name, "shapes": shapes})
     path.write_text(json.dumps(found), encoding="utf-8")
     return found
+
+
+def shape_with(problem: ShapeProblem, options: dict[str, Any]) -> dict[str, Any] | None:
+    """Return what one candidate comes to; None where it is refused."""
+    try:
+        result = blend(problem.a, problem.b, **options)
+    except SemisplineError:
+        return None
+    n_u, n_v = result.surface.to_bspline().control_points.shape[:2]
+    return {
+        "fairness": measure_fairness(result.surface).value,
+        "points": n_u * n_v,
+        "at_bound": bool(result.active_bounds),
+        "turn": measure_turn(result.surface).degrees,
+    }

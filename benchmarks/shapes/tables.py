@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from typing import get_args
+from typing import Any, get_args
 
 import numpy as np
-from candidates import CANDIDATES, Compared
+from candidates import CANDIDATES, PAIR, Compared
 
 from semispline.papers.reproduction.families.problems import Family
 from semispline.papers.reproduction.shape_measures import ENERGY_SET, FAIR_SET, Refused, Shape
-from semispline.papers.reproduction.shape_suite import INVISIBLE, Row, quotients, summary, wants
+from semispline.papers.reproduction.shape_suite import INVISIBLE, STEEP, Row, quotients, summary, wants
 
 FAMILIES: tuple[Family, ...] = get_args(Family)
 _HEAD = """\
@@ -224,27 +224,32 @@ def _listed(rows: Sequence[Row]) -> str:
 def _candidates(compared: Compared) -> str:
     text = (
         'alpha by fairness with each; middle curves by thin plate with `v_scale="length"`. In how many pairs it is the '
-        "best of the six; A · GH over that of the best (median, 90 %, largest); how often refused; median of converted "
-        "points.\n\n"
+        "best of the six; A · GH over that of the best (median, 90 %, largest); how often refused, at a bound, and "
+        "turning by more than 30 degrees; median of converted points. The last line takes the fairer of two.\n\n"
     )
     parts = []
     for family in FAMILIES:
         of = [one["shapes"] for one in compared if one["family"] == family]
         if not of:
             continue
-        best = [min((x[0] for x in shapes.values() if x), default=np.inf) for shapes in of]
+        seen = [[_seen(shapes[name]) for shapes in of] for name in CANDIDATES]
+        best = np.min(seen, axis=0)
+        told = np.isfinite(best)
         lines = []
-        for name in CANDIDATES:
-            over = [
-                max(shapes[name][0], INVISIBLE) / max(least, INVISIBLE)
-                for shapes, least in zip(of, best, strict=True)
-                if shapes[name]
-            ]
-            points = [shapes[name][1] for shapes in of if shapes[name]]
-            if over:
-                shown = [f"{x:.3g}" for x in np.quantile(over, [0.5, 0.9, 1])]
-                best_in = sum(x <= 1 + 1e-9 for x in over)
-                lines.append((name, str(best_in), *shown, str(len(of) - len(over)), f"{np.median(points):.0f}"))
-        head = (f"{family}, {len(of)} pairs", "best in", "median", "90 %", "largest", "refused", "points")
-        parts.append(_table(head, lines))
+        columns = {name: [shapes[name] for shapes in of] for name in CANDIDATES}
+        columns[f"fairer of {' and '.join(PAIR)}"] = [min((shapes[name] for name in PAIR), key=_seen) for shapes in of]
+        for name, column in columns.items():
+            found = [shape for shape in column if shape]
+            over = np.array([_seen(shape) for shape in column])[told] / best[told]
+            shown = [f"{x:.3g}" for x in np.quantile(over[np.isfinite(over)], [0.5, 0.9, 1])]
+            counts = len(of) - len(found), sum(x["at_bound"] for x in found), sum(x["turn"] > STEEP for x in found)
+            points = float(np.median([shape["points"] for shape in found]))
+            lines.append((name, str(int((over <= 1).sum())), *shown, *(str(x) for x in counts), f"{points:.0f}"))
+        head = ("best in", "median", "90 %", "largest", "refused", "at bound", "turn > 30", "points")
+        parts.append(_table((f"{family}, {len(of)} pairs", *head), lines))
     return text + "\n".join(parts)
+
+
+def _seen(shape: dict[str, Any] | None) -> float:
+    """Return the fairness that can be seen; infinite where there is no blend."""
+    return np.inf if shape is None else max(shape["fairness"], INVISIBLE)
