@@ -17,7 +17,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from sympy import Expr, Symbol, sqrt, sympify
+from sympy import Expr, Symbol, sign, sqrt, sympify
 
 # The derivatives of the surface that enter, by their directions.
 DERIVATIVES = ("u", "v", "uu", "uv", "vv", "uuu", "uuv", "uvv", "vvv")
@@ -101,23 +101,30 @@ def fairness_program() -> Program:
     e, f, g = s.named("e", _dot(a, a)), s.named("f", _dot(a, b)), s.named("g", _dot(b, b))
     w2 = s.named("w2", _dot(m, m))
     area = s.named("area", sqrt(w2))
+    # One division: the rest are products, which cost less here and in the gradient.
+    per_w2 = s.named("per_w2", 1 / w2)
+    per_w = s.named("per_w", area * per_w2)
+    per_cube = s.named("per_cube", per_w2 * per_w / 2)
     ll, k, n = s.named("ll", _dot(aa, m)), s.named("k", _dot(ab, m)), s.named("n", _dot(bb, m))
-    q = s.named("q", e * n - 2 * f * k + g * ll)
-    cube = s.named("cube", 2 * w2 * area)
-    mean = s.named("mean", q / cube)
+    f2 = s.named("f2", 2 * f)
+    q = s.named("q", e * n - f2 * k + g * ll)
+    mean = s.named("mean", q * per_cube)
+    ratio = s.named("ratio", 3 * q * per_w2)
     slopes = []
     for t in "uv":
         at, bt, aat, abt, bbt = (p["".join(sorted(name + t))] for name in ("u", "v", "uu", "uv", "vv"))
         mt = s.vector(f"m{t}", _plus(_cross(at, b), _cross(a, bt)))
-        et, ft = s.named(f"e{t}", 2 * _dot(a, at)), s.named(f"f{t}", _dot(at, b) + _dot(a, bt))
-        gt = s.named(f"g{t}", 2 * _dot(b, bt))
+        e2, g2 = s.named(f"half_e{t}", _dot(a, at)), s.named(f"half_g{t}", _dot(b, bt))
+        ft = s.named(f"f{t}", _dot(at, b) + _dot(a, bt))
         lt, kt = s.named(f"l{t}", _dot(aat, m) + _dot(aa, mt)), s.named(f"k{t}", _dot(abt, m) + _dot(ab, mt))
         nt = s.named(f"n{t}", _dot(bbt, m) + _dot(bb, mt))
-        qt = s.named(f"q{t}", et * n + e * nt - 2 * (ft * k + f * kt) + gt * ll + g * lt)
+        changed = s.named(f"changed_{t}", e2 * n - ft * k + g2 * ll)
+        qt = s.named(f"q{t}", 2 * changed + e * nt - f2 * kt + g * lt)
         wt = s.named(f"w{t}", _dot(m, mt))
-        slopes.append(s.named(f"h{t}", (qt - 3 * q * wt / w2) / cube))
+        slopes.append(s.named(f"h{t}", s.named(f"top_{t}", qt - ratio * wt) * per_cube))
     hu, hv = slopes
-    rough = s.named("rough", (g * hu**2 - 2 * f * hu * hv + e * hv**2) / area)
+    along_u, along_v = s.named("along_u", g * hu - f * hv), s.named("along_v", e * hv - f * hu)
+    rough = s.named("rough", s.named("form", along_u * hu + along_v * hv) * per_w)
     speed = s.named("speed", sqrt(e))
     inputs = tuple(symbol for name in DERIVATIVES for symbol in p[name])
     return Program(inputs, tuple(s.steps), (rough, area, mean, speed))
@@ -147,8 +154,15 @@ def reversed_program(program: Program) -> Program:
         if not adjoint.is_Symbol:
             steps.append((Symbol(f"d_{name.name}"), adjoint))
             adjoint = Symbol(f"d_{name.name}")
-        for used in sorted(value.free_symbols, key=str):
-            parts.setdefault(used, []).append(adjoint * _slope(name, value, used))
+        slopes = [(used, _slope(name, value, used)) for used in sorted(value.free_symbols, key=str)]
+        doubled = 2 * adjoint
+        if sum(abs(slope.as_coeff_Mul()[0]) == 2 for _, slope in slopes) > 1:
+            doubled = Symbol(f"d2_{name.name}")
+            steps.append((doubled, 2 * adjoint))
+        for used, slope in slopes:
+            factor, rest = slope.as_coeff_Mul()
+            product = sign(factor) * doubled * rest if abs(factor) == 2 else adjoint * slope
+            parts.setdefault(used, []).append(product)
     gradient = []
     for name in program.inputs:
         gradient.append(Symbol(f"d_{name.name}"))
@@ -167,7 +181,9 @@ def _needed(steps: Sequence[tuple[Symbol, Expr]], outputs: Sequence[Symbol]) -> 
 
 
 def _slope(name: Symbol, value: Expr, used: Symbol) -> Expr:
-    """Return the derivative of a step; a square root is known by its own name."""
+    """Return the derivative of a step; square roots and reciprocals are known by their own names."""
     if value == sqrt(used):
         return 1 / (2 * name)
+    if value == 1 / used:
+        return -(name**2)
     return value.diff(used)

@@ -18,6 +18,7 @@ from semispline import __version__
 from semispline.derivations import cli as derivations_cli
 from semispline.solver import cli as solver_cli
 from semispline.solver.exit_status import ANSWER_IS_NO, FAILED, reports_errors
+from semispline.solver.reports import print_warnings
 
 if TYPE_CHECKING:
     from semispline.papers.ledger import Ledger
@@ -118,8 +119,10 @@ def generate_command(
         raise OptionError("generate: found --check with --c, expected one of them")
     from semispline.solver.c_export import write_c
 
-    for path in write_c(c, problem):
+    paths, warnings = write_c(c, problem)
+    for path in paths:
         typer.echo(f"wrote {path}")
+    print_warnings(warnings)
 
 
 def decided(name: str) -> Ledger:

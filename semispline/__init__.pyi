@@ -41,6 +41,8 @@ from .solver.judge.meets import Meets as Meets
 from .solver.judge.meets import measure_meets as measure_meets
 from .solver.judge.regularity import Regularity as Regularity
 from .solver.judge.regularity import measure_regularity as measure_regularity
+from .solver.judge.shape import ShapeReport as ShapeReport
+from .solver.judge.shape import measure_shape as measure_shape
 from .solver.judge.turning import Turn as Turn
 from .solver.judge.turning import measure_turn as measure_turn
 from .solver.judge.waist import Waist as Waist

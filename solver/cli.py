@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Annotated, Any, cast
 
 import typer
 
-from semispline.solver.errors import ContactError, EdgeError, TrimError
+from semispline.solver.errors import ContactError, EdgeError
 from semispline.solver.exit_status import ANSWER_IS_NO, reports_errors
 from semispline.solver.option_flags import takes_blend_options
 from semispline.solver.options import BlendOptions, Continuity, continuity_name
@@ -27,7 +27,6 @@ from semispline.solver.reports import (
 )
 
 if TYPE_CHECKING:
-    from semispline.solver.io import LoadedSurface
     from semispline.solver.judge import Contact
 
 app = typer.Typer(no_args_is_help=True, add_completion=False, pretty_exceptions_enable=False)
@@ -35,7 +34,7 @@ app = typer.Typer(no_args_is_help=True, add_completion=False, pretty_exceptions_
 _EDGES = ("u0", "u1", "v0", "v1")
 _SURFACE_HELP = "PATH, or PATH#N as `semispline list PATH` numbers it (JSON, STEP, IGES, BREP, 3dm)."
 _EDGE_HELP = "Edge of {}: u0, u1, v0 or v1, the parameter that is constant along it and at which end."
-_CONTINUITY_HELP = "C0, C1, C2, G0, G1 or G2."
+_CONTINUITY_HELP = "C0, C1, C2, G0, G1, G2, G3 or G4."
 
 SurfaceA = Annotated[str, typer.Argument(metavar="A", help=_SURFACE_HELP)]
 SurfaceB = Annotated[str, typer.Argument(metavar="B", help="The same for the other surface.")]
@@ -55,17 +54,22 @@ def blend_command(
     options: BlendOptions,
     report: Annotated[str | None, typer.Option(metavar="FILE", help="JSON with energy, alpha, beta, contact.")] = None,
 ) -> None:
-    """Join an edge of A and an edge of B by a semi-structured surface of least energy."""
-    from semispline.solver.io import atomic_path, check_surface_output, read_surfaces, to_text, write_surface
+    """Join an edge of A and an edge of B by a semi-structured surface of fairest shape, or as the options say."""
+    from semispline.solver.io import (
+        atomic_path,
+        check_surface_output,
+        read_surfaces,
+        to_text,
+        trim_warnings,
+        write_surface,
+    )
 
     _check_edges(edge_a, edge_b)
     check_surface_output(out)
     _check_outputs({"--out": out, "--report": report}, [a, b])
     with _progress("reading"):
         first, second = read_surfaces([a, b])
-    trims = _trim_warnings((a, edge_a, first), (b, edge_b, second))
-    if options.strict and trims:
-        raise TrimError(f"{'; '.join(trims)}; name another edge, give the untrimmed surface, or leave out --strict")
+    trims = trim_warnings((a, edge_a, first), (b, edge_b, second), strict=options.strict)
     with _progress("blending"):
         from semispline.solver.blending import blend
         from semispline.solver.judge import Base
@@ -95,8 +99,8 @@ def check_command(
         str | None, typer.Option("--json", metavar="FILE", help="Write the figures; - is standard output.")
     ] = None,
 ) -> None:
-    """Measure how an edge of A and an edge of B meet: gap, angle, curvature jump, and where they are worst."""
-    from semispline.solver.io import read_surfaces
+    """Measure how an edge of A and an edge of B meet: gap, angle, jumps of curvature and its rates, and where."""
+    from semispline.solver.io import read_surfaces, trim_warnings
     from semispline.solver.judge import Base, measure_contact
 
     _check_edges(edge_a, edge_b)
@@ -105,10 +109,11 @@ def check_command(
     with _progress("reading"):
         first, second = read_surfaces([a, b])
     with _progress("measuring"):
-        contact = measure_contact(Base(first.surface, cast(Any, edge_a)), Base(second.surface, cast(Any, edge_b)))
+        bases = Base(first.surface, cast(Any, edge_a)), Base(second.surface, cast(Any, edge_b))
+        contact = measure_contact(*bases, order=4)
     misses = _misses(contact, required)
     doubts = _doubts(contact, required, misses)
-    warnings = _trim_warnings((a, edge_a, first), (b, edge_b, second))
+    warnings = trim_warnings((a, edge_a, first), (b, edge_b, second))
     if json_file is not None:
         record = {"a": a, "edge_a": edge_a, "b": b, "edge_b": edge_b, "unit": first.unit, **contact_record(contact)}
         record["warnings"] = list(warnings)
@@ -221,26 +226,17 @@ def _write_json(path: str, record: dict[str, Any]) -> None:
         write_text(path, to_text(record))
 
 
-def _trim_warnings(*edges: tuple[str, str, LoadedSurface]) -> tuple[str, ...]:
-    """Return a warning for each edge that is not an edge of the face that the file holds."""
-    from semispline.solver.io import trimmed_edge_warning
-
-    found = (trimmed_edge_warning(*edge) for edge in edges)
-    return tuple(warning for warning in found if warning)
-
-
 def _misses(contact: Contact, require: Continuity | None) -> list[str]:
     """Return, of each measure that falls short, its name, value and limit."""
     if require is None:
         return []
-    from semispline.solver.judge import required_limits
+    from semispline.solver.judge import shortfalls
 
     return [
         f"{name.replace('_', ' ')} is {value:.3g}, at most {limit:.3g} allowed"
         if not isnan(value)
         else f"{name.replace('_', ' ')} does not exist where there is no normal"
-        for name, value, limit in required_limits(contact, require)
-        if not value <= limit
+        for name, value, limit in shortfalls(contact, require)
     ]
 
 
@@ -262,7 +258,7 @@ def _doubts(contact: Contact, require: Continuity | None, misses: list[str]) -> 
             f"{require} cannot be told: {'; '.join(hidden)}; move both surfaces nearer to the origin, in the program "
             "that made them, or choose knots that are further apart"
         )
-    places = contact.no_normal if require in ("G1", "G2") else ()
+    places = contact.no_normal if require in ("G1", "G2", "G3", "G4") else ()
     return [f"{place.surface.upper()} has {place}" for place in places] + doubtful(contact, require)
 
 

@@ -16,11 +16,11 @@ from semispline.solver.options import BlendOptions
 # How the command line reads each form of option. None is unsaid.
 _READ_AS: dict[str, Any] = {
     "text": str | None,
-    "whole": int | None,
     "number-or-word": str | None,
+    "numbers-or-word": str | None,
     "range": tuple[float, float] | None,
     "numbers": str | None,
-    "lists": list[str] | None,
+    "lists-or-word": list[str] | None,
     "flag": bool | None,
 }
 
@@ -28,7 +28,7 @@ _READ_AS: dict[str, Any] = {
 def takes_blend_options(command: Callable[..., None]) -> Callable[..., None]:
     """Give a command a flag for each field of `BlendOptions`; its parameter `options` gets what was said.
 
-    A field that may differ at the two edges has a second flag, such as `--alpha-b`.
+    A field that may differ at the two edges has a second flag, such as `--alpha-b`, or two of one kind, `--bulge-a`.
     """
     given = inspect.signature(command, eval_str=True)
     own = [p for p in given.parameters.values() if p.name != "options"]
@@ -48,15 +48,20 @@ def takes_blend_options(command: Callable[..., None]) -> Callable[..., None]:
 
 def _flags(option: Field[Any]) -> Iterator[inspect.Parameter]:
     form, metavar, text = (option.metadata[key] for key in ("form", "metavar", "help"))
-    name = "--" + option.name.replace("_", "-")
+    name = _flag(option)
     default = False if form == "flag" or option.default is None else _shown(option.default)
     words: dict[str, Any] = {"help": text, "show_default": default}
     if metavar:
         words["metavar"] = metavar
     yield _parameter(option.name, form, typer.Option(name, **words))
     if option.metadata["sides"]:
-        words |= {"help": "The same at B, where it differs.", "show_default": False}
-        yield _parameter(f"{option.name}_b", form, typer.Option(f"{name}-b", **words))
+        differs = "where it differs" if option.metadata["sides"] == "both" else "alone"
+        words |= {"help": f"The same at B, {differs}.", "show_default": False}
+        yield _parameter(f"{option.name}_b", form, typer.Option(f"{name.removesuffix('-a')}-b", **words))
+
+
+def _flag(option: Field[Any]) -> str:
+    return "--" + option.name.replace("_", "-") + ("-a" if option.metadata["sides"] == "each" else "")
 
 
 def _parameter(name: str, form: str, flag: Any) -> inspect.Parameter:
@@ -74,26 +79,40 @@ def _said(values: dict[str, Any]) -> Iterator[tuple[str, Any]]:
         first, second = values[option.name], values.get(f"{option.name}_b")
         if first is None and second is None:
             continue
-        name = "--" + option.name.replace("_", "-")
-        at_a = option.default if first is None else _value(option.metadata["form"], name, first)
-        yield option.name, at_a if second is None else (at_a, _value(option.metadata["form"], f"{name}-b", second))
+        form, name, sides = option.metadata["form"], _flag(option), option.metadata["sides"]
+        at_a = option.default if first is None else _value(form, name, first)
+        at_b = option.default if sides == "each" else at_a
+        if second is not None:
+            at_b = _value(form, f"{name.removesuffix('-a')}-b", second)
+        # A pair on a side is no pair of sides.
+        is_pair = second is not None or sides == "each" or (sides and isinstance(at_a, tuple))
+        yield option.name, (at_a, at_b) if is_pair else at_a
 
 
 def _value(form: str, name: str, said: Any) -> Any:
-    if form == "number-or-word":
-        try:
-            return float(said)
-        except ValueError:
-            return said
+    if form in ("number-or-word", "numbers-or-word"):
+        if form == "numbers-or-word" and ":" in said:
+            return tuple(_numbers(name, said, ":"))
+        return _number_or_word(said)
     if form == "numbers":
-        return _numbers(name, said)
-    if form == "lists":
-        return [_numbers(name, text) for text in said]
+        return _numbers(name, said, ",")
+    if form == "lists-or-word":
+        return said[0] if len(said) == 1 and said[0].isalpha() else [_numbers(name, text, ",") for text in said]
     return said
 
 
-def _numbers(name: str, text: str) -> list[float]:
+def _number_or_word(said: str) -> Any:
+    for kind in (int, float):
+        try:
+            return kind(said)
+        except ValueError:
+            continue
+    return said
+
+
+def _numbers(name: str, text: str, between: str) -> list[float]:
     try:
-        return [float(part) for part in text.split(",") if part.strip()]
+        return [float(part) for part in text.split(between) if part.strip()]
     except ValueError:
-        raise OptionError(f"{name}: found {text!r}, expected numbers with commas between them") from None
+        word = {",": "commas", ":": "colons"}[between]
+        raise OptionError(f"{name}: found {text!r}, expected numbers with {word} between them") from None

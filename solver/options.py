@@ -4,28 +4,36 @@ from __future__ import annotations
 
 import reprlib
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field, fields, replace
 from math import isfinite
 from typing import Any, Literal, TypeAlias, cast, get_args
 
 from semispline.solver.errors import OptionError
 from semispline.solver.scalars import real_number, whole_number
 
-Continuity: TypeAlias = Literal["C0", "C1", "C2", "G0", "G1", "G2"]
+Continuity: TypeAlias = Literal["C0", "C1", "C2", "G0", "G1", "G2", "G3", "G4"]
 Method: TypeAlias = Literal["reduced", "casadi", "bfgs"]
 Flip: TypeAlias = Literal["auto", "yes", "no"]
-Shape: TypeAlias = float | Literal["fair", "energy", "natural"]
+# A pair has the values at both ends of v.
+Alpha: TypeAlias = float | tuple[float, float] | Literal["fair", "energy", "natural"]
+AlphaV: TypeAlias = Literal["auto", "constant", "linear"]
 VScale: TypeAlias = Literal["paper", "unit", "length"]
+Auto: TypeAlias = Literal["auto"]
 
 # Energies have the fourth power of alpha^2 and of the box: far from any blend, and far from where floats end.
 _MOST_ALPHA = 1e15
 _MOST_BOX = 1e20
+# Bulges beyond it are no longer the same shape.
+_MOST_BULGE = 100.0
+# Rows that a side owns at least: position, first and second derivative.
+ROWS_PER_SIDE = 3
 
 
-def _option(default: Any, form: str, metavar: str, text: str, *, sides: bool = False) -> Any:
+def _option(default: Any, form: str, metavar: str, text: str, *, sides: Literal["", "both", "each"] = "") -> Any:
     """Return a field; what the command line says of it and how it reads it stand beside its default.
 
-    `form` is text, whole, number-or-word, range, numbers, lists or flag; with `sides` it may differ at the two edges.
+    `form` is text, number-or-word, numbers-or-word, range, numbers, lists-or-word or flag. With `sides` it may differ
+    at the two edges: "both" is said once for both unless B differs, "each" is said for one edge at a time.
     """
     return field(default=default, metadata={"form": form, "metavar": metavar, "help": text, "sides": sides})
 
@@ -36,34 +44,46 @@ class BlendOptions:
 
     Parameters
     ----------
-    continuity : {"C0", "C1", "C2", "G0", "G1", "G2"} or a pair of them
+    continuity : {"C0", "C1", "C2", "G0", "G1", "G2", "G3", "G4"} or a pair of them
         At a and at b, in upper or lower case; kept as a pair.
-    middle_curves : int
-        Number of v-control curves between the three of each contact.
-    degree_u : int
+    middle_curves : int or "auto"
+        Number of v-control curves between those that the contacts prescribe.
+    degree_u : int or "auto"
         Degree of the blend across, p = k - 1.
     method : {"reduced", "casadi", "bfgs"}
-        How alpha and beta are found where contact is geometric: the proved global minimum, the constrained problem in
-        CasADi, or the paper's own search.
+        How alpha and beta are found where contact is geometric: by one reduced problem in the few numbers that are not
+        linear, by the constrained problem in CasADi, or by the paper's own search. The last two minimise (11).
     flip : {"auto", "yes", "no"}
         Whether edge b runs against edge a; "auto" takes the way without a twist. Where closeness cannot tell, both ways
         are blended and the one whose normal turns less is taken.
-    alpha : "energy", "fair", "natural", a number, or a pair of these for a and b
-        Where contact is geometric: search alpha of least energy, or that of the fairest shape (least area times
-        integral of |grad H|^2, and with it a second parameter p2 on each side), take its natural size (mean gap over
-        mean cross speed, for alpha^2), or set alpha itself; kept as a pair.
+    alpha : "fair", "energy", "natural", a number, a pair of numbers; or a pair of these for a and b; optional
+        Where contact is geometric: search alpha of the fairest shape (least area times integral of |grad H|^2) or that
+        of least energy (11), take its natural size (mean gap over mean cross speed, for alpha^2), or set alpha itself;
+        a pair of numbers on a side are its values at both ends of v, alpha^2 being linear between them.
+    alpha_v : {"auto", "constant", "linear"}
+        Whether a searched alpha^2 is one number or linear in v.
+    p2 : "auto", "zero", or a pair of numbers
+        The second shape parameter of each side, P_uu = alpha^4 R_ww + p2 R_w, where contact is geometric.
+    bulge : float or a pair of floats
+        Multiplies the alpha^2 that was chosen, and p2 by its square: above 1 the blend stays longer with the base.
     box : (float, float), optional
         Admissible alpha^2 and beta^2. For least energy in units of their natural sizes, 1/8 to 8 unless given; for the
-        fairest shape in units of an arc's, 1/4 to 4, or to 16 where exits and chords disagree.
-    v_scale : {"paper", "unit", "length"}
+        fairest shape in units of an arc's, 1/4 to 4, or to 16 where exits and chords disagree, 1/8 to 2 for G3 and G4.
+    v_scale : {"paper", "unit", "length"}, optional
         What (11) takes the length of the v-domain for: itself, 1, or mean contact length over mean gap. With the last
         two the blend does not depend on the units of v nor on the order of the bases.
     u_knots : sequence of float, optional
         Inner knots of U instead of uniform ones.
-    middle_knots : sequence of sequences of float, optional
-        Inner knots of each middle curve, in v of a's edge, instead of the paper's rule.
+    middle_knots : "fourth", "paper", or a sequence of sequences of float, optional
+        Inner knots of each middle curve, in v of a's edge: every fourth of both contacts', the paper's rule, or given.
     strict : bool
         Refuse a blend with warnings.
+    search_meets : bool
+        Search a mesh for places where the blend meets itself or a base, where no direction shows that there are none.
+
+    Notes
+    -----
+    What is unsaid is decided by `decided`: all for the fairest shape, or all as the paper has it.
 
     Raises
     ------
@@ -77,53 +97,72 @@ class BlendOptions:
     """
 
     continuity: Continuity | tuple[Continuity, Continuity] = _option(
-        "G2", "text", "C", "At both edges: C0, C1, C2, G0, G1 or G2.", sides=True
+        "G2", "text", "C", "At both edges: C0, C1, C2, G0, G1, G2, G3 or G4.", sides="both"
     )
-    middle_curves: int = _option(1, "whole", "N", "v-control curves between the contacts.")
-    degree_u: int = _option(3, "whole", "P", "Degree of the blend across.")
+    middle_curves: int | Auto = _option("auto", "number-or-word", "N", "Free v-control curves in between, or auto.")
+    degree_u: int | Auto = _option("auto", "number-or-word", "P", "Degree of the blend across, or auto.")
     method: Method = _option("reduced", "text", "METHOD", "How alpha and beta are found: reduced, casadi or bfgs.")
     flip: Flip = _option("auto", "text", "FLIP", "Whether edge B runs against edge A: auto, yes or no.")
-    alpha: Shape | tuple[Shape, Shape] = _option(
-        "energy",
-        "number-or-word",
+    alpha: Alpha | tuple[Alpha | None, Alpha | None] | None = _option(
+        None,
+        "numbers-or-word",
         "ALPHA",
-        "For G1 and G2: energy or fair (searched), natural, or a number.",
-        sides=True,
+        "For G1 to G4: fair (the default) or energy (searched), natural, a number, or X:Y at the ends of v.",
+        sides="both",
+    )
+    alpha_v: AlphaV = _option("auto", "text", "WAY", "A searched alpha² along v: auto, constant or linear.")
+    p2: Literal["auto", "zero"] | tuple[float, float] = _option(
+        "auto", "numbers-or-word", "P2", "Second shape parameters: auto, zero, or X:Y at A and B."
+    )
+    bulge: float | tuple[float, float] = _option(
+        1.0, "number-or-word", "X", "Multiplies the alpha² that was chosen.", sides="each"
     )
     box: tuple[float, float] | None = _option(
-        None, "range", "LOW HIGH", "Range of a searched alpha² and beta², times their natural sizes (fair: an arc's)."
+        None, "range", "LOW HIGH", "Range of a searched alpha² and beta², times an arc's (energy: their natural sizes)."
     )
-    v_scale: VScale = _option("paper", "text", "SCALE", "Length of v in the energy: paper (as it is), unit or length.")
+    v_scale: VScale | None = _option(
+        None, "text", "SCALE", "Length of v in the energy: paper (as it is), unit or length."
+    )
     u_knots: Sequence[float] | None = _option(
         None, "numbers", "K1,K2,...", "Inner knots in u, in (0, 1); uniform if left out."
     )
-    middle_knots: Sequence[Sequence[float]] | None = _option(
-        None, "lists", "K1,K2,...", "Inner knots of a middle curve, in v of edge A; once for each curve."
+    middle_knots: Literal["fourth", "paper"] | Sequence[Sequence[float]] | None = _option(
+        None,
+        "lists-or-word",
+        "K1,K2,...",
+        "Inner knots of a middle curve, in v of edge A; once for each curve. Or fourth, or paper: by that rule.",
     )
     strict: bool = _option(False, "flag", "", "Refuse a blend with any warning.")
+    search_meets: bool = _option(
+        False,
+        "flag",
+        "",
+        "Search a mesh for places where the blend meets itself or a base, if nothing rules them out.",
+    )
 
     def __post_init__(self) -> None:
         checked = {
             "continuity": tuple(map(continuity_name, _pair(self.continuity, "continuity"))),
-            "middle_curves": whole_number(self.middle_curves, "middle_curves", 0, OptionError),
-            "degree_u": whole_number(self.degree_u, "degree_u", 1, OptionError),
+            "middle_curves": _count(self.middle_curves, "middle_curves", 0),
+            "degree_u": _count(self.degree_u, "degree_u", 1),
             "method": _word(self.method, "method", get_args(Method)),
             "flip": _word(self.flip, "flip", get_args(Flip)),
-            "alpha": tuple(map(_alpha, _pair(self.alpha, "alpha"))),
+            "alpha": None if self.alpha is None else tuple(map(_alpha, _pair(self.alpha, "alpha"))),
+            "alpha_v": _word(self.alpha_v, "alpha_v", get_args(AlphaV)),
+            "p2": _p2(self.p2),
+            "bulge": tuple(map(_bulge, _pair(self.bulge, "bulge"))),
             "box": None if self.box is None else _box(self.box),
-            "v_scale": _word(self.v_scale, "v_scale", get_args(VScale)),
+            "v_scale": None if self.v_scale is None else _word(self.v_scale, "v_scale", get_args(VScale)),
             "u_knots": None if self.u_knots is None else _knots(self.u_knots, "u_knots"),
-            "middle_knots": None if self.middle_knots is None else _knot_lists(self.middle_knots, "middle_knots"),
+            "middle_knots": None if self.middle_knots is None else _middle_knots(self.middle_knots),
         }
-        if not isinstance(self.strict, bool):
-            raise OptionError(f"strict: found {self.strict!r}, expected True or False")
+        for name in ("strict", "search_meets"):
+            if not isinstance(value := getattr(self, name), bool):
+                raise OptionError(f"{name}: found {value!r}, expected True or False")
         for name, value in checked.items():
             object.__setattr__(self, name, value)
-        if "fair" in self.alphas and (self.method != "reduced" or "energy" in self.alphas):
-            found = f"method {self.method}" if self.method != "reduced" else "energy on the other side"
-            raise OptionError(
-                f"alpha: found fair with {found}, expected method reduced and no energy; try alpha energy"
-            )
+        # What contradicts itself is refused here, before anything is done with it.
+        self._is_papers_set()
 
     @property
     def continuities(self) -> tuple[Continuity, Continuity]:
@@ -131,9 +170,75 @@ class BlendOptions:
         return cast("tuple[Continuity, Continuity]", self.continuity)
 
     @property
-    def alphas(self) -> tuple[Shape, Shape]:
+    def orders(self) -> tuple[int, int]:
+        """How many derivatives agree at a and at b."""
+        return int(self.continuities[0][1]), int(self.continuities[1][1])
+
+    @property
+    def alphas(self) -> tuple[Alpha | None, Alpha | None]:
         """What is asked of alpha and of beta."""
-        return cast("tuple[Shape, Shape]", self.alpha)
+        return cast("tuple[Alpha | None, Alpha | None]", self.alpha or (None, None))
+
+    @property
+    def bulges(self) -> tuple[float, float]:
+        """Bulge at a and at b."""
+        return cast("tuple[float, float]", self.bulge)
+
+    def _is_papers_set(self, why: str = "") -> bool:
+        """Tell whether (11) is minimised, and refuse what asks for something else beside it."""
+        why = why or ("alpha energy" if "energy" in self.alphas else f"method {self.method}")
+        if why == "method reduced":
+            return False
+        for name, found, expected in (
+            ("alpha", "fair" if "fair" in self.alphas else None, "energy, natural or a number; give alpha energy"),
+            ("alpha", next((x for x in self.alphas if isinstance(x, tuple)), None), "one number for each side"),
+            ("alpha_v", "linear" if self.alpha_v == "linear" else None, "constant"),
+            ("p2", self.p2 if self.p2 not in ("auto", "zero") else None, "zero"),
+            ("bulge", self.bulge if self.bulge != (1.0, 1.0) else None, "1"),
+            ("continuity", next((c for c in self.continuities if int(c[1]) > 2), None), "at most G2"),
+        ):
+            if found is not None:
+                raise OptionError(
+                    f"{name}: found {found} with {why}, which minimises (11), expected {expected}; or method reduced "
+                    "without alpha energy"
+                )
+        return True
+
+    def decided(self, minimises_energy: str = "") -> BlendOptions:
+        """Return the options with nothing unsaid: the set of the fairest shape, or the paper's where (11) is minimised.
+
+        Parameters
+        ----------
+        minimises_energy : str
+            Who minimises (11) whatever the method, such as "generated C"; messages name it.
+
+        Raises
+        ------
+        OptionError
+            Something that the minimum of (11) does not have was asked for beside it.
+
+        Examples
+        --------
+        >>> decided = BlendOptions().decided()
+        >>> decided.alpha, decided.degree_u, decided.middle_curves, decided.v_scale
+        (('fair', 'fair'), 5, 0, 'length')
+        >>> decided = BlendOptions(method="casadi").decided()
+        >>> decided.alpha, decided.degree_u, decided.middle_curves, decided.v_scale
+        (('energy', 'energy'), 3, 1, 'paper')
+        """
+        papers = self._is_papers_set(minimises_energy)
+        # Without a middle curve and inner knots: all that the contacts prescribe, and no more.
+        across = sum(max(ROWS_PER_SIDE, order + 1) for order in self.orders) - 1
+        unsaid = {
+            "alpha": tuple(("energy" if papers else "fair") if x is None else x for x in self.alphas),
+            "middle_curves": int(papers) if self.middle_curves == "auto" else self.middle_curves,
+            "degree_u": (3 if papers else across) if self.degree_u == "auto" else self.degree_u,
+            "alpha_v": "constant" if papers else self.alpha_v,
+            "p2": "zero" if papers else self.p2,
+            "v_scale": self.v_scale or ("paper" if papers else "length"),
+            "middle_knots": ("paper" if papers else "fourth") if self.middle_knots is None else self.middle_knots,
+        }
+        return replace(self, **cast("dict[str, Any]", unsaid))
 
     def said(self) -> dict[str, Any]:
         """Return the options that are not at their defaults: what a file has to hold."""
@@ -169,7 +274,7 @@ def continuity_name(value: object, name: str = "continuity") -> Continuity:
     Raises
     ------
     OptionError
-        It is none of the six.
+        It is none of the eight.
     """
     upper = value.upper() if isinstance(value, str) else ""
     return cast("Continuity", upper if upper in get_args(Continuity) else _word(value, name, get_args(Continuity)))
@@ -190,15 +295,57 @@ def _pair(value: Any, name: str) -> tuple[Any, Any]:
     return value[0], value[1]
 
 
-def _alpha(value: object) -> Shape:
+def _alpha(value: object) -> Alpha | None:
+    if value is None:
+        return None
     if isinstance(value, str):
         if value in ("fair", "energy", "natural"):
-            return cast("Shape", value)
+            return cast("Alpha", value)
         raise OptionError(f"alpha: found {value!r}, expected fair, energy, natural or a positive number")
+    if isinstance(value, tuple | list):
+        if len(value) != 2:
+            raise OptionError(f"alpha: found {len(value)} values on one side, expected one, or two for the ends of v")
+        return _alpha_number(value[0]), _alpha_number(value[1])
+    return _alpha_number(value)
+
+
+def _alpha_number(value: object) -> float:
     number = real_number(value, "alpha", OptionError)
     if not 1 / _MOST_ALPHA <= number <= _MOST_ALPHA:
         raise OptionError(f"alpha: found {number:g}, expected {1 / _MOST_ALPHA:g} to {_MOST_ALPHA:g}")
     return number
+
+
+def _count(value: object, name: str, least: int) -> int | str:
+    if value == "auto":
+        return "auto"
+    if isinstance(value, str):
+        raise OptionError(f"{name}: found {value!r}, expected auto or a whole number")
+    return whole_number(value, name, least, OptionError)
+
+
+def _p2(value: object) -> str | tuple[float, float]:
+    if isinstance(value, str):
+        return _word(value, "p2", ("auto", "zero"))
+    ends = _items(value, "p2", "auto, zero or a pair of numbers")
+    if len(ends) != 2:
+        raise OptionError(f"p2: found {reprlib.repr(value)}, expected auto, zero or a pair of numbers, for a and b")
+    first, second = (real_number(end, f"p2[{i}]", OptionError) for i, end in enumerate(ends))
+    for i, number in enumerate((first, second)):
+        if not abs(number) <= _MOST_BOX:
+            raise OptionError(f"p2[{i}]: found {number:g}, expected {-_MOST_BOX:g} to {_MOST_BOX:g}")
+    return first, second
+
+
+def _bulge(value: object) -> float:
+    number = real_number(value, "bulge", OptionError)
+    if not 1 / _MOST_BULGE <= number <= _MOST_BULGE:
+        raise OptionError(f"bulge: found {number:g}, expected {1 / _MOST_BULGE:g} to {_MOST_BULGE:g}")
+    return number
+
+
+def _middle_knots(value: object) -> str | tuple[tuple[float, ...], ...]:
+    return _word(value, "middle_knots", ("fourth", "paper")) if isinstance(value, str) else _knot_lists(value)
 
 
 def _box(box: object) -> tuple[float, float]:
@@ -219,9 +366,9 @@ def _knots(values: object, name: str) -> tuple[float, ...]:
     return tuple(found)
 
 
-def _knot_lists(values: object, name: str) -> tuple[tuple[float, ...], ...]:
-    lists = _items(values, name, "sequences of numbers")
-    return tuple(_knots(inner, f"{name}[{i}]") for i, inner in enumerate(lists))
+def _knot_lists(values: object) -> tuple[tuple[float, ...], ...]:
+    lists = _items(values, "middle_knots", "fourth, paper, or sequences of numbers")
+    return tuple(_knots(inner, f"middle_knots[{i}]") for i, inner in enumerate(lists))
 
 
 def _items(values: object, name: str, expected: str) -> list[Any]:

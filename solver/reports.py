@@ -8,27 +8,29 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict
 from math import isfinite
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import typer
 
 from semispline.solver.options import Continuity
 
 if TYPE_CHECKING:
-    from semispline.solver.blending import BlendResult
+    from semispline.solver.blending import BlendResult, LinearInV
     from semispline.solver.io import SurfaceEntry
-    from semispline.solver.judge import Contact
+    from semispline.solver.judge import Contact, Meets, ShapeReport
 
 
 def contact_record(contact: Contact) -> dict[str, Any]:
-    """Return what a JSON file holds of a measured contact."""
-    return {name: _finite(value) for name, value in asdict(contact).items()}
+    """Return what a JSON file holds of a measured contact: nothing of what was not asked for."""
+    return {name: _finite(value) for name, value in asdict(contact).items() if value is not None}
 
 
 def _finite(value: Any) -> Any:
     """Return a value or record for JSON, which knows neither NaN nor infinity: what cannot be told is null."""
     if isinstance(value, dict):
         return {name: _finite(part) for name, part in value.items()}
+    if isinstance(value, list):
+        return [_finite(part) for part in value]
     return None if isinstance(value, float) and not isfinite(value) else value
 
 
@@ -39,6 +41,9 @@ def report_record(result: BlendResult) -> dict[str, Any]:
         "kind": "blend_report",
         "continuity": list(result.continuity),
         "method": result.method,
+        "options": {name: value for name, value in asdict(result.options).items() if value is not None},
+        "objective": asdict(result.objective),
+        "candidates": [asdict(candidate) for candidate in result.candidates],
         "energy": result.energy,
         "energy_rounding": result.energy_rounding,
         "alpha2": result.alpha2,
@@ -55,36 +60,95 @@ def report_record(result: BlendResult) -> dict[str, Any]:
         "seam": None if result.seam is None else contact_record(result.seam),
         "warnings": list(result.warnings),
         "control_points": result.surface.n_control_points,
+        "rows_stored": result.rows_stored,
+        "rows_converted": result.rows_converted,
         "iterations": result.iterations,
         "status": result.status,
         "search_excess": result.search_excess,
         "kkt_residual": result.kkt_residual,
         "proven_gap": result.proven_gap,
         "p2": list(result.p2),
-        "fairness": result.fairness,
         "constraint_rank": result.constraint_rank,
         "regularity": asdict(result.regularity),
         "creases": [asdict(crease) for crease in result.creases],
+        **shape_record(result.shape),
         "seconds": result.seconds,
         "contact_a": contact_record(result.contact_a),
         "contact_b": contact_record(result.contact_b),
     }
 
 
+# Surfaces that differ in lower order do so in these.
+_COUNTS_ONLY_WITH: dict[str, Continuity] = {"rate_jump_relative": "G2", "second_rate_jump_relative": "G3"}
+
+
+def shape_record(shape: ShapeReport) -> dict[str, Any]:
+    """Return what a JSON file holds of the measures of shape; places beside their figures."""
+    turn, waist = asdict(shape.turn), shape.waist
+    record: dict[str, Any] = {
+        "turn_degrees": turn.pop("degrees"),
+        "turn_at": turn,
+        "fairness": shape.fairness.value,
+        "fairness_jumps": shape.fairness.jumps,
+        "fairness_settled": shape.fairness.settled,
+        "principal_curvatures": [shape.curvatures.least.value, shape.curvatures.largest.value],
+        "principal_curvatures_at": [
+            {name: value for name, value in asdict(at).items() if name != "value"}
+            for at in (shape.curvatures.least, shape.curvatures.largest)
+        ],
+        "waist": None if waist is None else waist.distance,
+        "waist_of_rulings": None if waist is None else waist.of_rulings,
+        "loop_degrees": shape.loop.degrees,
+        "loop_at": shape.loop.v,
+        "exits": {
+            "degrees": [shape.exits.theta_0, shape.exits.theta_1],
+            "u_turn": shape.exits.is_u_turn,
+            "sides": shape.exits.sides,
+        },
+        "meets": meets_record(shape.meets),
+    }
+    return {name: _finite(value) for name, value in record.items()}
+
+
+def meets_record(meets: Meets) -> dict[str, Any]:
+    """Return what is known of meetings: true, false, or null where it is not known; what was searched stands beside."""
+    return {
+        **{what: meets.answer(what) for what in meets.asked},
+        "searched": list(meets.searched),
+        "places": [asdict(meeting) for meeting in meets.found],
+        "unconfirmed": meets.unconfirmed,
+        "deflection": meets.deflection,
+        "seen_from": meets.seen_from,
+        "seen_from_with_bases": meets.seen_from_with_bases,
+    }
+
+
 def print_contact(contact: Contact, unit: str | None) -> None:
     """Print what was measured of a contact, and where it is worst."""
+    from semispline.solver.judge import shortfalls
+
     length = unit or "model units"
-    bend = f"1/{unit}" if unit else "1/(model units)"
+    bend, rate, second_rate = (f"1/{unit or '(model units)'}{power}" for power in ("", "\u00b2", "\u00b3"))
     rows = [("measure", "worst", "allowed", "unit", "at parameter", "at point")]
     for name, measure, in_unit, place in (
         ("gap", "gap", length, contact.gap_at),
         ("angle", "angle_degrees", "degrees", contact.angle_at),
         ("curvature jump", "curvature_jump", bend, contact.curvature_at),
         ("curvature jump, relative", "curvature_jump_relative", "1", contact.curvature_at),
+        ("rate jump", "rate_jump", rate, contact.rate_at),
+        ("rate jump, relative", "rate_jump_relative", "1", contact.rate_at),
+        ("second rate jump", "second_rate_jump", second_rate, contact.second_rate_at),
+        ("second rate jump, relative", "second_rate_jump_relative", "1", contact.second_rate_at),
     ):
+        if place is None:
+            continue
         point = ", ".join(f"{x:.5g}" for x in place.point)
         value, limit = getattr(contact, measure), contact.allowed.get(measure)
-        allowed = "see below" if limit is None else f"{limit:.3g}"
+        below = _COUNTS_ONLY_WITH.get(measure)
+        if below is not None and shortfalls(contact, below):
+            allowed = f"counts only with {below}"
+        else:
+            allowed = "see below" if limit is None else f"{limit:.3g}"
         rows.append((name, f"{value:.3g}", allowed, in_unit, f"{place.parameter:.5g}", f"({point})"))
     _print_table(rows)
     for bare in contact.no_normal:
@@ -94,24 +158,36 @@ def print_contact(contact: Contact, unit: str | None) -> None:
 def print_result(result: BlendResult) -> None:
     """Print what a blend came to."""
 
-    def shape(value: float | None, bounds: tuple[float, float] | None) -> str:
+    def shape(value: LinearInV | None, bounds: tuple[LinearInV, LinearInV] | None) -> str:
         if value is None:
             return "none"
-        return f"{value:.6g}" if bounds is None else f"{value:.6g} (between {bounds[0]:.4g} and {bounds[1]:.4g})"
+        if isinstance(value, tuple):
+            # At both ends of v.
+            each = [None, None] if bounds is None else zip(*cast("tuple[Any, Any]", bounds), strict=True)
+            return " to ".join(shape(x, ends) for x, ends in zip(value, each, strict=True))
+        low_high = "" if bounds is None else f" (between {bounds[0]:.4g} and {bounds[1]:.4g})"
+        return f"{value:.6g}{low_high}"
 
     rows = [
         ("continuity", " and ".join(result.continuity)),
         ("method", result.method),
-        ("energy", f"{result.energy:.6g}"),
+        ("layout", f"degree {result.options.degree_u} across, {result.options.middle_curves} middle curve(s)"),
+        ("minimised", _objective(result)),
+        ("free rows", result.objective.rows),
+        ("energy (11)", f"{result.energy:.6g}"),
         ("alpha\u00b2", shape(result.alpha2, result.alpha2_bounds)),
         ("beta\u00b2", shape(result.beta2, result.beta2_bounds)),
         ("active bounds", ", ".join(result.active_bounds) or "none"),
         ("edge B runs against A", "yes" if result.flipped else "no"),
-        ("control points", str(result.surface.n_control_points)),
+        ("p2", ", ".join(shape(x, None) for x in result.p2)),
+        ("control points", f"{result.rows_stored}, {result.rows_converted} as an ordinary B-spline"),
         ("seconds", f"{result.seconds:.3f}"),
     ]
-    if result.proven_gap is not None:
-        rows.insert(3, ("least energy", f"proved to {result.proven_gap:.1e} of itself"))
+    rows += [
+        ("tried, not taken", f"degree {c.degree_u}, {c.middle_curves} middle curve(s), alpha {c.alpha_v}: {c.verdict}")
+        for c in result.candidates
+        if c.verdict != "chosen"
+    ]
     if result.seam_shift:
         rows.append(("seam of B moved by", f"{result.seam_shift:.6g} in B's parameter"))
     at_a, at_b = result.continuity
@@ -119,8 +195,48 @@ def print_result(result: BlendResult) -> None:
     rows.append(("contact B", ", ".join(_figures(result.contact_b, at_b))))
     if result.seam is not None:
         rows.append(("seam", ", ".join(_figures(result.seam, None))))
+    rows += _shape_rows(result.shape)
     _print_table(rows)
     print_warnings(result.warnings)
+
+
+def _shape_rows(shape: ShapeReport) -> Iterator[tuple[str, str]]:
+    """Yield what shape came out, and where."""
+    turn, fairness, waist, exits = shape.turn, shape.fairness, shape.waist, shape.exits
+    along = "v" if turn.section == "u" else "u"
+    yield (
+        "turn",
+        f"{turn.degrees:.3g} degrees within {turn.window:.3g}, at {turn.section} = {turn.at:.3g}, "
+        f"{along} = {turn.between[0]:.3g}",
+    )
+    jumps = f", {fairness.jumps:.3g} of it jumps of curvature" if fairness.jumps > 1e-3 * fairness.value else ""
+    settled = "" if fairness.settled else ", not settled: sharper than can be measured"
+    yield "fairness", f"{fairness.value:.4g}{jumps}{settled}"
+    yield (
+        "principal curvatures",
+        " to ".join(f"{at.value:.4g}" for at in (shape.curvatures.least, shape.curvatures.largest)),
+    )
+    if waist is not None:
+        yield (
+            "waist",
+            f"{waist.distance:.4g}, of straight rulings {waist.of_rulings:.4g}, of the rims {waist.of_rims:.4g}",
+        )
+    u_turn = ", a U-turn" if exits.is_u_turn else ""
+    sides = "" if exits.sides is None else f", to {'one side' if exits.sides == 'same' else 'opposite sides'}"
+    yield "exits off the straight way", f"{exits.theta_0:.3g} and {exits.theta_1:.3g} degrees{sides}{u_turn}"
+    yield (
+        "turning beyond its exits",
+        f"{max(shape.loop.degrees, 0.0):.3g} degrees at v = {shape.loop.v:.3g}"
+        + (": a loop or a wave" * shape.loop.is_loop),
+    )
+    for sentence in shape.meets.sentences:
+        yield "meets", sentence
+
+
+def _objective(result: BlendResult) -> str:
+    objective = result.objective
+    value = "" if objective.value is None else f", {objective.value:.6g}"
+    return f"{objective.name}{value}: {objective.known}"
 
 
 def _figures(contact: Contact, asked: Continuity | None) -> Iterator[str]:
@@ -132,7 +248,11 @@ def _figures(contact: Contact, asked: Continuity | None) -> Iterator[str]:
         ("gap", "gap", ""),
         ("angle_degrees", "angle", " degrees"),
         ("curvature_jump_relative", "relative curvature jump", ""),
+        ("rate_jump_relative", "relative jump of its rate", ""),
+        ("second_rate_jump_relative", "relative jump of its second rate", ""),
     ):
+        if getattr(contact, name) is None:
+            continue
         limit = f" ({allowed[name]:.2g} allowed)" if name in allowed else ""
         yield f"{words} {getattr(contact, name):.2g}{unit}{limit}"
 

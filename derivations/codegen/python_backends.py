@@ -305,15 +305,15 @@ def _check_lines(arguments: Sequence[Argument], backend: Backend) -> list[str]:
     return lines
 
 
-def assignment_lines(name: str, value: Expr) -> list[str]:
+def assignment_lines(name: str, value: Expr, margin: str = "    ") -> list[str]:
     """Return an assignment on one line, or broken the way `ruff format` breaks it."""
-    line = f"    {name} = {expression_text(value)}"
+    line = f"{margin}{name} = {expression_text(value)}"
     terms = summands(value)
     if len(line) <= LINE_LENGTH or len(terms) == 1:
         return [line]
-    packed = f"        {' '.join(terms)}"
-    inside = [packed] if len(packed) <= LINE_LENGTH else [f"        {term}" for term in terms]
-    return [f"    {name} = (", *inside, "    )"]
+    packed = f"{margin}    {' '.join(terms)}"
+    inside = [packed] if len(packed) <= LINE_LENGTH else [f"{margin}    {term}" for term in terms]
+    return [f"{margin}{name} = (", *inside, f"{margin})"]
 
 
 def _result(routine: Routine, backend: Backend, entries: Sequence[Sequence[Expr]]) -> list[str]:

@@ -9,7 +9,7 @@ from semispline.solver.blending import blend
 
 def blend_parametric(task: BlendTask) -> Outcome:
     """Blend with C2 contact and as many middle curves as the paper has."""
-    return outcome_of(blend(task.a, task.b, continuity="C2", middle_curves=task.middle_curves))
+    return outcome_of(blend(task.a, task.b, continuity="C2", middle_curves=task.middle_curves, alpha="energy"))
 
 
 METHODS = (

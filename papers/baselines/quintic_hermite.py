@@ -31,7 +31,7 @@ def blend_natural(task: BlendTask) -> Outcome:
 
 def blend_least_energy(task: BlendTask) -> Outcome:
     """Blend with the alpha and beta of least energy."""
-    return outcome_of(blend(task.a, task.b, continuity="G2", middle_curves=0, degree_u=5))
+    return outcome_of(blend(task.a, task.b, continuity="G2", middle_curves=0, degree_u=5, alpha="energy"))
 
 
 METHODS = (

@@ -27,6 +27,7 @@ from .number_lists import Numbers as Numbers
 from .number_lists import inner_moves as inner_moves
 from .number_lists import near as near
 from .number_lists import number_changes as number_changes
+from .questions import of_data as of_data
 from .questions import premises as premises
 from .questions import proved as proved
 from .questions import question as question

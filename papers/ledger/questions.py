@@ -24,6 +24,11 @@ def proved(cases: Callable[[], Iterator[Case]], method: str, strength: Strength 
     return Check(lambda _: cases(), strength, method, proof=True)
 
 
+def of_data(cases: Callable[[Formula | None], Iterator[Case]], method: str) -> Check:
+    """Return a check that decides printed numbers, all of them."""
+    return Check(cases, Strength.RATIONAL, method, proof=True)
+
+
 @cache
 def unconditional(check: Check) -> Check:
     """Return the check of a part that needs nothing of the condition of its claim: every instance must be true."""

@@ -70,7 +70,7 @@ def printed_rule(side: ContactSide, u: Basis, *, at_end: bool) -> RowRule:
 def blend_as_printed(task: BlendTask) -> Outcome:
     """Blend with the printed rows."""
     # Only the knots are taken from it: U and those of the middle curve follow the text.
-    layout = blend(task.a, task.b, continuity="C2", middle_curves=task.middle_curves).surface
+    layout = blend(task.a, task.b, continuity="C2", middle_curves=task.middle_curves, alpha="energy").surface
     u = Basis(layout.degree_u, layout.knots_u)
     bases = [Basis(c.degree, c.knots) for c in layout.control_curves]
     a, b = contact_sides(task)

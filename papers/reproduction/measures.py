@@ -11,7 +11,6 @@ from semispline.papers.reproduction.contact_measures import (
     FOLD,
     ContactMeasure,
     SeamMeasure,
-    angle_degrees,
     contact_measure,
     samples,
     seam_measure,
@@ -21,7 +20,9 @@ from semispline.solver.blending import thin_plate_energy
 from semispline.solver.judge import (
     ParametricSurface,
     geometry_grid,
+    measure_fairness,
     measure_regularity,
+    measure_turn,
     model_size,
 )
 from semispline.solver.splines import BSplineSurface, SemiStructuredSurface
@@ -46,13 +47,16 @@ class Measures:
         Thin-plate energy (11) over [0, 1] x the v-domain of a's edge.
     bending : float or None
         Integral of k1^2 + k2^2 over the surface; None where it does not settle, as on a folded surface.
+    fairness : float or None
+        Area times integral of |grad H|^2, with what jumps of H add; None where the surface folds inside, or where it
+        does not settle.
     area : float
     control_points, iterations : int or None
     seconds : float
     least_area_ratio : float
         Least |P_u x P_v| over its mean, on samples in every span.
-    largest_turn_degrees : float
-        Largest angle between the normals of neighbouring samples.
+    turn_degrees : float
+        Largest angle between the normals at two points of one section that lie 1/50 of its mean length apart.
     mean_curvature : (float, float)
         Least and largest |mean curvature| of the blend, 1/length.
     mean_curvature_with_bases : (float, float)
@@ -65,12 +69,13 @@ class Measures:
     contact_b: ContactMeasure
     energy: float
     bending: float | None
+    fairness: float | None
     area: float
     control_points: int | None
     iterations: int | None
     seconds: float
     least_area_ratio: float
-    largest_turn_degrees: float
+    turn_degrees: float
     mean_curvature: tuple[float, float]
     mean_curvature_with_bases: tuple[float, float]
     seam: SeamMeasure | None
@@ -99,7 +104,7 @@ class Measures:
     @property
     def folds(self) -> bool:
         """Whether the blend turns back, at a contact or inside."""
-        turns = (self.contact_a.turn_degrees, self.contact_b.turn_degrees, self.largest_turn_degrees)
+        turns = (self.contact_a.turn_degrees, self.contact_b.turn_degrees, self.turn_degrees)
         return max(turns) > FOLD
 
 
@@ -111,7 +116,7 @@ def measure(task: BlendTask, outcome: Outcome) -> Measures:
         contact_measure(side, surface, end, aligned=outcome.aligned) for end, side in enumerate(sides)
     )
     bending, area = bending_and_area(surface)
-    least_area, largest_turn = regularity(surface)
+    turn = measure_turn(surface)
     own = mean_curvature_range(surface)
     others = [mean_curvature_range(side.surface) for side in sides]
     return Measures(
@@ -119,12 +124,13 @@ def measure(task: BlendTask, outcome: Outcome) -> Measures:
         contact_b,
         plate_energy(surface),
         bending,
+        None if turn.is_fold else settled_fairness(surface),
         area,
         outcome.control_points,
         outcome.iterations,
         outcome.seconds,
-        least_area,
-        largest_turn,
+        least_area_ratio(surface),
+        turn.degrees,
         own,
         (min(own[0], *(low for low, _ in others)), max(own[1], *(high for _, high in others))),
         seam_measure(surface) if task.closed else None,
@@ -156,21 +162,20 @@ def bending_and_area(surface: ParametricSurface) -> tuple[float | None, float]:
     return (fine if abs(fine - rough) <= _SETTLED * abs(fine) else None), area
 
 
-def regularity(surface: ParametricSurface) -> tuple[float, float]:
-    """Return the least area element over its mean, and the largest angle between neighbouring normals in degrees.
+def settled_fairness(surface: ParametricSurface) -> float | None:
+    """Return area times integral of |grad H|^2, jumps of H included; None where it does not settle."""
+    found = measure_fairness(surface)
+    return found.value if found.settled else None
 
-    The samples are those of `semispline.solver.measure_regularity`, which serves splines.
-    """
+
+def least_area_ratio(surface: ParametricSurface) -> float:
+    """Return the least area element over its mean, on samples in every span."""
     if isinstance(surface, BSplineSurface | SemiStructuredSurface):
-        found = measure_regularity(surface)
-        return found.least_area_ratio, found.largest_turn_degrees
+        return measure_regularity(surface).least_area_ratio
     u, v = (samples(breaks) for breaks in surface.breakpoints)
     cross = np.cross(surface.evaluate_grid(u, v, 1, 0), surface.evaluate_grid(u, v, 0, 1))
     area = np.linalg.norm(cross, axis=2)
-    turn = max(
-        float(angle_degrees(cross[:-1], cross[1:]).max()), float(angle_degrees(cross[:, :-1], cross[:, 1:]).max())
-    )
-    return float(area.min() / area.mean()), turn
+    return float(area.min() / area.mean())
 
 
 def mean_curvature_range(surface: ParametricSurface) -> tuple[float, float]:

@@ -5,27 +5,46 @@ The least of all candidates and starts that were tried, never a proof: the measu
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
-from scipy.optimize import minimize
 
 from semispline.solver.arrays import FloatArray
-from semispline.solver.blending.fairness_table import FairnessTable, make_grid
+from semispline.solver.blending.fair_objective import FairObjective, Unknowns, make_unknowns
+from semispline.solver.blending.fairness_grid import (
+    HIGH_ORDER_NODES_U,
+    NODES_U,
+    ROUGH_U,
+    Across,
+    Along,
+    across,
+    along,
+    rough_along,
+)
+from semispline.solver.blending.fairness_table import FOLDS, LEAST_COSINE, LOOPS, FairnessTable
+from semispline.solver.blending.linear_alpha import LinearInV
 from semispline.solver.blending.problem import BlendProblem
+from semispline.solver.blending.projected import Point, descend, unbound
 from semispline.solver.errors import ComputationError
 
-# Cells of the scan in each direction; more where the window is wider.
+# Cells of the scan in each direction; more where the window is wider. It looks at half the nodes in u, where normals of
+# neighbours may turn further, and where there are many spans not at each of them.
 _CELLS, _WIDE_CELLS = 6, 8
-# What is flat or a cylinder has J = 0 for every alpha: then the nearest to the arc's is taken. J of a visible shape is
-# 10 to 1000.
-_TIE = 0.1
+_SCAN_SPANS = 8
+_SCAN_COSINE = 0.0
 _STARTS = 3
+# Gradients of log J at the end of a start, and of the search.
+_NEAR, _END = 0.02, 1e-4
+# Parts of the way back to a start, where a finer grid refuses.
+_BACK = (0.0, 0.02, 0.05, 0.1, 0.2, 0.4, 0.7, 1.0)
+# A grid of more nodes is not gone to without one between.
+_LARGE = 2000
+# Numbers in a block that is large for the C library.
+_WORKSPACE = 2**21
+# Longest steps of log alpha^2 and of p2 in its natural size.
+_STEP, _STEP_P2 = 0.35, 2.0
 # J on twice as many nodes agrees to this fraction, or the search goes on there.
 _SETTLED = 0.01
-# A line search steps back from it.
-_NO_NUMBER = 1e3
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,166 +53,205 @@ class FairSolution:
 
     Attributes
     ----------
-    a, b : float
-        alpha^2 and beta^2, in the parameters of the bases.
-    p2 : (float, float)
+    a, b : float or (float, float)
+        alpha^2 and beta^2, in the parameters of the bases; where linear in v the values at its start and its end.
+    p2 : pair
+        Numbers; where tied to a linear alpha^2 pairs of end values.
     value : float
         J, on the finer grid.
     slope : float
-        Largest entry of the gradient of log J at the end, by logarithms of alpha^2, where no end of the window is met.
+        Largest entry of the gradient of log J at the end, by logarithms of alpha^2 and by p2 in natural sizes, where no
+        end of the window is met.
     tried : int
         Evaluations of J.
-    refused : int
-        Candidates of the scan that fold.
+    refused : dict
+        How many candidates were refused for each reason, "folds" and "loops".
+    condoned : tuple of str
+        What is no longer refused, because every candidate was: "folds", then "loops" too.
     """
 
-    a: float
-    b: float
-    p2: tuple[float, float]
+    a: LinearInV
+    b: LinearInV
+    p2: tuple[LinearInV, LinearInV]
     value: float
     slope: float
     tried: int
-    refused: int
+    refused: dict[str, int]
+    condoned: tuple[str, ...] = ()
 
 
-class _Objective:
-    """log(J + tie-break) of y = (log alpha^2 / natural .., p2 / natural ..), with its gradient."""
-
-    def __init__(self, problem: BlendProblem, table: FairnessTable, exponents: list[FloatArray]) -> None:
-        self.arc, self.table, self.exponents = problem.exits.arc, table, exponents
-        self.free = np.flatnonzero(problem.free)
-        self.tried = 0
-
-    def monomials(self, y: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return the monomials and their derivatives by y, shapes (K,) and (len(y), K)."""
-        values, slopes = [1.0], [np.zeros(len(y))]
-        for side, exponents in enumerate(self.exponents):
-            x, z = np.exp(y[2 * side]), y[2 * side + 1]
-            for i, j in exponents[1:].tolist():
-                value = x**i * z**j
-                slope = np.zeros(len(y))
-                slope[2 * side] = i * value
-                slope[2 * side + 1] = j * x**i * z ** (j - 1) if j else 0.0
-                values.append(value)
-                slopes.append(slope)
-        return np.array(values), np.array(slopes).T
-
-    def value(self, y: FloatArray) -> float:
-        """Return log(J + tie-break); infinite where the blend folds."""
-        self.tried += 1
-        total = self.table.value(self.monomials(y)[0]) + self._tie(y)
-        return float(np.log(total)) if np.isfinite(total) else np.inf
-
-    def _tie(self, y: FloatArray) -> float:
-        return _TIE * (1 + float(np.sum(self._off(y) ** 2)))
-
-    def _off(self, y: FloatArray) -> FloatArray:
-        off = np.zeros(len(y))
-        off[2 * self.free] = y[2 * self.free] - np.log(self.arc)
-        return off
-
-    def __call__(self, y: FloatArray) -> tuple[float, FloatArray]:
-        self.tried += 1
-        monomials, slopes = self.monomials(y)
-        value, gradient = self.table.measured(monomials)
-        total = value + self._tie(y)
-        if not np.isfinite(total):
-            return _NO_NUMBER, np.zeros(len(y))
-        return float(np.log(total)), np.asarray((slopes @ gradient + 2 * _TIE * self._off(y)) / total)
-
-
-def solve_fair(problem: BlendProblem, *, search_p2: bool = True) -> FairSolution:
+def solve_fair(problem: BlendProblem, known: FairSolution | None = None) -> FairSolution:
     """Find the shape parameters of the fairest blend.
+
+    Where the bases are so rough, or face each other so badly, that every candidate is refused, the fairest of them is
+    taken all the same: what is wrong with it is measured on the finished surface, and said.
+
+    Parameters
+    ----------
+    problem : BlendProblem
+    known : FairSolution, optional
+        That for constant alpha, from where the search for a linear one starts, too.
 
     Raises
     ------
     ComputationError
-        Every candidate folds.
+        No candidate can be measured.
     """
-    layers, exponents = problem.shape_layers()
-    objective = _Objective(problem, FairnessTable(problem, layers, make_grid(problem)), exponents)
-    bounds = [
-        (float(np.log(low / unit)), float(np.log(high / unit)))
-        for (low, high), unit in zip(problem.bounds, problem.natural, strict=True)
-    ]
-    starts, refused = _scan(objective, bounds, _WIDE_CELLS if problem.exits.u_turn else _CELLS)
-    best = min((_descend(objective, start, bounds) for start in starts), key=lambda found: found[0])
-    second_order = [side.has_shape_parameter and side.order == 2 for side in (problem.a, problem.b)]
-    if search_p2 and any(second_order):
-        best = min(best, _descend(objective, best[1], bounds, second_order), key=lambda found: found[0])
-    fine = _Objective(problem, FairnessTable(problem, layers, make_grid(problem, 2)), exponents)
-    if abs(fine(best[1])[0] - best[0]) > _SETTLED or fine.table.folds(fine.monomials(best[1])[0]):
-        best = _descend(fine, best[1], bounds, second_order if search_p2 else None)
-    if fine.table.folds(fine.monomials(best[1])[0]):
-        raise ComputationError(
-            "the fairest blend folds: every alpha in the window does; try another edge, direction or a middle curve"
+    refused: dict[str, int] = {}
+    for refusable, condoned in (((FOLDS, LOOPS), ()), ((LOOPS,), ("folds",))):
+        try:
+            found = _solved(problem, refusable, known)
+        except _AllRefusedError as refusal:
+            refused = refused or refusal.counts
+            continue
+        return replace(found, refused=refused or found.refused, condoned=condoned)
+    return replace(_solved(problem, (), known), refused=refused, condoned=("folds", "loops"))
+
+
+class _AllRefusedError(ComputationError):
+    def __init__(self, counts: dict[str, int]) -> None:
+        reasons = " and ".join(f"{n} run loops" if name == "loops" else f"{n} fold" for name, n in counts.items() if n)
+        super().__init__(
+            f"no candidate is left: {reasons or 'none can be measured'}; try another edge, another direction (flip), "
+            "or a middle curve"
         )
-    y = best[1]
-    gradient = fine(y)[1]
-    inside = [2 * s for s in (0, 1) if bounds[s][0] + 1e-9 < y[2 * s] < bounds[s][1] - 1e-9]
-    a, b = (
-        min(max(float(np.exp(x)) * unit, low), high)
-        for x, unit, (low, high) in zip((y[0], y[2]), problem.natural, problem.bounds, strict=True)
-    )
+        self.counts = counts
+
+
+def _solved(problem: BlendProblem, refusable: tuple[int, ...], known: FairSolution | None) -> FairSolution:
+    """Find them with what is refused; `_AllRefusedError` where that leaves nothing."""
+    # Where a large block was freed, the C library keeps what is freed after it: else half of the time goes into pages.
+    np.empty(_WORKSPACE)
+    layers, exponents = problem.shape_layers()
+    unknowns = make_unknowns(problem, exponents)
+    u, rows = problem.form.u, problem.rows
+
+    def grid(in_u: Across, in_v: Along, least_cosine: float = LEAST_COSINE) -> FairObjective:
+        return FairObjective(unknowns, FairnessTable(problem, layers, in_u, in_v, least_cosine, refusable))
+
+    # The tips of U-turns are sharp.
+    rough = grid(across(u, NODES_U) if problem.exits.u_turn else across(u, ROUGH_U), rough_along(rows), _SCAN_COSINE)
+    cells, values = _scan(rough, _WIDE_CELLS if problem.exits.u_turn else _CELLS)
+    refused = dict(rough.refused)
+    starts = [*_starts(cells, values), *([] if known is None else [_known_start(problem, unknowns, known)])]
+    ends = [_descended(rough, rough.point(start), _NEAR) for start in starts]
+    nodes = HIGH_ORDER_NODES_U if max(problem.a.order, problem.b.order) > 2 else NODES_U
+    search, fine = grid(across(u, nodes), along(rows)), grid(across(u, 2 * nodes), along(rows, 2))
+    between = grid(across(u, ROUGH_U), along(rows)) if search.table.size > _LARGE else None
+    levels = [(level, tolerance) for level, tolerance in ((between, _NEAR), (search, _END)) if level is not None]
+    found = None
+    # A rough grid may be blind to what makes a candidate worse than another: the finer one says which is best.
+    order = np.argsort(search.values(np.stack([end.x for end in ends])), kind="stable") if len(ends) > 1 else [0]
+    for k in order:
+        found = _settled(_refined(ends[k], starts[k], levels), starts[k], fine)
+        if found is not None:
+            break
+    else:
+        # What the rough grid let pass is refused: what else does the finer one let pass?
+        kept = cells[np.isfinite(values.ravel())]
+        start = kept[np.argmin(search.values(kept))]
+        found = _settled(_refined(search.point(start), start, levels[-1:]), start, fine)
+    if found is None:
+        raise _AllRefusedError({name: refused[name] + fine.refused[name] for name in refused})
+    tried = sum(objective.tried for objective in (rough, between, search, fine) if objective is not None)
+    return _solution(problem, unknowns, found, fine, tried, refused)
+
+
+def _scan(objective: FairObjective, cells: int) -> tuple[FloatArray, FloatArray]:
+    """Return the cells of the window, shape (B, n), and their values, with one axis for both ends of each side."""
+    unknowns = objective.unknowns
+    parts = [(np.arange(cells) + 0.5) / cells if unknowns.is_free(side) else np.zeros(1) for side in (0, 1)]
+    points = np.zeros((len(parts[0]), len(parts[1]), len(unknowns.low)))
+    for side, part in enumerate(np.meshgrid(*parts, indexing="ij")):
+        ends = unknowns.ends[side]
+        points[..., ends] = unknowns.low[ends] + part[..., None] * (unknowns.high - unknowns.low)[ends]
+    values = objective.values(points.reshape(-1, points.shape[-1])).reshape(points.shape[:-1])
+    if not np.isfinite(values).any():
+        raise _AllRefusedError(dict(objective.refused))
+    return points.reshape(-1, points.shape[-1]), values
+
+
+def _starts(cells: FloatArray, values: FloatArray) -> FloatArray:
+    """Return the cells where the values have local minima, best first, shape (B, n)."""
+    padded = np.pad(values, 1, constant_values=np.inf)
+    around = np.lib.stride_tricks.sliding_window_view(padded, (3,) * values.ndim)
+    minima = np.flatnonzero((values <= around.min(axis=tuple(range(-values.ndim, 0)))) & np.isfinite(values))
+    # Ties keep the order of the cells: the search is the same at every run.
+    return np.asarray(cells[minima[np.argsort(values.ravel()[minima], kind="stable")][:_STARTS]])
+
+
+def _refined(end: Point, start: FloatArray, levels: list[tuple[FairObjective, float]]) -> Point | None:
+    """Go on from the end of a start, from grid to grid; none where a grid refuses all the way back to the start."""
+    at: Point | None = end
+    for objective, tolerance in levels:
+        at = None if at is None else _admitted(objective, at, start)
+        at = None if at is None else _descended(objective, at, tolerance)
+    return at
+
+
+def _settled(found: Point | None, start: FloatArray, fine: FairObjective) -> Point | None:
+    """Return what was found with its value on the finer grid, on which the search goes on where the values differ."""
+    if found is None:
+        return None
+    value = float(fine.values(found.x[None])[0])
+    if abs(value - found.value) <= _SETTLED:
+        return replace(found, value=value)
+    at = _admitted(fine, found, start)
+    return None if at is None else _descended(fine, at, _END)
+
+
+def _admitted(objective: FairObjective, point: Point, start: FloatArray) -> Point | None:
+    """Return a place on another grid, the model of the Hessian kept; back towards the start where it is refused."""
+    for part in _BACK:
+        at = objective.at(replace(point, x=point.x + part * (start - point.x)))
+        if np.isfinite(at.value):
+            return at
+    return None
+
+
+def _descended(objective: FairObjective, start: Point, tolerance: float) -> Point:
+    unknowns = objective.unknowns
+    longest = np.where(unknowns.logarithmic, _STEP, _STEP_P2)
+    return descend(objective, start, unknowns.low, unknowns.high, longest, tolerance)
+
+
+def _solution(
+    problem: BlendProblem, unknowns: Unknowns, found: Point, fine: FairObjective, tried: int, refused: dict[str, int]
+) -> FairSolution:
+    (a, p2_a), (b, p2_b) = (_side_values(problem, unknowns, found.x, side) for side in (0, 1))
+    free = unbound(found.x, found.gradient, unknowns.low, unknowns.high)
     return FairSolution(
         a,
         b,
-        (float(y[1]) * problem.natural[0], float(y[3]) * problem.natural[1]),
-        fine.table.value(fine.monomials(y)[0]),
-        float(np.abs(gradient[inside]).max(initial=0.0)),
-        objective.tried + fine.tried,
+        (p2_a, p2_b),
+        max(0.0, fine.j(found.x, found.value)),
+        float(np.abs(found.gradient[free]).max(initial=0.0)),
+        tried,
         refused,
     )
 
 
-def _scan(objective: _Objective, bounds: list[tuple[float, float]], cells: int) -> tuple[list[FloatArray], int]:
-    """Return where J has local minima over the cells of the window, best first, and how many cells were refused."""
-    axes = [
-        low + (high - low) * (np.arange(cells) + 0.5) / cells if low < high else np.array([low]) for low, high in bounds
+def _side_values(problem: BlendProblem, unknowns: Unknowns, y: FloatArray, side: int) -> tuple[LinearInV, LinearInV]:
+    """Return alpha^2 and p2 of a side."""
+    unit, second, linear = problem.natural[side], problem.p2[side], problem.linear[side]
+    if not problem.free[side]:
+        given = problem.given[side]
+        return given, second.at(given)
+    bounds = (problem.bounds[side],) if linear is None else linear.bounds
+    ends = [
+        min(max(float(np.exp(x)) * unit, low), high)
+        for x, (low, high) in zip(y[unknowns.ends[side]], bounds, strict=True)
     ]
-    values = np.full((len(axes[0]), len(axes[1])), np.inf)
-    points: dict[tuple[int, int], FloatArray] = {}
-    for i, x in enumerate(axes[0].tolist()):
-        for j, y in enumerate(axes[1].tolist()):
-            points[i, j] = np.array([x, 0.0, y, 0.0])
-            values[i, j] = objective.value(points[i, j])
-    refused = int(np.isinf(values).sum())
-    if refused == values.size:
-        raise ComputationError(
-            f"each of {refused} candidates folds; try another edge, another direction (flip), or a middle curve"
-        )
-    minima = [at for at in points if np.isfinite(values[at]) and values[at] <= _around(values, at)]
-    # Ties keep the order of the cells: the search is the same at every run.
-    return [points[at] for at in sorted(minima, key=lambda at: float(values[at]))[:_STARTS]], refused
+    value: LinearInV = ends[0] if linear is None else (ends[0], ends[1])
+    return value, float(y[unknowns.ends[side].stop]) * unit if second.free else second.at(value)
 
 
-def _around(values: FloatArray, at: tuple[int, int]) -> float:
-    i, j = at
-    return float(values[max(i - 1, 0) : i + 2, max(j - 1, 0) : j + 2].min())
-
-
-def _descend(
-    objective: _Objective,
-    start: FloatArray,
-    bounds: list[tuple[float, float]],
-    with_p2: list[bool] | None = None,
-) -> tuple[float, FloatArray]:
-    """Return the least value found from a start, and where."""
-    unknown: NDArray[np.intp] = np.array(
-        [2 * s for s in (0, 1) if bounds[s][0] < bounds[s][1]]
-        + ([2 * s + 1 for s in (0, 1) if with_p2[s]] if with_p2 else []),
-        dtype=np.intp,
-    )
-
-    def function(z: FloatArray) -> tuple[float, FloatArray]:
-        y = start.copy()
-        y[unknown] = z
-        value, gradient = objective(y)
-        return value, gradient[unknown]
-
-    limits = [bounds[k // 2] if k % 2 == 0 else (None, None) for k in unknown.tolist()]
-    found = minimize(function, start[unknown], jac=True, method="L-BFGS-B", bounds=limits, options={"gtol": 1e-6})
-    end = start.copy()
-    end[unknown] = found.x
-    first = objective(start)[0]
-    return (float(found.fun), end) if found.fun <= first else (first, start)
+def _known_start(problem: BlendProblem, unknowns: Unknowns, known: FairSolution) -> FloatArray:
+    """Return the unknowns at what was found for a constant alpha."""
+    y = np.zeros(len(unknowns.low))
+    for side, (value, second) in enumerate(zip((known.a, known.b), known.p2, strict=True)):
+        if problem.free[side]:
+            y[unknowns.ends[side]] = np.log(np.array(value) / problem.natural[side])
+            if problem.p2[side].free:
+                y[unknowns.ends[side].stop] = np.array(second).mean() / problem.natural[side]
+    return np.clip(y, unknowns.low, unknowns.high)

@@ -1,189 +1,213 @@
 """J = A * (integral of |grad H|^2 dA + jumps of H) of all blends of a problem, as a function of its shape parameters.
 
-Control points are polynomials in the shape parameters: P = sum_k m_k Z_k. What |grad H|^2 takes of a surface is tabled
-once for each Z_k, so that a blend costs a product of its monomials with the table, and its gradient one reverse sweep.
+Control points are polynomials in the shape parameters: P = sum_k m_k Z_k. What the sections v = const take of each Z_k
+is tabled once, so that a blend costs a product of its monomials with the table and one with the bases in u; its
+gradient one reverse sweep.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
+from numpy.typing import NDArray
 
-from semispline.solver.arrays import FloatArray, SparseMatrix
+from semispline.solver.arrays import FloatArray
+from semispline.solver.blending.fairness_grid import HIGHEST, ORDERS_U, Across, Along, derivatives_along
 from semispline.solver.blending.problem import BlendProblem
-from semispline.solver.generated.fairness_numpy import fairness, fairness_gradient
-from semispline.solver.splines import (
-    Basis,
-    basis_matrix,
-    breakpoints,
-    derivative_points,
-    gauss_rule,
-    merge_breakpoints,
-    reversed_knots,
-)
+from semispline.solver.blending.refusals import LOOP, folds, needed_turn, turned
+from semispline.solver.generated.fairness_numpy import fairness, fairness_pullback
 
-# Orders of the nine derivatives, in the order of the generated program.
+# Orders of the nine derivatives by u and v, in the order of the generated program.
 _ORDERS = ((1, 0), (0, 1), (2, 0), (1, 1), (0, 2), (3, 0), (2, 1), (1, 2), (0, 3))
-# Nodes in u altogether, and in v on each span and altogether, at least.
-NODES_U, _NODES_V, _LEAST_V = 40, 2, 10
 # A jump of H counts over this fraction of the mean length across, as a ramp of that width would.
 WINDOW = 1 / 50
 # Normals of neighbouring nodes that turn by more than 60 degrees have met a fold, or a bend too sharp to measure.
-_LEAST_COSINE = 0.5
+LEAST_COSINE = 0.5
+# Nodes of one batch: what a sweep holds then stays in the cache.
+_AT_ONCE = 2000
+# What may be refused.
+FOLDS, LOOPS = 1, 2
 
 
 @dataclass(frozen=True, eq=False)
-class Grid:
-    """Where a surface is measured: Gauss nodes, and the lines of v across which H may jump."""
+class Measured:
+    """J of some candidates, and why they are refused: 0 not at all, `FOLDS` or `LOOPS`."""
 
-    u: FloatArray
-    weights_u: FloatArray
-    v: FloatArray
-    weights_v: FloatArray
-    lines: FloatArray
-
-
-def make_grid(problem: BlendProblem, times: int = 1) -> Grid:
-    """Return the nodes of a problem, `times` as many in each direction."""
-    breaks_u = breakpoints(problem.form.u.knots)
-    breaks_v = merge_breakpoints(*(breakpoints(row.knots) for row in problem.rows))
-    each_u = -(-NODES_U // (len(breaks_u) - 1)) * times
-    each_v = max(_NODES_V, -(-_LEAST_V // (len(breaks_v) - 1))) * times
-    # n points are exact to degree 2 n - 1; spans are the last axis.
-    (u, weights_u), (v, weights_v) = (
-        (x.T.ravel(), w.T.ravel())
-        for x, w in (gauss_rule(breaks_u, 2 * each_u - 1), gauss_rule(breaks_v, 2 * each_v - 1))
-    )
-    return Grid(u, weights_u, v, weights_v, _lines(problem.rows))
-
-
-def _lines(rows: tuple[Basis, ...]) -> FloatArray:
-    """Return the inner knots where some row is only C1."""
-    found = []
-    for row in rows:
-        values, counts = np.unique(row.knots[row.degree + 1 : -row.degree - 1], return_counts=True)
-        found.append(values[row.degree - counts == 1])
-    return np.unique(np.concatenate(found))
+    values: FloatArray
+    refused: NDArray[np.int8]
 
 
 class FairnessTable:
-    """The derivatives of each Z_k at the nodes.
+    """Derivatives by v of each Z_k at the nodes.
 
     Parameters
     ----------
     problem : BlendProblem
     layers : ndarray, shape (K, N, 3)
         Z_k.
-    grid : Grid
+    across : Across
+    along : Along
+    least_cosine : float
+        Between the normals of neighbouring nodes.
+    refusable : tuple of int
+        What is refused at all.
     """
 
-    def __init__(self, problem: BlendProblem, layers: FloatArray, grid: Grid) -> None:
-        self.grid = grid
-        self._problem = problem
-        self._shape = len(grid.u), len(grid.v)
-        self._table = _derivatives(problem, layers, grid.u, grid.v, reverse=False)
-        self._weights = np.multiply.outer(grid.weights_u, grid.weights_v).ravel()
-        self._sides = [_derivatives(problem, layers, grid.u, grid.lines, reverse=reverse) for reverse in (True, False)]
+    def __init__(
+        self,
+        problem: BlendProblem,
+        layers: FloatArray,
+        across: Across,
+        along: Along,
+        least_cosine: float = LEAST_COSINE,
+        refusable: tuple[int, ...] = (FOLDS, LOOPS),
+    ) -> None:
+        self.across, self.along = across, along
+        self._refusable = refusable
+        self.least_cosine = least_cosine
+        offsets = problem.form.offsets
+        count, rows = len(layers), len(problem.rows)
+        points = [layers[:, low:high].transpose(0, 2, 1).reshape(3 * count, -1) for low, high in pairwise(offsets)]
+        table = derivatives_along(points, problem.rows, along)
+        self._shape = 3, rows, table.shape[-1]
+        # Shape (K, 4, 3, rows, columns), flat but for the first.
+        table = table.reshape(HIGHEST + 1, count, 3, rows, -1).swapaxes(0, 1)
+        self._table = np.ascontiguousarray(table).reshape(count, -1)
+        self._nodes, self._lines = along.nodes.size, len(along.lines)
+        # Weights of the nodes; what belongs to lines has none.
+        v = np.concatenate([along.weights.T.ravel(), np.zeros(2 * self._lines)])
+        self._weights = np.multiply.outer(across.weights, v)
+        # These make the mean length across of speeds at the nodes.
+        self._mean = self._weights / float(v.sum())
+        # Where both ends leave along a given direction no candidate needs another turn.
+        self._ends_given = problem.a.order > 0 and problem.b.order > 0
+        self._needed: FloatArray | None = None
 
-    @cached_property
-    def _across(self) -> FloatArray:
-        """Weights that make the mean length across of speeds at the nodes."""
-        return self._weights / float(self.grid.weights_v.sum())
+    @property
+    def size(self) -> int:
+        """Number of nodes."""
+        return int(self._weights.size)
 
-    def value(self, monomials: FloatArray) -> float:
-        """Return J alone; infinite where the blend folds between neighbouring nodes."""
-        planes = self._planes(self._table, monomials)
-        return np.inf if self._turns(planes) else self._parts(planes, monomials)[0]
+    def measure(self, monomials: FloatArray) -> Measured:
+        """Return J of candidates, monomials of shape (B, K)."""
+        step = max(1, _AT_ONCE // self.size)
+        parts = [self._measure(monomials[i : i + step]) for i in range(0, len(monomials), step)]
+        return Measured(np.concatenate([p.values for p in parts]), np.concatenate([p.refused for p in parts]))
 
-    def folds(self, monomials: FloatArray) -> bool:
-        """Tell whether the normals of neighbouring nodes turn by more than 60 degrees."""
-        return self._turns(self._planes(self._table, monomials))
-
-    def _turns(self, planes: FloatArray) -> bool:
-        (ax, ay, az), (bx, by, bz) = planes[:3], planes[3:6]
-        normal = np.stack([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx])
-        with np.errstate(divide="ignore", invalid="ignore"):
-            normal = (normal / np.sqrt(np.sum(normal**2, axis=0))).reshape(3, *self._shape)
-        along_u = np.sum(normal[:, 1:] * normal[:, :-1], axis=0)
-        along_v = np.sum(normal[:, :, 1:] * normal[:, :, :-1], axis=0)
-        # What is no number does not compare.
-        return not (np.all(along_u > _LEAST_COSINE) and np.all(along_v > _LEAST_COSINE))
-
-    def measured(self, monomials: FloatArray) -> tuple[float, FloatArray]:
-        """Return J and its gradient by the monomials."""
-        planes = self._planes(self._table, monomials)
-        value, gh, area, window, jumps = self._parts(planes, monomials)
-        # J = A (GH + S / h): A, GH and h are sums over the nodes, S over the lines.
-        by_area = gh + jumps / window
-        by_window = -area * jumps / window**2
-        seeds = np.stack(
-            [
-                area * self._weights,
-                by_area * self._weights,
-                np.zeros_like(self._weights),
-                by_window * WINDOW * self._across,
-            ]
+    def with_gradient(self, monomials: FloatArray) -> tuple[Measured, FloatArray]:
+        """Return J of candidates and its gradients by the monomials, both of shape (B, K)."""
+        step = max(1, _AT_ONCE // self.size)
+        parts = [self._with_gradient(monomials[i : i + step]) for i in range(0, len(monomials), step)]
+        measured = [part[0] for part in parts]
+        return (
+            Measured(np.concatenate([p.values for p in measured]), np.concatenate([p.refused for p in measured])),
+            np.concatenate([gradient for _, gradient in parts]),
         )
-        gradient = np.tensordot(self._table, fairness_gradient(np.concatenate([planes, seeds])), 2)
-        if len(self.grid.lines):
-            below, above = (self._planes(side, monomials) for side in self._sides)
-            (_, _, h_below, speed), (_, _, h_above, _) = fairness(below), fairness(above)
-            weights = np.repeat(self.grid.weights_u, len(self.grid.lines)) * (area / window)
-            jump = h_above - h_below
-            zero = np.zeros_like(jump)
-            seeds_below = np.stack([zero, zero, -2 * jump * speed * weights, jump**2 * weights])
-            seeds_above = np.stack([zero, zero, 2 * jump * speed * weights, zero])
-            for side, side_planes, side_seeds in zip(
-                self._sides, (below, above), (seeds_below, seeds_above), strict=True
-            ):
-                adjoint = fairness_gradient(np.concatenate([side_planes, side_seeds]))
-                gradient = gradient + np.tensordot(side, adjoint, 2)
-        return value, gradient
 
-    def _parts(self, planes: FloatArray, monomials: FloatArray) -> tuple[float, float, float, float, float]:
-        """Return J, GH, area, window and the integral of squared jumps."""
-        rough, element, _, speed = fairness(planes)
-        gh, area = float(self._weights @ rough), float(self._weights @ element)
-        window = WINDOW * float(self._across @ speed)
-        jumps = 0.0
-        if len(self.grid.lines):
-            below, above = (fairness(self._planes(side, monomials)) for side in self._sides)
-            weights = np.repeat(self.grid.weights_u, len(self.grid.lines))
-            jumps = float(np.sum(weights * (above[2] - below[2]) ** 2 * below[3]))
-        return area * (gh + jumps / window), gh, area, window, jumps
+    def _measure(self, monomials: FloatArray) -> Measured:
+        rows, planes = self._planes(monomials)
+        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+            return Measured(self._parts(fairness(planes)).value, self._refused(rows, planes))
 
-    @staticmethod
-    def _planes(table: FloatArray, monomials: FloatArray) -> FloatArray:
-        return np.asarray(np.tensordot(monomials, table, 1))
+    def _with_gradient(self, monomials: FloatArray) -> tuple[Measured, FloatArray]:
+        rows, planes = self._planes(monomials)
+        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+            outputs, pullback = fairness_pullback(planes)
+            parts = self._parts(outputs)
+            gradient = self._gradient(pullback(self._seeds(parts)))
+        return Measured(parts.value, self._refused(rows, planes)), gradient
+
+    def _planes(self, monomials: FloatArray) -> tuple[FloatArray, list[FloatArray]]:
+        """Return derivatives by v of the rows, and those of the surface.
+
+        Returns
+        -------
+        ndarray, shape (4, 3, rows, B, columns)
+        list of ndarray, each of shape (nodes in u * B * columns,)
+            Contiguous: this halves the time.
+        """
+        rows = (monomials @ self._table).reshape(len(monomials), HIGHEST + 1, *self._shape)
+        rows = np.ascontiguousarray(rows.transpose(1, 2, 3, 0, 4))
+        grids = []
+        for bases, orders, row in zip(self.across.bases, ORDERS_U, rows, strict=True):
+            columns = row.reshape(3, self._shape[1], -1)
+            grids.append((bases @ columns).reshape(3, len(orders), -1))
+        return rows, [grids[j][c, ORDERS_U[j].index(i)] for i, j in _ORDERS for c in range(3)]
+
+    def _parts(self, outputs: FloatArray) -> _Parts:
+        rough, element, mean, speed = outputs.reshape(len(outputs), len(self.across.weights), -1, self._shape[-1])
+        gh, area = (np.einsum("ubv,uv->b", x, self._weights) for x in (rough, element))
+        window = WINDOW * np.einsum("ubv,uv->b", speed, self._mean)
+        jumps, jump, below = np.zeros(len(gh)), None, None
+        if self._lines:
+            last = mean[..., self._nodes :]
+            jump = last[..., self._lines :] - last[..., : self._lines]
+            below = speed[..., self._nodes : self._nodes + self._lines]
+            jumps = np.einsum("u,ubl->b", self.across.weights, jump**2 * below)
+        return _Parts(area * (gh + jumps / window), gh, area, window, jumps, jump, below)
+
+    def _seeds(self, parts: _Parts) -> FloatArray:
+        """J = A (GH + S / h): A, GH and h are sums over the nodes, S over the lines."""
+        by_area = parts.gh + parts.jumps / parts.window
+        seeds = np.zeros((4, len(self.across.weights), len(parts.gh), self._shape[-1]))
+        seeds[0] = parts.area[:, None] * self._weights[:, None]
+        seeds[1] = by_area[:, None] * self._weights[:, None]
+        if parts.jump is not None and parts.below is not None:
+            by_window = -parts.area * parts.jumps / parts.window**2 * WINDOW
+            seeds[3] = by_window[:, None] * self._mean[:, None]
+            weights = (np.multiply.outer(self.across.weights, parts.area / parts.window))[..., None]
+            below, above = (
+                slice(self._nodes, self._nodes + self._lines),
+                slice(self._nodes + self._lines, None),
+            )
+            seeds[2][..., above] = 2 * parts.jump * parts.below * weights
+            seeds[2][..., below] = -seeds[2][..., above]
+            seeds[3][..., below] += parts.jump**2 * weights
+        return seeds.reshape(4, -1)
+
+    def _gradient(self, adjoints: FloatArray) -> FloatArray:
+        adjoints = adjoints.reshape(len(_ORDERS), 3, len(self.across.weights), -1)
+        rows = np.empty((HIGHEST + 1, 3, self._shape[1], adjoints.shape[-1]))
+        for j, (bases, orders) in enumerate(zip(self.across.bases, ORDERS_U, strict=True)):
+            chosen = adjoints[[_ORDERS.index((i, j)) for i in orders]].swapaxes(0, 1)
+            rows[j] = bases.T @ chosen.reshape(3, -1, chosen.shape[-1])
+        by_candidate = rows.reshape(*rows.shape[:3], -1, self._shape[-1]).transpose(3, 0, 1, 2, 4)
+        return np.asarray(by_candidate.reshape(len(by_candidate), -1) @ self._table.T)
+
+    def _refused(self, rows: FloatArray, planes: list[FloatArray]) -> NDArray[np.int8]:
+        if not self._refusable:
+            return np.zeros(rows.shape[3], dtype=np.int8)
+        # Without the columns of the lines, and candidates first.
+        shape = 3, len(self.across.weights), -1, self._shape[-1]
+        ax, ay, az, bx, by, bz = planes[:6]
+        normal = np.stack([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx])
+        normal = normal.reshape(shape)[..., : self._nodes].swapaxes(1, 2)
+        along = rows[0, ..., : self._nodes].transpose(0, 2, 1, 3)
+        ends = self.across.ends @ along
+        inside = np.stack(planes[:3]).reshape(shape)[..., : self._nodes].swapaxes(1, 2)
+        turns = turned(np.concatenate([ends[..., :1, :], inside, ends[..., 1:, :]], axis=-2))
+        needed = self._needed
+        if needed is None:
+            needed = needed_turn(ends[..., 0, :], ends[..., 1, :], along[..., -1, :] - along[..., 0, :])
+            if self._ends_given:
+                self._needed = needed = needed[:1]
+        loops = np.any(turns - needed > LOOP, axis=-1)
+        found = np.where(loops, LOOPS, 0)
+        if FOLDS in self._refusable:
+            found = np.where(folds(normal, self.least_cosine), FOLDS, found)
+        return found.astype(np.int8)
 
 
-def _derivatives(
-    problem: BlendProblem, layers: FloatArray, u: FloatArray, v: FloatArray, *, reverse: bool
-) -> FloatArray:
-    """Return the nine derivatives of each layer, shape (K, 27, len(u) * len(v)); `reverse` takes limits from below."""
-    offsets = problem.form.offsets
-    along = np.zeros((4, len(layers), len(problem.rows), len(v), 3))
-    matrices: dict[tuple[int, bytes, int], SparseMatrix] = {}
-    for i, row in enumerate(problem.rows):
-        points = layers[:, offsets[i] : offsets[i + 1]].transpose(1, 0, 2).reshape(row.size, -1)
-        at, knots = v, row.knots
-        if reverse:
-            points, knots = points[::-1], reversed_knots(row.knots)
-            at = (row.knots[0] + row.knots[-1]) - v
-        for order in range(min(3, row.degree) + 1):
-            key = row.degree, row.knots.tobytes(), order
-            if key not in matrices:
-                matrices[key] = basis_matrix(row.degree - order, knots[order : len(knots) - order], at)
-            derived = derivative_points(row.degree, knots, points, order)
-            values = (matrices[key] @ derived).reshape(len(v), len(layers), 3)
-            along[order, :, i] = values.transpose(1, 0, 2) * ((-1.0) ** order if reverse else 1.0)
-    U = problem.form.u
-    identity = np.eye(len(problem.rows))
-    across = np.zeros((4, len(u), len(problem.rows)))
-    for order in range(min(3, U.degree) + 1):
-        knots = U.knots[order : len(U.knots) - order]
-        across[order] = basis_matrix(U.degree - order, knots, u) @ derivative_points(U.degree, U.knots, identity, order)
-    planes = [np.einsum("gi,kivd->kdgv", across[du], along[dv]).reshape(len(layers), 3, -1) for du, dv in _ORDERS]
-    return np.concatenate(planes, axis=1)
+@dataclass(frozen=True, eq=False)
+class _Parts:
+    """What J of some candidates is made of; jump of H and speed below each line, where there are lines."""
+
+    value: FloatArray
+    gh: FloatArray
+    area: FloatArray
+    window: FloatArray
+    jumps: FloatArray
+    jump: FloatArray | None
+    below: FloatArray | None

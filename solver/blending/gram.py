@@ -267,14 +267,19 @@ class EnergyForm:
                         result[self.offsets[i] : self.offsets[i + 1]] += part
         return result
 
-    def error_energies(self) -> FloatArray:
-        """Return bounds on the energy of second derivatives by vv, uv and uu of control points between -1 and 1."""
+    def error_energies(self, largest: FloatArray) -> FloatArray:
+        """Bound the energy of second derivatives by vv, uv and uu where no point of row i is above `largest[i]`.
+
+        Parameters
+        ----------
+        largest : ndarray, shape (m + 1,)
+        """
         total = np.zeros(3)
-        for parts in self._errors():
+        for parts in self._errors(largest):
             total += [np.sum(weights * e**2) for weights, e in parts]
         return total
 
-    def change_by_errors(self, points: FloatArray, errors: FloatArray) -> float:
+    def change_by_errors(self, points: FloatArray, errors: FloatArray, largest: FloatArray) -> float:
         """Bound by how much the energy changes where each coordinate of each control point may be off.
 
         With second derivatives x and their errors e the change is the integral of 2 x e + e^2. Along v it is bounded
@@ -284,13 +289,15 @@ class EnergyForm:
         ----------
         points : ndarray, shape (N, 3)
         errors : ndarray, shape (3,)
-            Of the coordinates x, y, z of all points.
+            Of the coordinates x, y, z.
+        largest : ndarray, shape (m + 1,)
+            By how much these are larger in the points of row i.
         """
         m, p, U = len(self.rows) - 1, self.u.degree, self.u.knots
         rows = np.split(points, self.offsets[1:-1])
         nets = [[self._nets(members, rows, dv) for members in self._members] for dv in range(3)]
         total = 0.0
-        for along, parts in zip(self._along(), self._errors(), strict=True):
+        for along, parts in zip(self._along(), self._errors(largest), strict=True):
             for du, (weights, e) in enumerate(parts):
                 curves = np.zeros((m + 1, 3, *weights.shape))
                 for samples, members, net in zip(along, self._members, nets[2 - du], strict=True):
@@ -302,8 +309,8 @@ class EnergyForm:
                 total += float(np.sum(weights * (2 * size * error + error**2)))
         return total
 
-    def _errors(self) -> Iterator[list[tuple[FloatArray, FloatArray]]]:
-        """Bound second derivatives of control points between -1 and 1, part by part along v.
+    def _errors(self, largest: FloatArray) -> Iterator[list[tuple[FloatArray, FloatArray]]]:
+        """Bound second derivatives of control points whose largest, row by row, are given, part by part along v.
 
         For the orders 0, 1, 2 in u: weights, with the factor of that derivative, and root mean squares over u.
         Differences of control points become sums: no sign is taken for granted.
@@ -319,7 +326,7 @@ class EnergyForm:
                 curves = np.zeros((m + 1, *weights.shape))
                 for samples, members, net in zip(along, self._members, nets[dv], strict=True):
                     if dv <= samples.basis.degree:
-                        curves[members] = samples.curves(net, dv)
+                        curves[members] = samples.curves(net, dv) * largest[members][:, None, None]
                 e = (root @ _sums(p, U, curves, du).reshape(m + 1 - du, -1)).reshape(-1, *weights.shape)
                 factor = float(gram_block(*np.eye(3)[du], *np.eye(3)[dv]))
                 parts.append((factor * weights, np.sqrt(np.sum(e**2, axis=0))))

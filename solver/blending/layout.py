@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Literal
 
 import numpy as np
 
 from semispline.solver.arrays import FloatArray, finite_array
 from semispline.solver.errors import InputError, OptionError
+from semispline.solver.options import ROWS_PER_SIDE
 from semispline.solver.scalars import whole_number
 from semispline.solver.splines import (
     MERGE_TOLERANCE,
@@ -22,20 +24,27 @@ from semispline.solver.splines import (
 
 # More than any blend needs; the energy in u is held in full.
 MOST_MIDDLE_CURVES = 1000
-# Rows that each contact owns: position, first and second derivative.
-ROWS_PER_SIDE = 3
 # Below it second derivatives in u vanish: creases across would cost nothing, and free rows would be undetermined.
 _LEAST_DEGREE = 2
 
 
-def blend_u_basis(degree_u: int, middle_curves: int, inner: Sequence[float] | None = None) -> Basis:
-    """Return U: clamped on [0, 1], for 6 + `middle_curves` rows; inner knots uniform unless given.
+def blend_u_basis(
+    degree_u: int, middle_curves: int, inner: Sequence[float] | None = None, orders: tuple[int, int] = (2, 2)
+) -> Basis:
+    """Return U: clamped on [0, 1], for the rows of both contacts and `middle_curves`; inner knots uniform unless given.
+
+    Parameters
+    ----------
+    degree_u, middle_curves : int
+    inner : sequence of float, optional
+    orders : (int, int)
+        Orders of contact: a contact has order + 1 rows, 3 at least.
 
     Raises
     ------
     OptionError
-        A negative number of middle curves, a degree below 2 or too high for the number of rows, or knots that do not
-        fit.
+        A negative number of middle curves, a degree below 2 or too high for the number of rows, knots that do not fit,
+        or across which less than third or fourth order goes where that is asked for.
 
     Source: section 3 of the paper, with u_i = i / (m - k + 2).
 
@@ -48,36 +57,59 @@ def blend_u_basis(degree_u: int, middle_curves: int, inner: Sequence[float] | No
     if middle_curves > MOST_MIDDLE_CURVES:
         raise OptionError(f"middle_curves: found {middle_curves}, expected at most {MOST_MIDDLE_CURVES}")
     degree_u = whole_number(degree_u, "degree_u", 1, OptionError)
-    rows = 2 * ROWS_PER_SIDE + middle_curves
+    rows = sum(max(ROWS_PER_SIDE, order + 1) for order in orders) + middle_curves
     if not _LEAST_DEGREE <= degree_u < rows:
         raise OptionError(
             f"degree_u: found {degree_u}, expected {_LEAST_DEGREE} to {rows - 1} with {middle_curves} middle curve(s)"
         )
     if inner is None:
-        return Basis(degree_u, uniform_knots(degree_u, rows - degree_u))
-    given = np.sort(finite_array(inner, 1, "u_knots", OptionError))
-    if len(given) != rows - degree_u - 1:
-        raise OptionError(f"u_knots: found {len(given)} inner knots, expected {rows - degree_u - 1} for {rows} rows")
-    return Basis(degree_u, _clamped_inside(given, degree_u, 0.0, 1.0, "u_knots"))
+        basis = Basis(degree_u, uniform_knots(degree_u, rows - degree_u))
+    else:
+        given = np.sort(finite_array(inner, 1, "u_knots", OptionError))
+        if len(given) != rows - degree_u - 1:
+            raise OptionError(
+                f"u_knots: found {len(given)} inner knots, expected {rows - degree_u - 1} for {rows} rows"
+            )
+        basis = Basis(degree_u, _clamped_inside(given, degree_u, 0.0, 1.0, "u_knots"))
+    _check_carries(basis, max(orders), rows)
+    return basis
+
+
+def _check_carries(u: Basis, order: int, rows: int) -> None:
+    """Refuse inner knots across which the blend is less smooth than at its contacts, for orders that promise more."""
+    inner = u.knots[u.degree + 1 : -u.degree - 1]
+    most = max((int(np.sum(inner == knot)) for knot in inner), default=0)
+    if order <= 2 or not most or u.degree - most >= order:
+        return
+    degrees = [f"{p} with {rows - 1 - p or 'no'} inner knot(s)" for p in range(order + 1, rows)]
+    raise OptionError(
+        f"degree_u: found {u.degree} with inner knots of multiplicity {most}, which carries at most "
+        f"G{u.degree - most} through the blend; G{order} needs simple knots and degree {', '.join(degrees)}"
+    )
 
 
 def middle_bases(
-    a: Basis, b: Basis, count: int, given: Sequence[Sequence[float]] | None = None, *, closed: bool = False
+    a: Basis,
+    b: Basis,
+    count: int,
+    given: Literal["fourth", "paper"] | Sequence[Sequence[float]] = "paper",
+    *,
+    closed: bool = False,
 ) -> list[Basis]:
-    """Return degree and knots of the middle curves: as given, else all of them by `middle_basis`.
+    """Return degree and knots of the middle curves: as given, or all of them by a rule.
 
-    Closed contact curves keep all knots of both: pairs would depend on where the seam is.
+    Closed contact curves keep all knots of both: another choice would depend on where the seam is.
 
     Raises
     ------
     OptionError
         Given knots that are not one list of inner knots for each middle curve.
     """
-    if given is None and closed:
-        merged = merge_breakpoints(breakpoints(a.knots), breakpoints(b.knots))
-        return [Basis(a.degree, clamped(merged[1:-1], a.degree, merged[0], merged[-1]))] * count
-    if given is None:
-        return [middle_basis(a, b)] * count
+    if isinstance(given, str):
+        if closed:
+            merged = merge_breakpoints(breakpoints(a.knots), breakpoints(b.knots))
+            return [Basis(a.degree, clamped(merged[1:-1], a.degree, merged[0], merged[-1]))] * count
+        return [middle_basis(a, b) if given == "paper" else fourth_basis(a, b)] * count
     if len(given) != count:
         raise OptionError(
             f"middle_knots: found {len(given)} lists of inner knots, expected {count}, one for each curve"
@@ -139,6 +171,33 @@ def middle_basis(a: Basis, b: Basis) -> Basis:
     """
     merged = merge_breakpoints(breakpoints(a.knots), breakpoints(b.knots))
     return Basis(a.degree, clamped(_paired_means(merged[1:-1]), a.degree, merged[0], merged[-1]))
+
+
+def fourth_basis(a: Basis, b: Basis) -> Basis:
+    """Return degree and knots of a middle curve: every fourth of the knots of both contacts, alike from both ends.
+
+    An ordinary B-spline has all knots of both anyway: these cost nothing once the blend is converted.
+
+    Examples
+    --------
+    >>> a, b = Basis(1, clamped([0.5], 1, 0, 1)), Basis(1, clamped([0.1, 0.2, 0.8, 0.9], 1, 0, 1))
+    >>> fourth_basis(a, b).knots[2:-2]
+    array([0.5])
+    >>> a = Basis(1, clamped([0.3, 0.7], 1, 0, 1))
+    >>> fourth_basis(a, b).knots[2:-2]
+    array([0.2, 0.8])
+    """
+    merged = merge_breakpoints(breakpoints(a.knots), breakpoints(b.knots))
+    return Basis(a.degree, clamped(_every_fourth(merged[1:-1]), a.degree, merged[0], merged[-1]))
+
+
+def _every_fourth(v: FloatArray) -> FloatArray:
+    n = len(v)
+    count = -(-n // 4)
+    # An even number of knots has no middle one.
+    count += n % 2 == 0 and count % 2 == 1
+    left = [int((j + 0.5) * n / count) for j in range(count // 2)]
+    return v[[*left, *[n // 2] * (count % 2), *(n - 1 - i for i in reversed(left))]]
 
 
 def _paired_means(v: FloatArray) -> FloatArray:

@@ -198,7 +198,7 @@ def _seam_conditions(problem: BlendProblem, p: Any) -> list[Any]:
 
 
 def contact_rows(
-    side: Side, a: Any, degree: int, spans: tuple[float, float], rows: Sequence[Any] | None = None
+    side: Side, a: Any, degree: int, spans: tuple[float, ...], rows: Sequence[Any] | None = None
 ) -> list[Any]:
     """Rows that the contact prescribes, each an (n, 3) expression in a and in the rows of the base."""
     q = side.degree
@@ -207,7 +207,7 @@ def contact_rows(
     elif side.order == 1:
         matrix = contact_casadi.contact_rows_1(a, degree, spans[0], q, side.spans[0])
     else:
-        matrix = contact_casadi.contact_rows_2(a, degree, *spans, q, *side.spans)
+        matrix = contact_casadi.contact_rows_2(a, degree, spans[0], spans[1], q, side.spans[0], side.spans[1])
     base = [ca.DM(row) for row in side.rows] if rows is None else rows
     order = side.order + 1
     return [sum((matrix[i, j] * base[j] for j in range(1, order)), matrix[i, 0] * base[0]) for i in range(order)]

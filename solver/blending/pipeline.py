@@ -9,11 +9,13 @@ from typing import Any
 import numpy as np
 
 from semispline.solver.arrays import FloatArray, require
+from semispline.solver.blending.candidates import Layout, find_layout
 from semispline.solver.blending.gram import thin_plate_energy
 from semispline.solver.blending.problem import BlendProblem, make_problem
-from semispline.solver.blending.result import BlendResult
+from semispline.solver.blending.result import BlendResult, Objective
 from semispline.solver.blending.rounding import measure_energy_rounding, rounding_warning
-from semispline.solver.blending.shape_parameters import Found, active_bounds, find_shape_parameters
+from semispline.solver.blending.shape_parameters import Found, active_bounds, admissible, bulged
+from semispline.solver.blending.shape_warnings import shape_warnings
 from semispline.solver.blending.sides import Side, make_side, matched_sides
 from semispline.solver.blending.warnings import (
     bare_places,
@@ -21,19 +23,20 @@ from semispline.solver.blending.warnings import (
     contact_warnings,
     remedy,
     seam_warning,
-    shape_warnings,
 )
-from semispline.solver.errors import ComputationError, ContactError, FoldError
+from semispline.solver.errors import ComputationError, ContactError, FoldError, InputError
 from semispline.solver.judge import (
     Base,
     Contact,
     Correspondence,
+    ShapeReport,
     check_regular_edge,
     correspond,
     local_origin,
     measure_contact,
     measure_creases,
     measure_regularity,
+    measure_shape,
     required_limits,
     snapped_seam,
     tied_directions,
@@ -53,7 +56,7 @@ def blend(
     options: BlendOptions | None = None,
     **named: Any,
 ) -> BlendResult:
-    """Blend two B-spline surfaces with a semi-structured surface of least thin-plate energy.
+    """Blend two B-spline surfaces with a semi-structured surface: of fairest shape, or as the paper has it.
 
     Parameters
     ----------
@@ -90,17 +93,19 @@ def blend(
     (12, 1.6875, 1.6875)
     """
     started = time.perf_counter()
-    chosen = named_options(options, named)
-    if len(tied := _tied(a, b, chosen.flip)) > 1:
-        return _strictly(_less_turning(a, b, tied, replace(chosen, strict=False)), chosen.strict)
-    stated = state_problem(a, b, replace(chosen, flip=tied[0]))
-    problem, sides, frame, matched = stated.problem, stated.sides, stated.frame, stated.matched
-    # The one or two numbers that are not linear, then everything that is.
-    found = find_shape_parameters(problem, chosen)
+    said = named_options(options, named)
+    if len(tied := _tied(a, b, said.flip)) > 1:
+        return _strictly(_less_turning(a, b, tied, replace(said, strict=False)), said.strict)
+    placed = place_sides(a, b, said, tied[0])
+    sides, frame, matched = placed.sides, placed.frame, placed.matched
+    # The few numbers that are not linear, then everything that is.
+    layout, candidates = find_layout(*placed.scaled, said)
+    chosen, problem = layout.options, layout.problem
+    found = bulged(layout.found, chosen.bulges)
     surface = _surface(problem, found, sides, frame)
     energy = thin_plate_energy(surface)
     seconds = time.perf_counter() - started
-    rounding = measure_energy_rounding(problem, surface, frame, energy)
+    rounding = measure_energy_rounding(problem, found, surface, frame, energy)
     # What came out, judged by code that knows nothing of the above.
     contact_a, contact_b = _checked_contacts(a, b, surface, chosen.continuities, matched, found)
     if found.certificate is not None:
@@ -108,9 +113,10 @@ def blend(
     seam = _seam(surface, problem)
     regularity = measure_regularity(surface)
     creases = measure_creases(surface)
+    shape = _measured_shape(surface, a, b, chosen)
     warnings = (
-        shape_warnings(regularity, creases)
-        + bound_warnings(problem, found)
+        shape_warnings(shape, regularity, creases, is_fair=found.fairness is not None)
+        + bound_warnings(problem, layout.found)
         + rounding_warning(rounding, surface, energy)
         + seam_warning(a, b)
         + contact_warnings((a, b), surface, (contact_a, contact_b), chosen.continuities, found)
@@ -118,14 +124,17 @@ def blend(
     result = BlendResult(
         surface=surface,
         continuity=chosen.continuities,
+        options=chosen,
+        candidates=candidates,
+        objective=_objective(layout, energy, frame[1]),
         method=found.method,
         energy=energy,
         energy_rounding=rounding.energy,
         alpha2=None if sides[0].order == 0 else found.a,
         beta2=None if sides[1].order == 0 else found.b,
-        alpha2_bounds=problem.bounds[0] if problem.free[0] else None,
-        beta2_bounds=problem.bounds[1] if problem.free[1] else None,
-        active_bounds=active_bounds(problem, found),
+        alpha2_bounds=admissible(problem, 0),
+        beta2_bounds=admissible(problem, 1),
+        active_bounds=active_bounds(problem, layout.found),
         flipped=matched.flipped,
         seam_shift=matched.shift,
         contact_a=contact_a,
@@ -133,6 +142,7 @@ def blend(
         seam=seam,
         regularity=regularity,
         creases=creases,
+        shape=shape,
         warnings=warnings,
         iterations=found.iterations,
         status=found.status,
@@ -142,7 +152,6 @@ def blend(
         certificate=None if rounding.matters else found.certificate,
         proven_gap=None if rounding.matters else found.proven_gap,
         p2=found.p2,
-        fairness=found.fairness,
         constraint_rank=found.constraint_rank,
         seconds=seconds,
     )
@@ -171,22 +180,71 @@ class StatedProblem:
 
 
 def state_problem(a: Base, b: Base, options: BlendOptions | None = None, **named: Any) -> StatedProblem:
-    """State the problem that `blend` solves; arguments and errors are those of `blend`."""
-    chosen = named_options(options, named)
-    if len(tied := _tied(a, b, chosen.flip)) > 1:
-        less_turning = _less_turning(a, b, tied, replace(chosen, method="reduced", strict=False))
-        chosen = replace(chosen, flip="yes" if less_turning.flipped else "no")
-    at_a, at_b = chosen.continuities
-    # The bases as the blend sees them: contact at w = 0, one parameter v, coordinates of size 1.
+    """State the first problem that `blend` solves; arguments and errors are those of `blend`."""
+    said = named_options(options, named)
+    if len(tied := _tied(a, b, said.flip)) > 1:
+        less_turning = _less_turning(a, b, tied, replace(said, method="reduced", strict=False))
+        tied = ("yes" if less_turning.flipped else "no",)
+    placed = place_sides(a, b, said, tied[0])
+    return StatedProblem(make_problem(*placed.scaled, said), placed.sides, placed.frame, placed.matched)
+
+
+@dataclass(frozen=True, eq=False)
+class PlacedSides:
+    """The bases as the blend sees them: contact at w = 0, one parameter v.
+
+    Attributes
+    ----------
+    sides : (Side, Side)
+        In model units.
+    scaled : (Side, Side)
+        In coordinates of size 1.
+    frame : (ndarray of shape (3,), float)
+        Centre and size: scaled coordinates are (x - centre) / size.
+    matched : Correspondence
+    """
+
+    sides: tuple[Side, Side]
+    scaled: tuple[Side, Side]
+    frame: tuple[FloatArray, float]
+    matched: Correspondence
+
+
+def place_sides(a: Base, b: Base, options: BlendOptions, flip: Flip) -> PlacedSides:
+    """Bring both contacts to one parameter v and to coordinates of size 1."""
+    at_a, at_b = options.continuities
     sides = make_side(a, at_a, "base a"), make_side(b, at_b, "base b")
-    matched = snapped_seam(a, b, correspond(a, b, chosen.flip))
+    matched = snapped_seam(a, b, correspond(a, b, flip))
     # Far from the origin each operation would round by the distance: there is but one rounding, of the result.
     origin = local_origin(a.surface, b.surface)
     local = matched_sides(sides[0].moved(origin, 1.0), sides[1].moved(origin, 1.0), matched)
     sides = local[0].moved(-origin, 1.0), local[1].moved(-origin, 1.0)
     centre, size = _frame(*sides)
-    problem = make_problem(local[0].moved(centre - origin, size), local[1].moved(centre - origin, size), chosen)
-    return StatedProblem(problem, sides, (centre, size), matched)
+    scaled = local[0].moved(centre - origin, size), local[1].moved(centre - origin, size)
+    return PlacedSides(sides, scaled, (centre, size), matched)
+
+
+def _objective(layout: Layout, energy: float, size: float) -> Objective:
+    """Say what was minimised, and what is known of it."""
+    problem, found, options = layout.problem, layout.found, layout.options
+    points = problem.control_points(found.a, found.b, found.p2)
+    excess = problem.free_system.excess(points)
+    if excess is None:
+        rows = "none are free: the contacts prescribe all"
+    else:
+        rows = f"thin plate, v_scale {options.v_scale}, within {excess:.0e} of the least for these shape parameters"
+    if found.fairness is not None:
+        return Objective("fairness", found.fairness, found.known, rows)
+    value = energy if options.v_scale == "paper" else float(problem.form.products(points[None])[0, 0]) * size**2
+    if found.proven_gap is not None:
+        known = f"proved least over the box to {found.proven_gap:.1e} of itself"
+    elif any(problem.free):
+        known = f"a local minimum that method {found.method} found"
+    elif excess is None:
+        return Objective("nothing", None, "contacts and options prescribe all", rows)
+    else:
+        known = "nothing but the rows was free"
+    return Objective("thin plate", value, known, rows)
 
 
 def _tied(a: Base, b: Base, flip: Flip) -> tuple[Flip, ...]:
@@ -213,7 +271,8 @@ def _less_turning(a: Base, b: Base, directions: tuple[Flip, ...], options: Blend
             failures.append(failure)
     if not results:
         raise failures[0]
-    return min(results, key=lambda result: round(result.regularity.largest_turn_degrees / _EQUAL_TURNS))
+    least = min(result.shape.turn.degrees for result in results)
+    return next(result for result in results if result.shape.turn.degrees <= least + _EQUAL_TURNS)
 
 
 def _strictly(result: BlendResult, strict: bool) -> BlendResult:
@@ -255,11 +314,12 @@ def _checked_contacts(
     found: Found,
 ) -> tuple[Contact, Contact]:
     """Let the referee measure both contacts, and refuse a result that misses its limits."""
-    contact_a = measure_contact(a, Base(surface, "u0"), correspondence=Correspondence(flipped=False))
-    contact_b = measure_contact(Base(surface, "u1"), b, correspondence=matched)
+    order = max(2, *(int(wanted[1]) for wanted in continuity))
+    contact_a = measure_contact(a, Base(surface, "u0"), correspondence=Correspondence(flipped=False), order=order)
+    contact_b = measure_contact(Base(surface, "u1"), b, correspondence=matched, order=order)
     for name, base, contact, wanted, shape in (
-        ("a", a, contact_a, continuity[0], found.a),
-        ("b", b, contact_b, continuity[1], found.b),
+        ("a", a, contact_a, continuity[0], float(np.min(found.a))),
+        ("b", b, contact_b, continuity[1], float(np.min(found.b))),
     ):
         measured = required_limits(contact, wanted)
         if any(np.isnan(value) for _, value, _ in measured):
@@ -270,7 +330,7 @@ def _checked_contacts(
             )
         hidden = untold(contact, wanted)
         if hidden:
-            said = remedy(base, surface, bare_places(contact, name), shape if wanted in ("G1", "G2") else None)
+            said = remedy(base, surface, bare_places(contact, name), shape if wanted[0] == "G" else None)
             raise ContactError(f"contact {name}: {'; '.join(hidden)} for {wanted}; {said}")
         for measure, value, limit in measured:
             if not value <= limit:
@@ -285,3 +345,10 @@ def _seam(surface: SemiStructuredSurface, problem: BlendProblem) -> Contact | No
     if problem.seam_order < 0:
         return None
     return measure_contact(Base(surface, "v1"), Base(surface, "v0"), flip="no")
+
+
+def _measured_shape(surface: SemiStructuredSurface, a: Base, b: Base, options: BlendOptions) -> ShapeReport:
+    try:
+        return measure_shape(surface, a, b, search_meets=options.search_meets)
+    except InputError as error:
+        raise ComputationError(f"the blend is no surface: {error}; try other edges, or a higher continuity") from error

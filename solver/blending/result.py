@@ -3,11 +3,37 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
-from semispline.solver.judge import Contact, Crease, Regularity
-from semispline.solver.options import Continuity
+from semispline.solver.blending.candidates import Candidate
+from semispline.solver.blending.linear_alpha import LinearInV
+from semispline.solver.judge import Contact, Crease, Regularity, ShapeReport
+from semispline.solver.options import BlendOptions, Continuity
 from semispline.solver.proof import Certificate
 from semispline.solver.splines import SemiStructuredSurface
+
+
+@dataclass(frozen=True)
+class Objective:
+    """What was minimised.
+
+    Attributes
+    ----------
+    name : str
+        "fairness": area times integral of |grad H|^2, jumps of H included, by alpha and p2 (before a bulge).
+        "thin plate": (11) with the v-domain's length as `v_scale` has it, by whichever of free rows and alpha is free.
+        "nothing" where contacts and options prescribe all.
+    value : float or None
+    known : str
+        What is known of the minimum; "proved" is said of nothing else than what is.
+    rows : str
+        What the free rows minimise, and to which fraction that is certified; or that there are none.
+    """
+
+    name: str
+    value: float | None
+    known: str
+    rows: str
 
 
 @dataclass(frozen=True, eq=False)
@@ -20,6 +46,11 @@ class BlendResult:
         u = 0 on a, u = 1 on b; the v-domain is that of a's edge.
     continuity : (str, str)
         Asked for and confirmed at a and at b.
+    options : BlendOptions
+        All that was chosen for this blend, nothing unsaid.
+    candidates : tuple of Candidate
+        Layouts that were tried, where the fairest shape was searched.
+    objective : Objective
     method : str
         "linear" where nothing but a linear solve was needed.
     energy : float
@@ -27,10 +58,12 @@ class BlendResult:
     energy_rounding : float
         By how much rounding of the control points may change it, at most; above 0.001 of the energy `warnings` say so
         and nothing is proved.
-    alpha2, beta2 : float or None
-        Of (2.1) and (2.2), the bases in their own parameters; 1 for C1 and C2, None for C0 and G0.
+    alpha2, beta2 : float, (float, float) or None
+        Of (2.1) and (2.2), the bases in their own parameters, the bulge included; 1 for C1 and C2, None for C0 and G0.
+        Where linear in v the pair of values at its start and its end.
     alpha2_bounds, beta2_bounds : (float, float) or None
-        The admissible box; None where there is no such unknown. Method bfgs does not know it: see `warnings`.
+        The admissible box; None where there is no such unknown. Method bfgs does not know it: see `warnings`. Pairs of
+        end values where linear in v.
     active_bounds : tuple of str
         Which bounds stopped the search, such as "alpha2 lower", or were passed by it (method bfgs).
     flipped : bool
@@ -42,12 +75,15 @@ class BlendResult:
     seam : Contact or None
         Closed contact curves: how the blend's own edges v0 and v1 meet.
     regularity : Regularity
-        How far the blend is from folding.
+        How far the blend is from being pinched to nothing.
     creases : tuple of Crease
         Knots of full multiplicity, across which (11) counts nothing, and how far the normal turns there.
+    shape : ShapeReport
+        How sharply it turns, how fair it is, how it curves and leaves its bases, whether it meets itself or them.
     warnings : tuple of str
-        What a user should look at: folds, steep turns, creases, shape parameters at their bounds or beyond, an energy
-        that is rounding, contact of which rounding hides a part, bases without a normal somewhere.
+        What a user should look at: folds, steep turns, pinches, loops, U-turns, creases, shape parameters at their
+        bounds or beyond, an energy that is rounding, contact of which rounding hides a part, bases without a normal
+        somewhere.
     iterations : int
         Of the nonlinear solver; 0 where there is none.
     status : str or None
@@ -62,10 +98,9 @@ class BlendResult:
         None where the energy is rounding.
     proven_gap : float or None
         What the proof leaves open, as a fraction of the energy.
-    p2 : (float, float)
-        The second shape parameter of each side, P_uu = alpha^4 R_ww + p2 R_w; 0 but for the fairest shape.
-    fairness : float or None
-        Area times integral of |grad H|^2, no units, where that was minimised: the least of all that was tried.
+    p2 : pair of float or (float, float)
+        The second shape parameter of each side, P_uu = alpha^4 R_ww + p2 R_w; 0 where nobody asked for it. A pair of
+        end values where it goes with an alpha^2 that is linear in v.
     constraint_rank : (int, int) or None
         Rank of the constraint Jacobian at the solution, and its number of rows; only for method casadi.
     seconds : float
@@ -74,13 +109,16 @@ class BlendResult:
 
     surface: SemiStructuredSurface
     continuity: tuple[Continuity, Continuity]
+    options: BlendOptions
+    candidates: tuple[Candidate, ...]
+    objective: Objective
     method: str
     energy: float
     energy_rounding: float
-    alpha2: float | None
-    beta2: float | None
-    alpha2_bounds: tuple[float, float] | None
-    beta2_bounds: tuple[float, float] | None
+    alpha2: LinearInV | None
+    beta2: LinearInV | None
+    alpha2_bounds: tuple[LinearInV, LinearInV] | None
+    beta2_bounds: tuple[LinearInV, LinearInV] | None
     active_bounds: tuple[str, ...]
     flipped: bool
     seam_shift: float
@@ -89,6 +127,7 @@ class BlendResult:
     seam: Contact | None
     regularity: Regularity
     creases: tuple[Crease, ...]
+    shape: ShapeReport
     warnings: tuple[str, ...]
     iterations: int
     status: str | None
@@ -96,7 +135,16 @@ class BlendResult:
     kkt_residual: float | None
     certificate: Certificate | None
     proven_gap: float | None
-    p2: tuple[float, float]
-    fairness: float | None
+    p2: tuple[LinearInV, LinearInV]
     constraint_rank: tuple[int, int] | None
     seconds: float
+
+    @property
+    def rows_stored(self) -> int:
+        """Number of control points of the blend as it is stored."""
+        return self.surface.n_control_points
+
+    @cached_property
+    def rows_converted(self) -> int:
+        """Number of control points of the same surface as an ordinary B-spline, as other programs read it."""
+        return int(self.surface.to_bspline().control_points[..., 0].size)

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from semispline.solver.arrays import FloatArray
 from semispline.solver.blending.gram import EnergyForm
 from semispline.solver.blending.problem import BlendProblem
+from semispline.solver.blending.shape_parameters import Found
 from semispline.solver.splines import SemiStructuredSurface, breakpoints
 
 # An energy that rounding may change by more than this fraction is said to be rounding, and nothing is proved of it.
@@ -39,13 +40,15 @@ class EnergyRounding:
 
 
 def measure_energy_rounding(
-    problem: BlendProblem, surface: SemiStructuredSurface, frame: tuple[FloatArray, float], energy: float
+    problem: BlendProblem, found: Found, surface: SemiStructuredSurface, frame: tuple[FloatArray, float], energy: float
 ) -> EnergyRounding:
-    """Bound what errors of 1e-16 of the largest coordinate, in every control point, may do to the energy.
+    """Bound what errors of 1e-16 of the largest coordinate, in all points of the blend and its bases, do to the energy.
 
     Parameters
     ----------
     problem : BlendProblem
+    found : Found
+        The shape parameters of the blend.
     surface : SemiStructuredSurface
         The blend, model units.
     frame : (ndarray of shape (3,), float)
@@ -56,12 +59,12 @@ def measure_energy_rounding(
     centre, size = frame
     points = np.concatenate([curve.control_points for curve in surface.control_curves])
     sides = np.concatenate([side.rows.reshape(-1, 3) for side in (problem.a, problem.b)]) * size + centre
-    # Prescribed rows are combinations of those of the bases, and are as coarse as these.
     errors = np.finfo(float).eps * np.maximum(np.abs(points).max(axis=0), np.abs(sides).max(axis=0))
     own = problem.form if problem.form.rows is problem.rows else EnergyForm(problem.form.u, problem.rows)
     # Of the surface as it is, and with v stretched as in the energy that is minimised; vv, uv, uu stretch unlike.
     stretch = (_length(problem.form) / _length(own)) ** np.array([-3.0, -1.0, 1.0])
-    parts = own.error_energies() * float(np.sum(errors**2))
+    largest = _error_factors(problem, found)
+    parts = own.error_energies(largest) * float(np.sum(errors**2))
     least = energy * float(stretch.min())
     floor, minimised_floor = (_ZERO_ENERGY * _bent(form) * size**2 for form in (own, problem.form))
     change = _change(energy, float(parts.sum()))
@@ -69,13 +72,30 @@ def measure_energy_rounding(
     if share <= ROUNDING_SHARE:
         return EnergyRounding(change, share)
     # Only where that is not enough: place by place.
-    change = own.change_by_errors(points - centre, errors)
+    change = own.change_by_errors(points - centre, errors, largest)
     share = change / max(energy, floor)
     if own is not problem.form:
         minimised = float(problem.form.products(points[None] - centre)[0, 0])
-        change_there = problem.form.change_by_errors(points - centre, errors)
+        change_there = problem.form.change_by_errors(points - centre, errors, largest)
         share = max(share, change_there / max(minimised, minimised_floor))
     return EnergyRounding(change, share)
+
+
+def _error_factors(problem: BlendProblem, found: Found) -> FloatArray:
+    """Return how much larger than in the bases errors are in each row, shape (m + 1,); 1 for free rows.
+
+    Prescribed rows are combinations of rows of the bases, with large weights of both signs where these have a narrow
+    span beside the edge.
+    """
+    factors = np.ones(len(problem.rows))
+    for (side, rows, spans), a, p2 in zip(problem.contacts, (found.a, found.b), found.p2, strict=True):
+        # The combinations themselves: of rows (1, 0, ..), (0, 1, ..) and so on.
+        weights = replace(side, rows=np.eye(side.count)[:, None])
+        # Where linear in v the weights are largest at an end.
+        largest, second = float(np.max(a)), float(np.max(np.abs(p2)))
+        sums = np.abs(weights.contact_rows(largest, problem.form.u.degree, spans, second)).sum(axis=(1, 2))
+        factors[rows[: side.order + 1]] = np.maximum(sums, 1.0)
+    return factors
 
 
 def _change(energy: float, errors: float) -> float:

@@ -12,11 +12,11 @@ from semispline.solver.blending.layout import check_knots_apart
 from semispline.solver.errors import EdgeError
 from semispline.solver.generated import contact_numpy, rows_numpy, shape_numpy
 from semispline.solver.judge import Base, Correspondence
-from semispline.solver.options import Continuity
+from semispline.solver.options import ROWS_PER_SIDE, Continuity
 from semispline.solver.splines import Basis, BSplineCurve, BSplineSurface, affine_knots, elevate_curve, reversed_knots
 
-# Contact up to second order reads three control rows and two knot spans.
-_ROWS = 3
+# Across a span beside the edge below this fraction of the base, derivatives are made of rounding.
+_LEAST_SPAN = 1e-10
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,14 +25,15 @@ class Side:
 
     Attributes
     ----------
-    continuity : {"C0", "C1", "C2", "G0", "G1", "G2"}
+    continuity : {"C0", "C1", "C2", "G0", "G1", "G2", "G3", "G4"}
     degree : int
         Degree of the base across the edge.
-    spans : (float, float)
-        Distances w_(degree+1) - w_s and w_(degree+2) - w_s from the edge, in the base's own parameter.
+    spans : tuple of float
+        Distances w_(degree+1) - w_s, w_(degree+2) - w_s, .. from the edge, in the base's own parameter: as many as the
+        order of contact, two at least.
     along : Basis
         Degree and knots along the edge, in the parameter v of the blend.
-    rows : ndarray, shape (3, n, 3)
+    rows : ndarray, shape (order + 1 or 3, n, 3)
         Control rows from the edge inwards; a base with fewer rows repeats its last one, which contact does not read.
     largest : float
         Largest coordinate of the rows as they were given, in today's units: their rounding goes with it.
@@ -40,7 +41,7 @@ class Side:
 
     continuity: Continuity
     degree: int
-    spans: tuple[float, float]
+    spans: tuple[float, ...]
     along: Basis
     rows: FloatArray
     largest: float
@@ -53,30 +54,30 @@ class Side:
     @property
     def has_shape_parameter(self) -> bool:
         """Whether a = alpha^2 is free: geometric contact beyond position."""
-        return self.continuity in ("G1", "G2")
+        return self.continuity[0] == "G" and self.order > 0
 
-    def contact_rows(
-        self, a: float, blend_degree: int, blend_spans: tuple[float, float], p2: float = 0.0
-    ) -> FloatArray:
+    @property
+    def count(self) -> int:
+        """Number of rows of the blend that are the side's own."""
+        return max(ROWS_PER_SIDE, self.order + 1)
+
+    def contact_rows(self, a: float, blend_degree: int, blend_spans: tuple[float, ...], p2: float = 0.0) -> FloatArray:
         """Return the rows P_0 .. P_order of the blend that the contact prescribes, shape (order + 1, n, 3).
 
         Source: generated from `semispline.derivations.contact`.
         """
-        p, q = blend_degree, self.degree
-        if self.order == 0:
-            matrix = np.ones((1, 1))
-        elif self.order == 1:
-            matrix = contact_numpy.contact_rows_1(a, p, blend_spans[0], q, self.spans[0])
-        else:
-            matrix = contact_numpy.contact_rows_2(a, p, *blend_spans, q, *self.spans)
-        rows = np.asarray(np.einsum("ij,jnd->ind", matrix, self.rows[: self.order + 1]))
+        p, q, n = blend_degree, self.degree, self.order
+        if n == 0:
+            return self.rows[:1]
+        matrix = getattr(contact_numpy, f"contact_rows_{n}")(a, p, *blend_spans[:n], q, *self.spans[:n])
+        rows = np.asarray(np.einsum("ij,jnd->ind", matrix, self.rows[: n + 1]))
         if p2:
             exponents, monomials = self.monomial_rows(blend_degree, blend_spans)
             factors = [a**i * p2**j if j else 0.0 for i, j in exponents.tolist()]
             rows += np.tensordot(factors, monomials, 1)
         return rows
 
-    def row_powers(self, centre: float, blend_degree: int, blend_spans: tuple[float, float]) -> FloatArray:
+    def row_powers(self, centre: float, blend_degree: int, blend_spans: tuple[float, ...]) -> FloatArray:
         """Return the prescribed rows as a polynomial in a - centre, shape (order + 1 powers, order + 1, n, 3).
 
         Only where contact is geometric, order 1 or 2. Source: generated from `semispline.derivations.shape`.
@@ -85,11 +86,13 @@ class Side:
         if order == 1:
             matrix = shape_numpy.contact_row_powers_1(centre, p, blend_spans[0], q, self.spans[0])
         else:
-            matrix = shape_numpy.contact_row_powers_2(centre, p, *blend_spans, q, *self.spans)
+            matrix = shape_numpy.contact_row_powers_2(
+                centre, p, blend_spans[0], blend_spans[1], q, self.spans[0], self.spans[1]
+            )
         powers = matrix.reshape(order + 1, order + 1, order + 1)
         return np.asarray(np.einsum("kij,jnd->kind", powers, self.rows[: order + 1]))
 
-    def monomial_rows(self, blend_degree: int, blend_spans: tuple[float, float]) -> tuple[FloatArray, FloatArray]:
+    def monomial_rows(self, blend_degree: int, blend_spans: tuple[float, ...]) -> tuple[FloatArray, FloatArray]:
         """Return the prescribed rows as a sum over monomials a^i p2^j, 1 first.
 
         Returns
@@ -121,7 +124,8 @@ def make_side(base: Base, continuity: Continuity, name: str = "base") -> Side:
     Raises
     ------
     EdgeError
-        The base is rational or semi-structured, or has too many knots along the edge that count as one.
+        The base is rational or semi-structured, has too many knots along the edge that count as one, or next to no
+        span beside an edge where derivatives are asked for.
     """
     surface = base.surface
     if not isinstance(surface, BSplineSurface):
@@ -141,9 +145,17 @@ def make_side(base: Base, continuity: Continuity, name: str = "base") -> Side:
         net, steps = net[::-1], knots[-1] - knots[::-1]
     else:
         steps = knots - knots[0]
-    rows = net[[min(i, len(net) - 1) for i in range(_ROWS)]]
-    spans = (float(steps[degree + 1]), float(steps[min(degree + 2, len(steps) - 1)]))
-    return Side(continuity, degree, spans, Basis(*along), rows, float(np.abs(rows).max()))
+    order = int(continuity[1])
+    rows = net[[min(i, len(net) - 1) for i in range(max(ROWS_PER_SIDE, order + 1))]]
+    spans = tuple(float(steps[min(degree + i, len(steps) - 1)]) for i in range(1, max(2, order) + 1))
+    side = Side(continuity, degree, spans, Basis(*along), rows, float(np.abs(rows).max()))
+    if side.order > 0 and spans[0] < _LEAST_SPAN * steps[-1]:
+        raise EdgeError(
+            f"{name}: knots_{base.edge[0]} leave a span of {spans[0]:.1e} beside the edge, expected at least "
+            f"{_LEAST_SPAN:g} of the domain, or derivatives are made of rounding; remove these knots or take them "
+            "further apart, or ask for position only"
+        )
+    return side
 
 
 def matched_sides(a: Side, b: Side, matched: Correspondence) -> tuple[Side, Side]:

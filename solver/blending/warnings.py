@@ -1,4 +1,4 @@
-"""What a user should look at before a blend is used: folds, creases, bounds, contact that rounding hides."""
+"""What a user should look at before a blend is used: bounds, contact that rounding hides, bases without a normal."""
 
 from __future__ import annotations
 
@@ -6,49 +6,15 @@ import numpy as np
 
 from semispline.solver.blending.problem import BlendProblem
 from semispline.solver.blending.shape_parameters import Found, active_bounds, shape_unknowns
-from semispline.solver.judge import Base, Contact, Crease, NoNormal, Regularity, doubtful, is_closed, model_size
+from semispline.solver.judge import Base, Contact, NoNormal, doubtful, is_closed, model_size
 from semispline.solver.options import Continuity
 from semispline.solver.splines import SemiStructuredSurface, bounding_box
 
-# A normal that turns this far between neighbouring samples has met a fold; well before it, it is too coarse to tell.
-FOLD_TURN = 90.0
-STEEP_TURN = 60.0
-# An area element this far below its mean is as good as a fold.
-PINCH = 1e-3
-# A normal that turns this far across a knot of full multiplicity, in degrees, makes a crease: well below what CAD
-# systems take for tangent (0.01 and more), well above the rounding of a surface that is smooth there.
-SHARP = 1e-3
 _NAMED = 5
 # So many sizes from the origin rounding is that of the distance rather than that of the blend.
 _FAR = 1e3
 # A span beside the edge below this fraction of the base makes its second derivatives round by 1e6 times as much.
 _NARROW = 1e-3
-
-
-def shape_warnings(regularity: Regularity, creases: tuple[Crease, ...]) -> tuple[str, ...]:
-    """Return what a user should look at before the blend is used."""
-    found = []
-    sharpest = max((crease.angle_degrees for crease in creases), default=0.0)
-    turn = regularity.largest_turn_degrees
-    # A turn that a crease explains is no fold.
-    if turn - sharpest >= FOLD_TURN:
-        found.append(f"the blend folds: its normal turns by {turn:.0f} degrees between samples")
-    elif turn - sharpest > STEEP_TURN:
-        found.append(
-            f"the blend turns steeply: its normal turns by {turn:.0f} degrees between samples, above "
-            f"{STEEP_TURN:.0f} a fold may be missed"
-        )
-    if turn - sharpest < FOLD_TURN and regularity.least_area_ratio < PINCH:
-        found.append(f"the blend is pinched: its area element falls to {regularity.least_area_ratio:.1e} of the mean")
-    sharp = [crease for crease in creases if crease.angle_degrees >= SHARP]
-    if sharp:
-        places = ", ".join(f"{crease.parameter} = {crease.at:g}" for crease in sharp[:_NAMED])
-        more = f" and {len(sharp) - _NAMED} more" if len(sharp) > _NAMED else ""
-        found.append(
-            f"the blend is creased at {places}{more}, by up to {sharpest:.2g} degrees: knots of full multiplicity, "
-            "across which the energy counts nothing"
-        )
-    return tuple(found)
 
 
 def bound_warnings(problem: BlendProblem, found: Found) -> tuple[str, ...]:
@@ -130,9 +96,10 @@ def contact_warnings(
         ("a", "b"), bases, contacts, continuity, (found.a, found.b), strict=True
     ):
         bare = bare_places(contact, name)
-        geometric = wanted in ("G1", "G2")
+        least = float(np.min(shape))
+        geometric = wanted[0] == "G" and wanted != "G0"
         for text in doubtful(contact, wanted):
-            warnings.append(f"contact {name}: {text}; {remedy(base, surface, bare, shape if geometric else None)}")
+            warnings.append(f"contact {name}: {text}; {remedy(base, surface, bare, least if geometric else None)}")
         if geometric:
             warnings += [f"base {name}: {place}; {wanted} says nothing there" for place in bare[:_NAMED]]
     return tuple(warnings)

@@ -25,7 +25,15 @@ from semispline.solver.blending import (
 )
 from semispline.solver.c_export.readme import readme
 from semispline.solver.errors import ComputationError
-from semispline.solver.io import check_folder, check_outputs, read_problem, read_surfaces, split_spec, write_texts
+from semispline.solver.io import (
+    check_folder,
+    check_outputs,
+    read_problem,
+    read_surfaces,
+    split_spec,
+    trim_warnings,
+    write_texts,
+)
 from semispline.solver.judge import Base
 
 NAME = "blend"
@@ -37,18 +45,22 @@ _NOTICE = """\
 """
 
 
-def write_c(folder: str | Path, problem_file: str | Path) -> list[Path]:
+def write_c(folder: str | Path, problem_file: str | Path) -> tuple[list[Path], tuple[str, ...]]:
     """Write C for a stored blend problem into a folder, made if missing; all files or none.
 
     Returns
     -------
-    list of Path
+    paths : list of Path
         What was written.
+    warnings : tuple of str
+        Of edges that are not edges of the face that a CAD file holds.
 
     Raises
     ------
     InputError
         A file, an option or a base that cannot be used.
+    TrimError
+        There are such warnings, and the problem is to be solved strictly.
     ComputationError
         As `c_files`.
     """
@@ -57,16 +69,19 @@ def write_c(folder: str | Path, problem_file: str | Path) -> list[Path]:
     bases = [stored.a, stored.b]
     # Both at once: surfaces of different files come in one unit.
     specs = [base for base in bases if isinstance(base, str)]
-    read = iter(read_surfaces(specs) if specs else [])
+    loaded = read_surfaces(specs) if specs else []
+    read = iter(loaded)
     surfaces = [next(read).surface if isinstance(base, str) else base for base in bases]
     edges: list[Any] = [stored.edge_a, stored.edge_b]
+    named = [edge for base, edge in zip(bases, edges, strict=True) if isinstance(base, str)]
+    warnings = trim_warnings(*zip(specs, named, loaded, strict=True), strict=stored.options.strict)
     a, b = (Base(surface, edge) for surface, edge in zip(surfaces, edges, strict=True))
-    texts = c_files(state_problem(a, b, stored.options))
+    texts = c_files(state_problem(a, b, stored.options.decided("generated C")))
     if Path(folder).is_dir():
         check_outputs(
             {name: Path(folder) / name for name in texts}, [problem_file, *(split_spec(spec)[0] for spec in specs)]
         )
-    return write_texts(folder, texts)
+    return write_texts(folder, texts), warnings
 
 
 def c_files(stated: StatedProblem) -> dict[str, str]:

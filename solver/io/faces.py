@@ -11,6 +11,7 @@ import numpy as np
 from semispline.solver.arrays import FloatArray
 from semispline.solver.errors import FileError, InputError
 from semispline.solver.io.face_boundary import FaceBoundary
+from semispline.solver.judge import extent
 from semispline.solver.splines import MERGE_TOLERANCE, BSplineSurface, SemiStructuredSurface, Surface, clamped_surface
 
 # Weights that agree to this relative tolerance (rounding of a product and a quotient) are one weight.
@@ -117,7 +118,7 @@ def describe(number: int, face: Face) -> SurfaceEntry:
         counts = {len(curve.control_points) for curve in surface.control_curves}
         first, last = surface.control_curves[0], surface.control_curves[-1]
         ends = np.stack([curve.control_points[[0, -1]] for curve in surface.control_curves])
-        size = _size(np.concatenate([curve.control_points for curve in surface.control_curves]))
+        size = extent(np.concatenate([curve.control_points for curve in surface.control_curves]))
         same = first.degree == last.degree and np.array_equal(first.knots, last.knots)
         n_u, n_v = len(surface.control_curves), counts.pop() if len(counts) == 1 else None
         closed_u = same and _same(first.control_points, last.control_points, size)
@@ -125,8 +126,8 @@ def describe(number: int, face: Face) -> SurfaceEntry:
     else:
         net = surface.control_points
         n_u, n_v = net.shape[:2]
-        closed_u = _same(net[0], net[-1], _size(net))
-        closed_v = _same(net[:, 0], net[:, -1], _size(net))
+        closed_u = _same(net[0], net[-1], extent(net))
+        closed_v = _same(net[:, 0], net[:, -1], extent(net))
     return SurfaceEntry(
         number=number,
         kind=face.kind,
@@ -234,10 +235,6 @@ def _snapped_ends(knots: FloatArray, degree: int) -> FloatArray:
 
 def _is_clamped(knots: FloatArray, degree: int) -> bool:
     return bool(knots[0] == knots[degree] and knots[-1] == knots[-degree - 1])
-
-
-def _size(points: FloatArray) -> float:
-    return float(np.ptp(points.reshape(-1, 3), axis=0).max())
 
 
 def _same(a: FloatArray, b: FloatArray, size: float) -> bool:

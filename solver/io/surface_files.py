@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from semispline.solver.arrays import FloatArray
-from semispline.solver.errors import FileError, InputError
+from semispline.solver.errors import FileError, InputError, TrimError
 from semispline.solver.io.disk import atomic_path, check_output, require_file, shown
 from semispline.solver.io.face_boundary import FaceBoundary, edge_offset
 from semispline.solver.io.faces import MILLIMETRES, Model, SurfaceEntry, describe, picked, without_equal_weights
@@ -125,6 +125,20 @@ def trimmed_edge_warning(spec: str | Path, edge: str, loaded: LoadedSurface) -> 
         f"the edge {edge} of {spec} lies outside of the face, {part} {offset.distance:.3g} {unit} from the face's own "
         "boundary: the face is trimmed, its surface goes on"
     )
+
+
+def trim_warnings(*edges: tuple[str | Path, str, LoadedSurface], strict: bool = False) -> tuple[str, ...]:
+    """Return the warnings of edges, each given as to `trimmed_edge_warning`.
+
+    Raises
+    ------
+    TrimError
+        There are some, and `strict` allows none.
+    """
+    found = tuple(warning for edge in edges if (warning := trimmed_edge_warning(*edge)))
+    if strict and found:
+        raise TrimError(f"{'; '.join(found)}; name another edge, give the untrimmed surface, or leave out strict")
+    return found
 
 
 def read_all(specs: Sequence[str | Path]) -> tuple[list[LoadedSurface], list[str]]:

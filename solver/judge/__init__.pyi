@@ -29,7 +29,9 @@ from .fairness import Fairness as Fairness
 from .fairness import measure_fairness as measure_fairness
 from .limits import doubtful as doubtful
 from .limits import required_limits as required_limits
+from .limits import shortfalls as shortfalls
 from .limits import untold as untold
+from .loops import LOOP_DEGREES as LOOP_DEGREES
 from .loops import Exits as Exits
 from .loops import Loop as Loop
 from .loops import measure_exits as measure_exits
@@ -41,6 +43,10 @@ from .parametric import geometry as geometry
 from .parametric import geometry_grid as geometry_grid
 from .regularity import Regularity as Regularity
 from .regularity import measure_regularity as measure_regularity
+from .sections import extent as extent
+from .shape import ShapeReport as ShapeReport
+from .shape import measure_shape as measure_shape
+from .turning import FOLD_DEGREES as FOLD_DEGREES
 from .turning import Turn as Turn
 from .turning import measure_turn as measure_turn
 from .waist import Waist as Waist

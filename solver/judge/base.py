@@ -8,7 +8,7 @@ from typing import Literal, TypeAlias, get_args
 
 import numpy as np
 
-from semispline.solver.arrays import FloatArray
+from semispline.solver.arrays import FloatArray, exact_origin
 from semispline.solver.errors import EdgeError
 from semispline.solver.judge.de_boor import EdgeCurves, edge_curves
 from semispline.solver.splines import Surface, bounding_box
@@ -62,21 +62,5 @@ class Base:
 
 
 def local_origin(*surfaces: Surface) -> FloatArray:
-    """Return a point near the surfaces that each control point less it is exact, shape (3,).
-
-    A difference of floats within a factor of two of each other has no rounding (Sterbenz). A coordinate in which the
-    surfaces come too near to zero for that keeps its own zero: there is no more than a digit to be gained.
-
-    Source: P. H. Sterbenz, Floating-Point Computation, 1974, theorem 4.3.1.
-
-    Examples
-    --------
-    >>> from semispline.solver.splines.surfaces import BSplineSurface
-    >>> k = [0, 0, 1, 1]
-    >>> local_origin(BSplineSurface(1, 1, k, k, [[[1e9, 0, -4], [1e9, 1, -4]], [[1e9 + 4, 0, -6], [1e9 + 4, 1, -6]]]))
-    array([ 1.e+09,  0.e+00, -5.e+00])
-    """
-    boxes = np.stack([bounding_box(surface) for surface in surfaces])
-    low, high = boxes[:, 0].min(axis=0), boxes[:, 1].max(axis=0)
-    nearest, farthest = np.minimum(np.abs(low), np.abs(high)), np.maximum(np.abs(low), np.abs(high))
-    return np.where((low * high > 0) & (farthest <= 3 * nearest), low + (high - low) / 2, 0.0)
+    """Return a point near the surfaces that each control point less it is exact, shape (3,), by `exact_origin`."""
+    return exact_origin(np.concatenate([bounding_box(surface) for surface in surfaces]))

@@ -47,6 +47,10 @@ class Contact:
 
     Angle and curvature are not a number where a side has no normal somewhere along the edge.
 
+    Rates are those of the curvature of the section of each side with the plane square to the edge, by arc length, with
+    one normal and in one direction; None where they were not asked for. They mean something only where all measures of
+    lower order are within their limits.
+
     Attributes
     ----------
     gap : float
@@ -75,6 +79,12 @@ class Contact:
         The two edges run in opposite directions.
     shift : float
         Closed edges: how far edge b's seam is from edge a's, in b's parameter.
+    rate_jump, second_rate_jump : float or None
+        Largest difference of the rate of curvature, 1/length^2, and of its second rate, 1/length^3.
+    rate_jump_relative, second_rate_jump_relative : float or None
+        The same over the largest such rate of either side, not below the square (the cube) of the largest curvature
+        across the edge or along it, nor below 1e-3 / size^2 (1e-3 / size^3).
+    rate_at, second_rate_at : Place or None
     """
 
     gap: float
@@ -92,3 +102,9 @@ class Contact:
     curvature_at: Place
     flipped: bool
     shift: float
+    rate_jump: float | None = None
+    rate_jump_relative: float | None = None
+    second_rate_jump: float | None = None
+    second_rate_jump_relative: float | None = None
+    rate_at: Place | None = None
+    second_rate_at: Place | None = None

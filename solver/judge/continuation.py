@@ -10,11 +10,13 @@ from numpy.typing import ArrayLike
 from semispline.solver.arrays import FloatArray
 from semispline.solver.errors import EdgeError
 from semispline.solver.judge.base import Base
+from semispline.solver.judge.bezier_pieces import in_pieces
 from semispline.solver.judge.parametric import ParametricSurface
-from semispline.solver.judge.sections import closed_directions, extent
+from semispline.solver.judge.sections import closed_directions, extent, lengths
 
-# How far apart the edges may be, as a fraction of their extent: contact that was made is far better.
-_APART = 1e-6
+# How far apart the edges may be, as a fraction of their extent: contact that was made is far better; and how many
+# roundings of their coordinates.
+_APART, _ROUNDINGS = 1e-6, 256
 _SAMPLES, _NEWTON_STEPS, _TRIED = 512, 20, 17
 
 
@@ -31,12 +33,15 @@ class Continuation:
         The base's parameter along the edge runs against v.
     shift : float
         Where on a closed edge the start of v lies, beyond the edge's own start.
+    surface : ParametricSurface
+        That of the base, as it is evaluated.
     """
 
     base: Base
     v_breaks: FloatArray
     flipped: bool
     shift: float
+    surface: ParametricSurface
 
     @property
     def domain(self) -> tuple[tuple[float, float], tuple[float, float]]:
@@ -65,13 +70,13 @@ class Continuation:
     def evaluate(self, w: ArrayLike, v: ArrayLike, dw: int = 0, dv: int = 0) -> FloatArray:
         """Return the point or a derivative at (w[k], v[k]), shape (K, 3)."""
         orders = (dw, dv) if self.base.edge[0] == "u" else (dv, dw)
-        return self._rate(dw, dv) * self.base.surface.evaluate(*self.parameters(w, v), *orders)
+        return self._rate(dw, dv) * self.surface.evaluate(*self.parameters(w, v), *orders)
 
     def evaluate_grid(self, w: ArrayLike, v: ArrayLike, dw: int = 0, dv: int = 0) -> FloatArray:
         """Return the same on the grid w x v, shape (len(w), len(v), 3)."""
         if self.base.edge[0] == "u":
-            return self._rate(dw, dv) * self.base.surface.evaluate_grid(*self.parameters(w, v), dw, dv)
-        return self._rate(dw, dv) * self.base.surface.evaluate_grid(*self.parameters(w, v), dv, dw).transpose(1, 0, 2)
+            return self._rate(dw, dv) * self.surface.evaluate_grid(*self.parameters(w, v), dw, dv)
+        return self._rate(dw, dv) * self.surface.evaluate_grid(*self.parameters(w, v), dv, dw).transpose(1, 0, 2)
 
     @property
     def _across(self) -> tuple[float, float]:
@@ -102,18 +107,17 @@ def continuation(surface: ParametricSurface, base: Base, end: int) -> Continuati
     closed = closed_directions(base.surface)[1 if base.edge[0] == "u" else 0]
     closed = closed and extent(target[[0, -1]]) <= _APART * size
     shift = _nearest(base, target[0]) - base.range_along[0] if closed else 0.0
-    ways = [Continuation(base, v_breaks, flipped, shift) for flipped in (False, True)]
+    pieces = in_pieces(base.surface)
+    ways = [Continuation(base, v_breaks, flipped, shift, pieces) for flipped in (False, True)]
 
-    def distance(way: Continuation) -> float:
-        return float(np.linalg.norm(way.evaluate(np.zeros(1), v) - target, axis=-1).max())
-
-    best = min(ways, key=distance)
-    if not distance(best) <= _APART * size:
+    distances = [float(lengths(way.evaluate_grid([0.0], v)[0] - target).max()) for way in ways]
+    best = int(np.argmin(distances))
+    if not distances[best] <= _APART * size + _ROUNDINGS * np.finfo(np.float64).eps * np.abs(target).max():
         raise EdgeError(
-            f"base: its edge {base.edge} is {distance(best):.3g} away from the surface's end u{end}, "
+            f"base: its edge {base.edge} is {distances[best]:.3g} away from the surface's end u{end}, "
             "expected the edge that the surface was made for"
         )
-    return best
+    return ways[best]
 
 
 def _nearest(base: Base, point: FloatArray) -> float:

@@ -2,30 +2,35 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from semispline.solver.arrays import FloatArray
-from semispline.solver.errors import EdgeError
+from semispline.solver.errors import EdgeError, OptionError
 from semispline.solver.judge.base import Base, local_origin
 from semispline.solver.judge.contact import Contact, Place
 from semispline.solver.judge.correspondence import Correspondence, correspond, corresponding_samples
+from semispline.solver.judge.curvature_rates import curvature_rates
 from semispline.solver.judge.de_boor import EdgeCurves, edge_curves
 from semispline.solver.judge.edge_normals import places_without_normal
 from semispline.solver.judge.limits import allowed_measures
+from semispline.solver.judge.rounding import derivative_noises
 from semispline.solver.options import Flip
-from semispline.solver.splines import BSplineSurface, Surface, bounding_box
+from semispline.solver.scalars import whole_number
+from semispline.solver.splines import Surface, bounding_box
 
 # Samples that are measured at once.
 _AT_ONCE = 8192
-# A curvature below this, over the size of the model, is none.
+# A curvature below this, over the size of the model, is none; of its rates, over the square and the cube of the size.
 _STRAIGHT = 1e-3
-# The bound on rounding counts each control point once; a few operations follow before it is measured.
-_ROUNDINGS = 8.0
 
 
-def measure_contact(a: Base, b: Base, flip: Flip = "auto", correspondence: Correspondence | None = None) -> Contact:
+def measure_contact(
+    a: Base, b: Base, flip: Flip = "auto", correspondence: Correspondence | None = None, order: int = 2
+) -> Contact:
     """Measure how edge a and edge b meet; parameters along the edges correspond affinely.
 
     Parameters
@@ -35,6 +40,8 @@ def measure_contact(a: Base, b: Base, flip: Flip = "auto", correspondence: Corre
         Whether the edges run in opposite directions; "auto" takes the closer way.
     correspondence : Correspondence, optional
         How the edges correspond, where that is known.
+    order : {2, 3, 4}
+        Up to which order of contact to measure: 3 adds the rate of curvature, 4 its second rate.
 
     Returns
     -------
@@ -44,6 +51,8 @@ def measure_contact(a: Base, b: Base, flip: Flip = "auto", correspondence: Corre
     ------
     EdgeError
         `flip` is not one of auto, yes, no; or both surfaces are one point.
+    OptionError
+        An order that is not measured.
 
     Examples
     --------
@@ -54,13 +63,15 @@ def measure_contact(a: Base, b: Base, flip: Flip = "auto", correspondence: Corre
     >>> round(measure_contact(Base(left, "u1"), Base(right, "u0")).angle_degrees, 12)
     45.0
     """
+    if whole_number(order, "order", 2, OptionError) > 4:
+        raise OptionError(f"order: found {order!r}, expected 2, 3 or 4")
     size = model_size(a.surface, b.surface)
     if not size > 0:
         raise EdgeError("surfaces: all control points are one point, expected surfaces")
     matched = correspondence or correspond(a, b, flip)
     # Far from the origin each operation would round by the distance, and hide what the surfaces themselves do.
     origin = local_origin(a.surface, b.surface)
-    edges = _Edges(a, b, matched.flipped, origin)
+    edges = _Edges(a, b, matched.flipped, origin, order)
     s_a, s_b = corresponding_samples(a, b, matched)
     # Part by part: a long edge has more samples than memory should hold at once.
     starts = range(0, len(s_a), _AT_ONCE)
@@ -71,7 +82,7 @@ def measure_contact(a: Base, b: Base, flip: Flip = "auto", correspondence: Corre
         np.max([getattr(part, name) for part in parts], 0).tolist() for name in ("differences", "derivatives")
     )
     speeds = np.min([part.speeds for part in parts], axis=0).tolist()
-    noises = [_noises(base, origin) for base in (a, b)]
+    noises = [noise[:, 0].tolist() for noise in edges.noises]
     # Flat: what bends by the size of the model is the measure; and nearly so, as of curvatures.
     bent = first * first / size
     second = bent if second <= noises[0][2] + noises[1][2] else max(second, _STRAIGHT * bent)
@@ -83,6 +94,10 @@ def measure_contact(a: Base, b: Base, flip: Flip = "auto", correspondence: Corre
         "c1_residual": _over(noises[0][1] + noises[1][1], first),
         "c2_residual": _over(noises[0][2] + noises[1][2], second),
     }
+    rates, rates_rounding = _rate_measures(
+        [part.rates for part in parts], float(np.max([part.bend for part in parts])), size
+    )
+    rounding |= rates_rounding
     return Contact(
         gap=gap.value,
         angle_degrees=angle.value,
@@ -99,6 +114,7 @@ def measure_contact(a: Base, b: Base, flip: Flip = "auto", correspondence: Corre
         curvature_at=jump.place,
         flipped=matched.flipped,
         shift=matched.shift,
+        **rates,
     )
 
 
@@ -119,32 +135,48 @@ class _Part:
     gap, angle, jump : _Worst
     curvature : float
         Largest of either side, across the edge.
+    bend : float
+        Largest of either side, across the edge or along it.
     differences, derivatives : (float, float)
         Largest difference of first and second cross derivatives, and largest such derivative of either side.
     speeds : (float, float)
         Least speed across the edge, of a and of b.
+    rates : tuple of _Rate
+        Of the rate of curvature and of its second rate, as far as they are asked for.
     """
 
     gap: _Worst
     angle: _Worst
     jump: _Worst
     curvature: float
+    bend: float
     differences: tuple[float, float]
     derivatives: tuple[float, float]
     speeds: tuple[float, float]
+    rates: tuple[_Rate, ...]
+
+
+@dataclass(frozen=True)
+class _Rate:
+    """What some of the samples say of a rate of curvature: its jump, its largest value, and its rounding."""
+
+    jump: _Worst
+    largest: float
+    noise: float
 
 
 class _Edges:
     """Both edges, their points counted from an origin."""
 
-    def __init__(self, a: Base, b: Base, flipped: bool, origin: FloatArray) -> None:
-        self.a, self.b, self.flipped, self.origin = a, b, flipped, origin
-        self.curves_a, self.curves_b = (edge_curves(base.surface, base.edge, origin=origin) for base in (a, b))
+    def __init__(self, a: Base, b: Base, flipped: bool, origin: FloatArray, order: int) -> None:
+        self.a, self.b, self.flipped, self.origin, self.order = a, b, flipped, origin, order
+        self.curves_a, self.curves_b = (edge_curves(base.surface, base.edge, order, origin) for base in (a, b))
+        self.noises = [derivative_noises(base, origin, order) for base in (a, b)]
 
     def measured(self, s_a: FloatArray, s_b: FloatArray) -> _Part:
         """Measure at parameters along a and along b that correspond."""
-        side_a = _Side(self.curves_a, self.a.edge, s_a, 1.0)
-        side_b = _Side(self.curves_b, self.b.edge, s_b, 1.0 if self.flipped else -1.0)
+        side_a = _Side(self.curves_a, self.a.edge, s_a, 1.0, self.order)
+        side_b = _Side(self.curves_b, self.b.edge, s_b, 1.0 if self.flipped else -1.0, self.order)
 
         def worst(values: FloatArray) -> _Worst:
             i = int(values.argmax())
@@ -161,10 +193,47 @@ class _Edges:
             angle=worst(angle),
             jump=worst(np.abs(k_a - k_b)),
             curvature=float(np.max(np.abs([k_a, k_b]))),
+            bend=float(np.max(np.abs([k_a, k_b, side_a.curvature_along(), side_b.curvature_along()]))),
             differences=(_longest(side_a.x_w - sign * side_b.x_w), _longest(side_a.x_ww - side_b.x_ww)),
             derivatives=(_longest(side_a.x_w, side_b.x_w), _longest(side_a.x_ww, side_b.x_ww)),
             speeds=(side_a.least_cross_speed(), side_b.least_cross_speed()),
+            rates=self._rates(side_a, side_b, sign, worst),
         )
+
+    def _rates(
+        self, side_a: _Side, side_b: _Side, sign: float, worst: Callable[[FloatArray], _Worst]
+    ) -> tuple[_Rate, ...]:
+        if self.order == 2:
+            return ()
+        rates_a, rates_b = (
+            curvature_rates(side.at, side.normal, noises, self.order)
+            for side, noises in zip((side_a, side_b), self.noises, strict=True)
+        )
+        found = []
+        # The first rate is an odd derivative, the second an even one.
+        for k, turn in enumerate((sign, 1.0)[: self.order - 2]):
+            rate_a, rate_b = rates_a.values[k], rates_b.values[k]
+            noise = float(np.max(rates_a.noises[k] + rates_b.noises[k]))
+            found.append(_Rate(worst(np.abs(rate_a - turn * rate_b)), float(np.max(np.abs([rate_a, rate_b]))), noise))
+        return tuple(found)
+
+
+def _rate_measures(
+    parts: Sequence[tuple[_Rate, ...]], bend: float, size: float
+) -> tuple[dict[str, Any], dict[str, float]]:
+    """Return what `Contact` holds of the rates of curvature, and what rounding may do to it.
+
+    What bends along the edge counts too: a pipe is straight across its rim, and a jump is small or large beside its
+    radius, not beside its length.
+    """
+    found: dict[str, Any] = {}
+    rounding = {}
+    for name, power, of_parts in zip(("rate", "second_rate"), (2, 3), zip(*parts, strict=True), strict=False):
+        jump = _first_worst([part.jump for part in of_parts])
+        scale = max(float(np.max([part.largest for part in of_parts])), bend**power, _STRAIGHT / size**power)
+        found |= {f"{name}_jump": jump.value, f"{name}_jump_relative": jump.value / scale, f"{name}_at": jump.place}
+        rounding[f"{name}_jump_relative"] = float(np.max([part.noise for part in of_parts])) / scale
+    return found, rounding
 
 
 def _first_worst(found: list[_Worst]) -> _Worst:
@@ -178,8 +247,8 @@ class _Side:
     that continue each other, one taken with the opposite sign, have one normal, and a fold back turns it over.
     """
 
-    def __init__(self, curves: EdgeCurves, edge: str, s: FloatArray, sign: float) -> None:
-        at = curves.points(s)
+    def __init__(self, curves: EdgeCurves, edge: str, s: FloatArray, sign: float, order: int) -> None:
+        self.at = at = curves.points(s, order)
         self.point, self.x_w, self.x_s = at[0, 0], at[1, 0], at[0, 1]
         self.x_ww, self.x_ws, self.x_ss = at[2, 0], at[1, 1], at[0, 2]
         cross = _cross(self.x_w, self.x_s)
@@ -200,6 +269,10 @@ class _Side:
         y, d = self.across()
         second = self.x_ww + 2 * y[:, None] * self.x_ws + (y**2)[:, None] * self.x_ss
         return np.asarray(np.sum(second * self.normal, axis=1) / np.sum(d**2, axis=1))
+
+    def curvature_along(self) -> FloatArray:
+        """Return normal curvature in the direction of the edge, shape (K,)."""
+        return np.asarray(np.sum(self.x_ss * self.normal, axis=1) / np.sum(self.x_s**2, axis=1))
 
     def least_cross_speed(self) -> float:
         """Return the least speed across the edge."""
@@ -229,40 +302,7 @@ def _over(value: float, largest: float) -> float:
     return 0.0 if value == 0 else np.inf
 
 
-def _noises(base: Base, origin: FloatArray) -> list[float]:
-    """Bound what rounding may do to cross derivatives of order 0, 1, 2.
-
-    That of storing the control points, once, and that of some operations with them, which are counted from `origin`.
-    """
-    eps = float(np.finfo(float).eps)
-    box = bounding_box(base.surface)
-    stored = eps / 2 * float(np.linalg.norm(np.abs(box).max(axis=0)))
-    worked = _ROUNDINGS * eps * float(np.abs(box - origin).max())
-    return [(stored + worked) * _derivative_factor(base, order) for order in range(3)]
-
-
 def _geometric_noise(noises: list[float], speed: float, largest_curvature: float) -> tuple[float, float]:
     """Bound what that rounding may do to the angle (radians) and to the curvature across the edge (1/length)."""
     angle = noises[1] / speed
     return angle, noises[2] / speed / speed + 2 * largest_curvature * angle
-
-
-def _derivative_factor(base: Base, order: int) -> float:
-    """How much the `order`-th cross derivative at the edge may magnify an error of the control points."""
-    across_u = base.edge[0] == "u"
-    surface = base.surface
-    if across_u:
-        knots, degree = surface.knots_u, surface.degree_u
-    elif isinstance(surface, BSplineSurface):
-        knots, degree = surface.knots_v, surface.degree_v
-    else:
-        curve = max(surface.control_curves, key=lambda c: c.degree)
-        knots, degree = curve.knots, curve.degree
-    if order > degree:
-        return 0.0
-    at_end = base.edge[1] == "1"
-    steps = np.abs(knots[::-1] - knots[-1]) if at_end else knots - knots[0]
-    factor = 1.0
-    for s in range(order):
-        factor *= 2 * (degree - s) / float(steps[degree + 1])
-    return factor

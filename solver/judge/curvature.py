@@ -269,8 +269,8 @@ def _geometry(surface: Surface, evaluate: Callable[[int, int], FloatArray]) -> L
         tangent_u=pu,
         tangent_v=pv,
         normal=normal,
-        first_form=_symmetric(_dot(pu, pu), _dot(pu, pv), _dot(pv, pv)),
-        second_form=_symmetric(*(_dot(evaluate(*order), normal) for order in ((2, 0), (1, 1), (0, 2)))),
+        first_form=symmetric(_dot(pu, pu), _dot(pu, pv), _dot(pv, pv)),
+        second_form=symmetric(*(_dot(evaluate(*order), normal) for order in ((2, 0), (1, 1), (0, 2)))),
         regular=regular,
     )
 
@@ -286,5 +286,6 @@ def _dot(a: FloatArray, b: FloatArray) -> FloatArray:
     return np.asarray(np.einsum("...d,...d->...", a, b))
 
 
-def _symmetric(a: FloatArray, b: FloatArray, c: FloatArray) -> FloatArray:
+def symmetric(a: FloatArray, b: FloatArray, c: FloatArray) -> FloatArray:
+    """Return the matrices ((a, b), (b, c)), shape (..., 2, 2)."""
     return np.stack([np.stack([a, b], axis=-1), np.stack([b, c], axis=-1)], axis=-2)

@@ -56,9 +56,13 @@ def measure_curvature_range(surface: ParametricSurface) -> CurvatureRange:
         for breaks, total, least in zip(surface.breakpoints, _TOTAL, _LEAST, strict=True)
     )
 
+    # Both extremes begin on one grid.
+    first = geometry_grid(surface, u, v).principal
+
     def extreme(column: int, sign: float) -> CurvatureAt:
-        def values(u: FloatArray, v: FloatArray) -> FloatArray:
-            return np.asarray(sign * geometry_grid(surface, u, v).principal[..., column])
+        def values(at_u: FloatArray, at_v: FloatArray) -> FloatArray:
+            found = first if at_u is u else geometry_grid(surface, at_u, at_v).principal
+            return np.asarray(sign * found[..., column])
 
         value, at_u, at_v = least_on_grid(values, u, v)
         if not np.isfinite(value):

@@ -16,10 +16,12 @@ from semispline.solver.splines import gauss_rule
 # A finer grid that changes the value by no more than this fraction settles it; and what is below the second figure is
 # zero, since a visible shape has 1 and more.
 SETTLED, _NOTHING = 0.01, 1e-8
-# Gauss points in u and in v altogether, and the least on each span: the integrand is no polynomial.
-_TOTAL, _LEAST = (24, 10), (6, 4)
+# Gauss points in u and in v altogether, and the least on each span, for the first grid and for the second, which tells
+# whether the first settled it: the integrand is no polynomial. Then the second on spans halved again and again.
+_FIRST, _SECOND = ((24, 10), (6, 2)), ((36, 14), (9, 3))
 # How often every span is halved before the meter gives up; what a grid may hold in all, and what is worked on at once.
-_HALVINGS, _MOST, _AT_ONCE = 5, 2**21, 2**15
+_HALVINGS, _MOST, _AT_ONCE = 5, 2**21, 2**13
+_GRIDS = ((_FIRST, 0), *((_SECOND, halvings) for halvings in range(_HALVINGS)))
 
 
 @dataclass(frozen=True)
@@ -72,8 +74,7 @@ def measure_fairness(surface: ParametricSurface) -> Fairness:
     scaled = _Scaled(surface, turn_window(surface))
     seams = closed_directions(surface)
     before: Fairness | None = None
-    for halvings in range(_HALVINGS):
-        rules = _rules(surface, halvings)
+    for rules in (_rules(surface, *grid) for grid in _GRIDS):
         if before is not None and rules[0].points.size * rules[1].points.size > _MOST:
             return before
         gradient, area = _smooth_part(scaled, rules)
@@ -111,10 +112,13 @@ class _Scaled:
         """Return a derivative on the grid u x v of the surface's own parameters, shape (3, len(u), len(v))."""
         (u_start, u_end), (v_start, v_end) = self.surface.domain
         factor = (u_end - u_start) ** du * (v_end - v_start) ** dv
-        return np.moveaxis(self.surface.evaluate_grid(u, v, du, dv) * factor / self.window, -1, 0)
+        # Components apart, each in one piece.
+        return np.ascontiguousarray(np.moveaxis(self.surface.evaluate_grid(u, v, du, dv), -1, 0)) * (
+            factor / self.window
+        )
 
 
-def _rules(surface: ParametricSurface, halvings: int) -> _Rules:
+def _rules(surface: ParametricSurface, points: tuple[tuple[int, int], tuple[int, int]], halvings: int) -> _Rules:
     """Return the rules in u and in v with every span halved so many times."""
 
     def rule(breaks: FloatArray, total: int, least: int) -> _Rule:
@@ -123,7 +127,8 @@ def _rules(surface: ParametricSurface, halvings: int) -> _Rules:
         return _Rule(points.T.ravel(), weights.T.ravel() / (breaks[-1] - breaks[0]))
 
     u_breaks, v_breaks = surface.breakpoints
-    return rule(u_breaks, _TOTAL[0], _LEAST[0]), rule(v_breaks, _TOTAL[1], _LEAST[1])
+    totals, least = points
+    return rule(u_breaks, totals[0], least[0]), rule(v_breaks, totals[1], least[1])
 
 
 def _smooth_part(surface: _Scaled, rules: _Rules) -> tuple[float, float]:

@@ -1,9 +1,10 @@
-"""How good a contact must be to count as C0 .. G2, and how well it must be known for that."""
+"""How good a contact must be to count as C0 .. G4, and how well it must be known for that."""
 
 from __future__ import annotations
 
 from math import radians
 
+from semispline.solver.errors import InputError
 from semispline.solver.judge.contact import Contact
 from semispline.solver.options import Continuity
 
@@ -12,6 +13,8 @@ GAP_LIMIT = 1e-11  # of the size of the model
 RESIDUAL_LIMIT = 1e-11  # of the largest derivative
 ANGLE_LIMIT = 1e-9  # degrees
 JUMP_LIMIT = 1e-9  # of the largest curvature across the edge
+RATE_LIMIT = 1e-8  # of the largest rate of curvature
+SECOND_RATE_LIMIT = 1e-7  # of the largest second rate
 
 # What rounding alone may do to a measure: above the first a user is warned, above the second nothing can be told. The
 # angles and curvatures are what CAD systems take for tangent and for smooth, and a tenth and a twentieth of them. A
@@ -23,7 +26,12 @@ CEILINGS = {
     "curvature_jump_relative": (1e-3, 2e-2),
     "c1_residual": (radians(1e-3), radians(1e-2)),
     "c2_residual": (1e-3, 2e-2),
+    "rate_jump_relative": (1e-4, 1e-3),
+    "second_rate_jump_relative": (1e-4, 1e-3),
 }
+
+# Of surfaces that already differ in lower order these say nothing.
+_RATES = ("rate_jump_relative", "second_rate_jump_relative")
 
 _REQUIRED = {
     "C0": ("gap",),
@@ -32,6 +40,8 @@ _REQUIRED = {
     "G0": ("gap",),
     "G1": ("gap", "angle_degrees"),
     "G2": ("gap", "angle_degrees", "curvature_jump_relative"),
+    "G3": ("gap", "angle_degrees", "curvature_jump_relative", "rate_jump_relative"),
+    "G4": ("gap", "angle_degrees", "curvature_jump_relative", "rate_jump_relative", "second_rate_jump_relative"),
 }
 
 
@@ -43,16 +53,32 @@ def allowed_measures(size: float, rounding: dict[str, float]) -> dict[str, float
         "curvature_jump_relative": JUMP_LIMIT,
         "c1_residual": RESIDUAL_LIMIT,
         "c2_residual": RESIDUAL_LIMIT,
+        "rate_jump_relative": RATE_LIMIT,
+        "second_rate_jump_relative": SECOND_RATE_LIMIT,
     }
-    return {name: limit + rounding[name] for name, limit in limits.items()}
+    return {name: limits[name] + noise for name, noise in rounding.items()}
 
 
 def required_limits(contact: Contact, continuity: Continuity) -> list[tuple[str, float, float]]:
     """Return name, measured value and limit of each measure that `continuity` requires.
 
+    Raises
+    ------
+    InputError
+        The contact was not measured up to that order.
+
     Source: the measures of the design document; rounding of the input is allowed on top of each limit.
     """
-    return [(name, getattr(contact, name), contact.allowed[name]) for name in _REQUIRED[continuity]]
+    return [(name, getattr(contact, name), contact.allowed[name]) for name in _measures(contact, continuity)]
+
+
+def shortfalls(contact: Contact, continuity: Continuity) -> list[tuple[str, float, float]]:
+    """Return those of `required_limits` that the contact misses; rates of curvature only where nothing below misses."""
+    found: list[tuple[str, float, float]] = []
+    for name, value, limit in required_limits(contact, continuity):
+        if not value <= limit and not (found and name in _RATES):
+            found.append((name, value, limit))
+    return found
 
 
 def untold(contact: Contact, continuity: Continuity) -> list[str]:
@@ -67,7 +93,7 @@ def doubtful(contact: Contact, continuity: Continuity) -> list[str]:
 
 def _hidden(contact: Contact, continuity: Continuity) -> list[tuple[str, bool]]:
     found = []
-    for name in _REQUIRED[continuity]:
+    for name in _measures(contact, continuity):
         unit = contact.size if name == "gap" else 1.0
         noticeable, most = (ceiling * unit for ceiling in CEILINGS[name])
         rounding = contact.rounding[name]
@@ -76,3 +102,10 @@ def _hidden(contact: Contact, continuity: Continuity) -> list[tuple[str, bool]]:
             text = f"rounding alone may change {name} by {rounding:.2g}, expected at most {ceiling:.2g}"
             found.append((text, rounding > most))
     return found
+
+
+def _measures(contact: Contact, continuity: Continuity) -> tuple[str, ...]:
+    for name in _REQUIRED[continuity]:
+        if name not in contact.allowed:
+            raise InputError(f"contact: measured without {name}, expected order={continuity[1]} for {continuity}")
+    return _REQUIRED[continuity]

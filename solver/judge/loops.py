@@ -14,7 +14,7 @@ import numpy as np
 
 from semispline.solver.arrays import FloatArray
 from semispline.solver.judge.parametric import ParametricSurface
-from semispline.solver.judge.sections import angles, spread
+from semispline.solver.judge.sections import angles, lengths, spread
 from semispline.solver.splines import gauss_rule
 
 # A section that turns by so much more than the biarc between its exits is a loop: 22 was the most among good blends, 78
@@ -25,6 +25,8 @@ _POINTS, _POINTS_IN_SPAN = 32, 8
 _SECTIONS, _SECTIONS_IN_SPAN = 20, 2
 # Exits that leave the chord by less, in the mean sine, leave it to no side: a degree.
 _NO_SIDE = 0.0175
+# A section that is slower than this part of the fastest has no tangent there.
+_NO_SPEED = 1e-12
 
 
 @dataclass(frozen=True)
@@ -114,16 +116,14 @@ def loop_on_samples(surface: ParametricSurface, u: FloatArray, v: FloatArray) ->
     """Return the loop measure of the sections v, their tangents taken at u, which begins and ends with the domain."""
     tangents = _tangents(surface.evaluate_grid(u, v, 1, 0))
     # A half-angle by its sine: no digits are lost between close tangents.
-    steps = np.linalg.norm(np.diff(tangents, axis=0), axis=-1) / 2
+    steps = lengths(np.diff(tangents, axis=0)) / 2
     turning = np.degrees(2 * np.arcsin(np.minimum(steps, 1.0)).sum(axis=0))
     theta, side = _against_chord(surface, tangents, v)
     a, b = side
 
     def biarc(turn_0: float, turn_1: float) -> FloatArray:
         first, last = (theta[0] + turn_0)[:, None] * a, (theta[1] + turn_1)[:, None] * b
-        return np.asarray(
-            np.linalg.norm(1.5 * first + 0.5 * last, axis=-1) + np.linalg.norm(1.5 * last + 0.5 * first, axis=-1)
-        )
+        return np.asarray(lengths(1.5 * first + 0.5 * last) + lengths(1.5 * last + 0.5 * first))
 
     needed = np.min([biarc(*turns) for turns in product((0.0, -360.0), repeat=2)], axis=0)
     i = int((turning - needed).argmax())
@@ -142,8 +142,11 @@ def measure_exits(surface: ParametricSurface) -> Exits:
     (45.0, 'same', False)
     """
     v = spread(surface.breakpoints[1], _SECTIONS, _SECTIONS_IN_SPAN)
-    u = spread(surface.breakpoints[0], _POINTS)
-    theta, (a, b) = _against_chord(surface, _tangents(surface.evaluate_grid(u, v, 1, 0)), v)
+    # What lies between is needed where an end has no tangent.
+    slopes = surface.evaluate_grid(np.array(surface.domain[0]), v, 1, 0)
+    if not (speed := lengths(slopes)).min() > _NO_SPEED * speed.max():
+        slopes = surface.evaluate_grid(spread(surface.breakpoints[0], _POINTS), v, 1, 0)
+    theta, (a, b) = _against_chord(surface, _tangents(slopes), v)
     cosine, (sine_0, sine_1) = np.cos(np.radians(theta)), np.sin(np.radians(theta))
     # The way out at the other end is -t.
     together, sizes = float(-(np.sum(a * b, axis=-1) * sine_0 * sine_1).mean()), float((sine_0 * sine_1).mean())
@@ -160,10 +163,10 @@ def measure_exits(surface: ParametricSurface) -> Exits:
 
 def _tangents(pu: FloatArray) -> FloatArray:
     """Return unit tangents, shape (len(u), len(v), 3); where there is none, that of the nearest one before or after."""
-    speed = np.linalg.norm(pu, axis=-1, keepdims=True)
-    missing = ~(speed > 1e-12 * speed.max())
+    speed = lengths(pu)[..., None]
+    missing = ~(speed > _NO_SPEED * speed.max())
     tangents: FloatArray = np.divide(pu, speed, out=np.zeros_like(pu), where=~missing)
-    rows = range(len(pu))
+    rows = range(len(pu) if missing.any() else 0)
     for row, neighbour in [*zip(rows[1:], rows, strict=False), *zip(rows[-2::-1], rows[:0:-1], strict=True)]:
         gaps = missing[row, :, 0] & ~missing[neighbour, :, 0]
         tangents[row, gaps], missing[row, gaps] = tangents[neighbour, gaps], False
@@ -180,7 +183,7 @@ def _against_chord(
     first, last = surface.evaluate_grid(np.array(surface.domain[0]), v)
     chord = last - first
     length = np.linalg.norm(chord, axis=-1, keepdims=True)
-    whole = np.linalg.norm(surface.evaluate_grid(spread(surface.breakpoints[0], 8), v) - first, axis=-1).max(axis=0)
+    whole = lengths(surface.evaluate_grid(spread(surface.breakpoints[0], 8), v) - first).max(axis=0)
     has_chord = length > 1e-9 * whole[:, None]
     chord = np.divide(chord, length, out=np.zeros_like(chord), where=has_chord)
     ends = tangents[0], tangents[-1]

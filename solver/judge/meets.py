@@ -33,6 +33,8 @@ class Meets:
         A direction from which the surface covers itself nowhere: it cannot meet itself.
     seen_from_with_bases : tuple of float or None
         One from which it does not together with its bases either: it cannot meet them.
+    asked : tuple of {"itself", "a", "b"}
+        What was asked for: itself, and the bases that were given.
     searched : tuple of {"itself", "a", "b"}
         What a mesh was searched for, since the directions leave it open.
     found : tuple of Meeting
@@ -46,10 +48,21 @@ class Meets:
 
     seen_from: Direction | None
     seen_from_with_bases: Direction | None
+    asked: tuple[What, ...]
     searched: tuple[What, ...]
     found: tuple[Meeting, ...]
     unconfirmed: int
     deflection: float | None
+
+    def answer(self, what: What) -> bool | None:
+        """Tell whether it meets itself or a base: True found, False impossible, None not known.
+
+        A mesh alone never says "no": None also where it was searched in vain.
+        """
+        if any(meeting.what == what for meeting in self.found):
+            return True
+        shown = self.seen_from if what == "itself" else self.seen_from_with_bases
+        return None if shown is None or what not in self.asked else False
 
     @property
     def sentences(self) -> tuple[str, ...]:
@@ -61,15 +74,19 @@ class Meets:
             says.append(f"cannot meet its bases: together with them {_covers(self.seen_from_with_bases)}")
         says += [str(meeting) for meeting in self.found]
         names = {"itself": "itself", "a": "base a", "b": "base b"}
-        found = {meeting.what for meeting in self.found}
+        unknown = [what for what in self.asked if self.answer(what) is None]
         says += [
             f"not found to meet {names[what]}; what meets by less than {self.deflection:.3g} may be missed"
-            for what in self.searched
-            if what not in found
+            for what in unknown
+            if what in self.searched
         ]
         if self.unconfirmed:
             says.append(f"comes closer than the mesh can tell ({self.deflection:.3g}) in {self.unconfirmed} place(s)")
-        return tuple(says) or ("no direction shows it whole, and no mesh was searched",)
+        if left := [names[what] for what in unknown if what not in self.searched]:
+            says.append(
+                f"not known whether it meets {' or '.join(left)}: no direction shows it, and no mesh was searched"
+            )
+        return tuple(says)
 
 
 def _covers(direction: Direction) -> str:
@@ -113,6 +130,7 @@ def measure_meets(
     whole = seen_from(surface, bases.get("a"), bases.get("b")) if bases else None
     # Part of a disc that is one to one.
     alone = whole or seen_from(surface)
+    asked: tuple[What, ...] = ("itself", *bases)
     searched: list[What] = []
     if search:
         if alone is None:
@@ -120,7 +138,7 @@ def measure_meets(
         if whole is None:
             searched += bases
     if not searched:
-        return Meets(alone, whole, (), (), 0, None)
+        return Meets(alone, whole, asked, (), (), 0, None)
     closed = closed_directions(surface)
     u_breaks, v_breaks = surface.breakpoints
     v = spread(v_breaks, _CELLS_V * (2 if closed[1] else 1), _LEAST)
@@ -140,4 +158,4 @@ def measure_meets(
         places.append(there)
         deflection = max(deflection, off)
     found = tuple(meeting for there in places for meeting in there.found)
-    return Meets(alone, whole, tuple(searched), found, sum(there.unconfirmed for there in places), deflection)
+    return Meets(alone, whole, asked, tuple(searched), found, sum(there.unconfirmed for there in places), deflection)

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from semispline.solver.arrays import FloatArray
-from semispline.solver.judge.curvature import DEGENERATE, LocalGeometry, local_geometry, local_geometry_grid
+from semispline.solver.judge.curvature import DEGENERATE, LocalGeometry, local_geometry, local_geometry_grid, symmetric
 from semispline.solver.splines import BSplineSurface, SemiStructuredSurface
 
 
@@ -58,12 +58,9 @@ def _from_derivatives(
     regular = area > DEGENERATE * np.maximum(product, np.finfo(np.float64).tiny)
     normal = np.where(regular[..., None], cross, np.nan) / np.where(regular, area, 1.0)[..., None]
 
-    def form(a: FloatArray, b: FloatArray, c: FloatArray) -> FloatArray:
-        return np.stack([np.stack([a, b], axis=-1), np.stack([b, c], axis=-1)], axis=-2)
-
     def dot(a: FloatArray, b: FloatArray) -> FloatArray:
         return np.asarray(np.sum(a * b, axis=-1))
 
-    first = form(dot(pu, pu), dot(pu, pv), dot(pv, pv))
-    second = form(dot(puu, normal), dot(puv, normal), dot(pvv, normal))
+    first = symmetric(dot(pu, pu), dot(pu, pv), dot(pv, pv))
+    second = symmetric(dot(puu, normal), dot(puv, normal), dot(pvv, normal))
     return LocalGeometry(p, pu, pv, normal, first, second, regular)

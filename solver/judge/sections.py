@@ -45,6 +45,26 @@ def just_inside(breaks: FloatArray) -> tuple[FloatArray, FloatArray]:
     return np.asarray(breaks[:-1] + step), np.asarray(breaks[1:] - step)
 
 
+def cross(a: FloatArray, b: FloatArray) -> FloatArray:
+    """Return the cross products of vectors along the last axis; each component of the result lies in one piece."""
+    (x, y, z), (u, v, w) = (np.moveaxis(c, -1, 0) for c in (a, b))
+    found = np.empty((3, *np.broadcast_shapes(a.shape, b.shape)[:-1]))
+    for component, (p, q, r, s) in zip(found, ((y, w, z, v), (z, u, x, w), (x, v, y, u)), strict=True):
+        np.multiply(p, q, out=component)
+        np.subtract(component, r * s, out=component)
+    return np.moveaxis(found, 0, -1)
+
+
+def dot(a: FloatArray, b: FloatArray) -> FloatArray:
+    """Return the dot products of vectors along the last axis."""
+    return np.asarray(a[..., 0] * b[..., 0] + a[..., 1] * b[..., 1] + a[..., 2] * b[..., 2])
+
+
+def lengths(vectors: FloatArray) -> FloatArray:
+    """Return the lengths of vectors along the last axis."""
+    return np.asarray(np.sqrt(dot(vectors, vectors)))
+
+
 def extent(points: FloatArray) -> float:
     """Return the largest extent of points, shape (..., 3), along an axis."""
     return float(np.ptp(points.reshape(-1, 3), axis=0).max())
@@ -81,7 +101,7 @@ def turn_window(surface: ParametricSurface) -> float:
         gauss_rule(breaks, 2 * max(4, -(-total // (len(breaks) - 1))) - 1)
         for breaks, total in ((u_breaks, 32), (v_breaks, 12))
     )
-    speed = np.linalg.norm(surface.evaluate_grid(u.T.ravel(), v.T.ravel(), 1, 0), axis=-1)
+    speed = lengths(surface.evaluate_grid(u.T.ravel(), v.T.ravel(), 1, 0))
     mean = float(of_u.T.ravel() @ speed @ of_v.T.ravel()) / float(v_breaks[-1] - v_breaks[0])
     if not (mean > 0 and np.isfinite(mean)):
         raise InputError(f"surface: its sections v = const have the mean length {mean}, expected a positive one")
@@ -93,12 +113,11 @@ def unit_normals(pu: FloatArray, pv: FloatArray) -> FloatArray:
     # Unit tangents first: nothing overflows, whatever the units.
     tangents = []
     for tangent in (pu, pv):
-        speed = np.linalg.norm(tangent, axis=-1, keepdims=True)
-        tangents.append(np.divide(tangent, speed, out=np.zeros_like(tangent), where=speed > 0))
-    cross = np.cross(*tangents)
-    area = np.linalg.norm(cross, axis=-1)
-    regular = area > _DEGENERATE
-    return np.where(regular[..., None], cross, np.nan) / np.where(regular, area, 1.0)[..., None]
+        speed = lengths(tangent)
+        tangents.append(tangent * np.divide(1.0, speed, out=np.zeros_like(speed), where=speed > 0)[..., None])
+    normal = cross(*tangents)
+    area = lengths(normal)
+    return normal / np.where(area > _DEGENERATE, area, np.nan)[..., None]
 
 
 def no_tangent_plane() -> InputError:
@@ -108,8 +127,7 @@ def no_tangent_plane() -> InputError:
 
 def angles(a: FloatArray, b: FloatArray) -> FloatArray:
     """Return the angles between vectors, in degrees, shape (...)."""
-    sine = np.linalg.norm(np.cross(a, b), axis=-1)
-    return np.asarray(np.degrees(np.arctan2(sine, np.sum(a * b, axis=-1))))
+    return np.asarray(np.degrees(np.arctan2(lengths(cross(a, b)), dot(a, b))))
 
 
 def least_on_grid(

@@ -15,20 +15,20 @@ from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import linprog
+from scipy.optimize import nnls
 
 from semispline.solver.arrays import FloatArray
 from semispline.solver.judge.box_tree import box_tree, overlapping
 from semispline.solver.judge.continuation import Continuation
 from semispline.solver.judge.parametric import ParametricSurface
-from semispline.solver.judge.sections import closed_directions, spread, unit_normals
+from semispline.solver.judge.sections import closed_directions, cross, lengths, spread, unit_normals
 
 # Samples of the normal in u and v altogether, and the least in each span; of each side of the border.
 _TOTAL, _LEAST, _BORDER = (80, 30), (4, 3), 60
 # The normal must be this far from square to the direction, besides what it turns by within a cell.
 _MARGIN = 0.02
-# The linear program takes no more normals than this.
-_MOST_NORMALS = 1500
+# The search for a direction takes no more normals than this; what rounding leaves where there is none.
+_MOST_NORMALS, _NO_DIRECTION = 1500, 1e-9
 # Between samples the border may be this many times as far from its chord as half-way.
 _BETWEEN = 2.0
 # Edges that are no farther apart along the border than this many times what both may be off are neighbours.
@@ -84,24 +84,33 @@ def _candidates(normals: FloatArray) -> Iterator[FloatArray]:
     length = float(np.linalg.norm(mean))
     if length > 0 and (normals @ mean).min() > 0:
         yield mean / length
-    some = normals[:: max(1, len(normals) // _MOST_NORMALS)]
-    # Unknowns d and m: m as large as may be with n . d >= m and |d_k| <= 1.
-    found = linprog(
-        [0, 0, 0, -1],
-        A_ub=np.column_stack([-some, np.ones(len(some))]),
-        b_ub=np.zeros(len(some)),
-        bounds=[(-1, 1)] * 3 + [(None, 1)],
-        method="highs",
-    )
-    if found.success and found.x[3] > 0:
-        yield found.x[:3] / np.linalg.norm(found.x[:3])
+    found = _towards_all(normals[:: max(1, len(normals) // _MOST_NORMALS)])
+    if found is not None:
+        yield found
+
+
+def _towards_all(normals: FloatArray) -> FloatArray | None:
+    """Return the unit direction with the largest least n . d; None if there is none with a positive one.
+
+    It is that of the shortest x with n . x >= 1 for all normals.
+
+    Source: least distance programming; C. L. Lawson and R. J. Hanson, Solving Least Squares Problems, 1974, ch. 23.
+    """
+    system, right = np.vstack([normals.T, np.ones(len(normals))]), np.array([0.0, 0.0, 0.0, 1.0])
+    left = right - system @ nnls(system, right)[0]
+    length = float(np.linalg.norm(left[:3]))
+    return left[:3] / -length if length > _NO_DIRECTION else None
 
 
 def _faces(grid: FloatArray, direction: FloatArray) -> bool:
     """Tell whether n . d > 0 at the corners of every cell, and stays so if n turns as far again as between them."""
-    corners = np.stack([grid[:-1, :-1], grid[1:, :-1], grid[:-1, 1:], grid[1:, 1:]])
-    diagonals = [np.linalg.norm(np.cross(corners[i], corners[j]), axis=-1) for i, j in ((0, 3), (1, 2), (0, 1), (0, 2))]
-    return bool(((corners @ direction).min(axis=0) > np.maximum(_MARGIN, np.max(diagonals, axis=0))).all())
+    heights = grid @ direction
+    corners = grid[:-1, :-1], grid[1:, :-1], grid[:-1, 1:], grid[1:, 1:]
+    least = np.min([heights[:-1, :-1], heights[1:, :-1], heights[:-1, 1:], heights[1:, 1:]], axis=0)
+    if not least.min() > _MARGIN:
+        return False
+    diagonals = [lengths(cross(corners[i], corners[j])) for i, j in ((0, 3), (1, 2), (0, 1), (0, 2))]
+    return bool((least > np.max(diagonals, axis=0)).all())
 
 
 def _sides(surface: ParametricSurface, a: Continuation | None, b: Continuation | None) -> list[_Side]:

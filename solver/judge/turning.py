@@ -12,6 +12,7 @@ from semispline.solver.judge.parametric import ParametricSurface
 from semispline.solver.judge.sections import (
     angles,
     closed_directions,
+    lengths,
     no_tangent_plane,
     spread,
     turn_window,
@@ -20,12 +21,15 @@ from semispline.solver.judge.sections import (
 
 # A surface whose normal turns by more than this within one window is folded.
 FOLD_DEGREES = 90.0
-# Steps along a section are at most this part of a window.
-_STEPS_IN_WINDOW = 4
+# Steps along a section are at most this part of a window; where it turns most they are parted once more.
+_STEPS_IN_WINDOW, _FINER = 2, 4
 # Sections altogether, and at least in each span; steps in each span before long ones are divided.
-_SECTIONS, _SECTIONS_IN_SPAN, _STEPS_IN_SPAN = 40, 3, 8
+_SECTIONS, _SECTIONS_IN_SPAN, _STEPS_IN_SPAN = 12, 3, 8
+# The places that are looked at closely, how often, into how many parts the sections beside each are parted, and how
+# much of the largest turn there must be.
+_CLOSELY, _TIMES, _PARTS_BESIDE, _NEARLY = 3, 2, 4, 0.75
 # A single step is divided into no more than these, and so many samples are held at once.
-_MOST_PARTS, _AT_ONCE = 64, 2**17
+_MOST_PARTS, _AT_ONCE = 64, 2**15
 
 
 @dataclass(frozen=True)
@@ -90,44 +94,125 @@ def turn_on_samples(surface: ParametricSurface, fineness: int) -> Turn:
     """Return the largest turn on `fineness` times the usual samples along sections, and as many times the sections."""
     window = turn_window(surface)
     closed_u, closed_v = closed_directions(surface)
-    along_u = _largest(surface, "v", window, closed_u, fineness)
-    along_v = _largest(surface, "u", window, closed_v, fineness)
-    largest = max(along_u, along_v, key=lambda turn: turn.degrees)
-    if largest.degrees < 0:
+    looks = [
+        look
+        for sections in (
+            _Sections(surface, "v", window, closed_u),
+            _Sections(surface, "u", window, closed_v),
+        )
+        for look in _first_looks(sections, fineness)
+    ]
+    looks.sort(key=lambda look: look.turn.degrees, reverse=True)
+    if looks[0].turn.degrees < 0:
         raise no_tangent_plane()
-    return largest
+    # It may turn more between the samples of where it turns most.
+    chosen: list[_Look] = []
+    for look in looks:
+        much = look.turn.degrees > _NEARLY * looks[0].turn.degrees
+        if much and len(chosen) < _CLOSELY and not any(look.is_beside(other) for other in chosen):
+            chosen.append(look)
+    for first in chosen:
+        look = first
+        for _ in range(_TIMES):
+            look = look.sections.closely(look, fineness)
+            looks.append(look)
+    return max((look.turn for look in looks), key=lambda turn: turn.degrees)
 
 
-def _largest(
-    surface: ParametricSurface, section: Literal["u", "v"], window: float, closed: bool, fineness: int
-) -> Turn:
-    u_breaks, v_breaks = surface.breakpoints
-    run_breaks, section_breaks = (u_breaks, v_breaks) if section == "v" else (v_breaks, u_breaks)
+@dataclass(frozen=True, eq=False)
+class _Look:
+    """The largest turn of one section on samples `run`, with the sections beside it and the sample where it begins."""
+
+    turn: Turn
+    sections: _Sections
+    run: FloatArray
+    beside: FloatArray
+    at: int
+
+    def is_beside(self, other: _Look) -> bool:
+        """Tell whether it is on a section that looking closely at the other one takes in."""
+        same = self.sections is other.sections
+        return same and bool(other.beside[0] <= self.turn.at <= other.beside[-1])
+
+
+def _first_looks(sections: _Sections, fineness: int) -> list[_Look]:
+    """Return the largest turn of each section, on samples."""
+    u_breaks, v_breaks = sections.surface.breakpoints
+    run_breaks, section_breaks = (u_breaks, v_breaks) if sections.section == "v" else (v_breaks, u_breaks)
     at = spread(section_breaks, _SECTIONS * fineness, _SECTIONS_IN_SPAN * fineness)
-
-    def values(run: FloatArray, at: FloatArray, of_u: int = 0, of_v: int = 0) -> FloatArray:
-        """Return points or derivatives, shape (sections, samples, 3)."""
-        if section == "v":
-            return surface.evaluate_grid(run, at, of_u, of_v).transpose(1, 0, 2)
-        return surface.evaluate_grid(at, run, of_u, of_v)
-
-    run = spread(run_breaks, _STEPS_IN_SPAN)
-    # Some sections tell where steps are long: parameters may be uneven within a span.
-    for _ in range(2):
-        steps = np.linalg.norm(np.diff(values(run, at[:: 4 * fineness]), axis=1), axis=-1).max(axis=0)
-        run = _divided(run, np.clip(np.ceil(steps * _STEPS_IN_WINDOW / window), 1, _MOST_PARTS).astype(int))
+    run = sections.run(spread(run_breaks, _STEPS_IN_SPAN), at[:: 2 * fineness])
     run = _divided(run, np.full(len(run) - 1, fineness))
-    best = Turn(-1.0, section, float(at[0]), (float(run[0]), float(run[0])), (0.0, 0.0, 0.0), window)
+    looks = []
     some = max(1, _AT_ONCE // len(run))
     for first in range(0, len(at), some):
-        these = at[first : first + some]
-        points = values(run, these)
-        normals = unit_normals(values(run, these, 1, 0), values(run, these, 0, 1))
-        degrees, (k, i), end = _largest_of_sections(run, points, normals, window, closed)
-        if degrees > best.degrees:
-            x, y, z = points[k, i].tolist()
-            best = Turn(degrees, section, float(these[k]), (float(run[i]), end), (x, y, z), window)
-    return best
+        found = sections.turns(run, at[first : first + some])
+        for k, i in enumerate(found.degrees.argmax(axis=1).tolist()):
+            turn = sections.turn(found, (k, i))
+            looks.append(_Look(turn, sections, run, at[max(first + k - 1, 0) : first + k + 2], i))
+    return looks
+
+
+@dataclass(frozen=True, eq=False)
+class _Turns:
+    """Turns from samples `run` of the sections `at`: points, degrees (-1: none) and the parameters where they end."""
+
+    run: FloatArray
+    at: FloatArray
+    points: FloatArray
+    degrees: FloatArray
+    ends: FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class _Sections:
+    """The sections of a surface in one direction."""
+
+    surface: ParametricSurface
+    section: Literal["u", "v"]
+    window: float
+    closed: bool
+
+    def values(self, run: FloatArray, at: FloatArray, of_u: int = 0, of_v: int = 0) -> FloatArray:
+        """Return points or derivatives, shape (sections, samples, 3)."""
+        if self.section == "v":
+            return self.surface.evaluate_grid(run, at, of_u, of_v).transpose(1, 0, 2)
+        return self.surface.evaluate_grid(at, run, of_u, of_v)
+
+    def run(self, run: FloatArray, at: FloatArray) -> FloatArray:
+        """Return parameters along the sections `at`, divided until steps are short: they may be uneven in a span."""
+        for _ in range(2):
+            steps = lengths(np.diff(self.values(run, at), axis=1)).max(axis=0)
+            parts = np.clip(np.ceil(steps * _STEPS_IN_WINDOW / self.window), 1, _MOST_PARTS)
+            run = _divided(run, parts.astype(int))
+        return run
+
+    def turns(self, run: FloatArray, at: FloatArray) -> _Turns:
+        """Return the turns from each sample of each section."""
+        points = self.values(run, at)
+        normals = unit_normals(self.values(run, at, 1, 0), self.values(run, at, 0, 1))
+        return _Turns(run, at, points, *_turns_of_sections(run, points, normals, self.window, self.closed))
+
+    def turn(self, turns: _Turns, place: tuple[int, int]) -> Turn:
+        """Return one of these turns."""
+        k, i = place
+        x, y, z = turns.points[k, i].tolist()
+        between = float(turns.run[i]), float(turns.ends[k, i])
+        return Turn(float(turns.degrees[k, i]), self.section, float(turns.at[k]), between, (x, y, z), self.window)
+
+    def closely(self, look: _Look, fineness: int) -> _Look:
+        """Return the largest turn around another one: on more sections beside it, in shorter steps."""
+        at = np.array([look.turn.at])
+        length = np.append(0.0, np.cumsum(lengths(np.diff(self.values(look.run, at)[0], axis=0))))
+        # From one window before it to where a window ends that begins one window after it.
+        low, high = np.searchsorted(length, length[look.at] + self.window * np.array([-1.0, 2.5]))
+        near = look.run[max(int(low) - 1, 0) : int(high) + 2]
+        near = _divided(near, np.full(len(near) - 1, _FINER * fineness))
+        beside = _divided(look.beside, np.full(len(look.beside) - 1, _PARTS_BESIDE * fineness))
+        # Away from its ends a section is open; what turns across the seam is left to the first look.
+        part = _Sections(self.surface, self.section, self.window, closed=False)
+        turns = part.turns(near, beside)
+        k, i = divmod(int(turns.degrees.argmax()), turns.degrees.shape[1])
+        return _Look(self.turn(turns, (k, i)), part, near, beside[max(k - 1, 0) : k + 2], i)
 
 
 def _divided(run: FloatArray, parts: np.ndarray) -> FloatArray:
@@ -137,14 +222,15 @@ def _divided(run: FloatArray, parts: np.ndarray) -> FloatArray:
     return np.append(np.repeat(run[:-1], parts) + share * np.repeat(np.diff(run), parts), run[-1])
 
 
-def _largest_of_sections(
+def _turns_of_sections(
     run: FloatArray, points: FloatArray, normals: FloatArray, window: float, closed: bool
-) -> tuple[float, tuple[int, int], float]:
-    """Return the largest turn, the indices of section and first point, and the parameter of the second point."""
+) -> tuple[FloatArray, FloatArray]:
+    """Return the turn from each sample of each section over one window, -1 where there is none, and where that ends."""
     length: FloatArray = np.zeros(points.shape[:2])
-    np.cumsum(np.linalg.norm(np.diff(points, axis=1), axis=-1), axis=1, out=length[:, 1:])
+    np.cumsum(lengths(np.diff(points, axis=1)), axis=1, out=length[:, 1:])
     starts, total = length, length[:, -1:]
     reach = np.minimum(window, total / 2 if closed else total)
+    first = normals
     if closed:
         # Once more round, as far as a window reaches.
         more = int((length < reach).sum(axis=1).max()) + 1
@@ -155,17 +241,17 @@ def _largest_of_sections(
     offset = 2 * (length[:, -1].max() + window) * np.arange(len(length))[:, None]
     place = np.interp((starts + reach + offset).ravel(), (length + offset).ravel(), np.arange(length.size))
     low = np.minimum(place.astype(np.intp), length.size - 2)
-    share = (place - low)[:, None]
-    flat = normals.reshape(-1, 3)
-    # At a sample the next normal has no say: it may be missing.
-    ahead = np.where(share < 1, (1 - share) * flat[low], 0.0) + np.where(share > 0, share * flat[low + 1], 0.0)
-    turns = angles(normals[:, : starts.shape[1]], ahead.reshape(*starts.shape, 3))
+    share = place - low
+    ahead = [
+        # At a sample the next normal has no say: it may be missing.
+        np.where(share < 1, (1 - share) * x[low], 0.0) + np.where(share > 0, share * x[low + 1], 0.0)
+        for x in np.moveaxis(normals, -1, 0).reshape(3, -1)
+    ]
+    turns = angles(first, np.moveaxis(np.reshape(ahead, (3, *starts.shape)), 0, -1))
     # Rounding may put the end of a short section just beyond itself.
     inside = starts + reach <= length[:, -1:] * (1 + 1e-12)
-    turns = np.where(inside, np.nan_to_num(turns, nan=-1.0), -1.0)
-    k, i = divmod(int(turns.argmax()), turns.shape[1])
-    at = int(low[k * turns.shape[1] + i]) - k * length.shape[1]
-    start, end = float(run[at]), float(run[min(at + 1, len(run) - 1)])
+    at = low.reshape(starts.shape) - length.shape[1] * np.arange(len(starts))[:, None]
+    start, end = run[at], run[np.minimum(at + 1, len(run) - 1)]
     # From the seam a step leads on from its start.
-    beyond = float(share[k * turns.shape[1] + i, 0]) * (end - start) if end > start else 0.0
-    return float(turns[k, i]), (k, i), start + beyond
+    beyond = np.where(end > start, share.reshape(starts.shape) * (end - start), 0.0)
+    return np.where(inside, np.nan_to_num(turns, nan=-1.0), -1.0), start + beyond

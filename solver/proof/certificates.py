@@ -50,6 +50,8 @@ class Certificate:
         What the polynomial nowhere falls below.
     leaves : tuple of Leaf
         They tile the box.
+    objective : str
+        What the polynomial is, in words.
     """
 
     coefficients: FloatArray
@@ -58,3 +60,4 @@ class Certificate:
     tolerance: float
     bound: float
     leaves: tuple[Leaf, ...]
+    objective: str = "a polynomial"

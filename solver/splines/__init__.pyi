@@ -33,10 +33,12 @@ from .quadrature import Basis as Basis
 from .quadrature import Samples as Samples
 from .quadrature import first_on_spans as first_on_spans
 from .quadrature import gauss_rule as gauss_rule
+from .quadrature import local_bases as local_bases
 from .quadrature import sample as sample
 from .refinement import blossom_matrix as blossom_matrix
 from .refinement import clamp_knots as clamp_knots
 from .refinement import elevation_matrix as elevation_matrix
+from .refinement import linear_product_matrices as linear_product_matrices
 from .refinement import refinement_matrix as refinement_matrix
 from .surfaces import BSplineCurve as BSplineCurve
 from .surfaces import BSplineSurface as BSplineSurface

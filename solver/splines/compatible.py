@@ -12,7 +12,13 @@ from semispline.solver.arrays import FloatArray
 from semispline.solver.errors import OptionError
 from semispline.solver.scalars import real_number
 from semispline.solver.splines.knots import MERGE_TOLERANCE, clamped, inner_knots
-from semispline.solver.splines.refinement import elevated_knots, elevation_matrix, piece_matrix, refinement_matrix
+from semispline.solver.splines.refinement import (
+    combined,
+    elevated_knots,
+    elevation_matrix,
+    piece_matrix,
+    refinement_matrix,
+)
 
 
 class Curve(Protocol):
@@ -95,8 +101,10 @@ def compatible_curves(curves: Sequence[Curve], tolerance: float = MERGE_TOLERANC
     knots = clamped(np.repeat(np.array(order), [counts[x] for x in order]), degree, start, end)
     rows = []
     for curve, high in zip(merged, raised, strict=True):
-        points = elevation_matrix(curve.degree, curve.knots, degree) @ curve.control_points
-        rows.append(refinement_matrix(degree, high, knots) @ points if len(high) != len(knots) else points)
+        matrix = elevation_matrix(curve.degree, curve.knots, degree)
+        if len(high) != len(knots):
+            matrix = refinement_matrix(degree, high, knots) @ matrix
+        rows.append(combined(matrix, curve.control_points))
     return CompatibleCurves(degree, knots, np.stack(rows))
 
 
@@ -155,7 +163,7 @@ def _without_slivers(curve: Curve, tolerance: float) -> PlainCurve:
     if not len(inner) or (inner[0] - start > width and end - inner[-1] > width):
         return PlainCurve(curve.degree, curve.knots, curve.control_points)
     matrix, knots = piece_matrix(curve.degree, curve.knots, start, end)
-    return PlainCurve(curve.degree, knots, matrix @ curve.control_points)
+    return PlainCurve(curve.degree, knots, combined(matrix, curve.control_points))
 
 
 def _end_shift(curve: Curve, whole: Curve) -> float:

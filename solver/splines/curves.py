@@ -14,6 +14,7 @@ from semispline.solver.scalars import is_whole, real_number
 from semispline.solver.splines.compatible import compatible_curves
 from semispline.solver.splines.knots import reversed_knots
 from semispline.solver.splines.refinement import (
+    combined,
     elevated_knots,
     elevation_matrix,
     piece_matrix,
@@ -47,7 +48,7 @@ def elevate_curve(curve: BSplineCurve, degree: int) -> BSplineCurve:
     require(curve, "curve", BSplineCurve)
     if degree == curve.degree:
         return curve
-    points = elevation_matrix(curve.degree, curve.knots, degree) @ curve.control_points
+    points = combined(elevation_matrix(curve.degree, curve.knots, degree), curve.control_points)
     return replace(
         curve, degree=degree, knots=elevated_knots(curve.knots, degree - curve.degree), control_points=points
     )
@@ -70,7 +71,7 @@ def insert_named(curve: BSplineCurve, more: FloatArray, name: str) -> BSplineCur
     """Return what `insert_curve_knots` does, with the caller's name for the knots in messages."""
     require(curve, "curve", BSplineCurve)
     refined = with_knots(curve.degree, curve.knots, more, name)
-    points = refinement_matrix(curve.degree, curve.knots, refined) @ curve.control_points
+    points = combined(refinement_matrix(curve.degree, curve.knots, refined), curve.control_points)
     return replace(curve, knots=refined, control_points=points)
 
 
@@ -80,7 +81,7 @@ def restrict_curve(curve: BSplineCurve, start: float, end: float) -> BSplineCurv
     An end within 1e-12 of the domain of a knot means that knot: the piece takes no sliver of the neighbouring span.
     """
     matrix, knots = piece_matrix(curve.degree, curve.knots, start, end)
-    return replace(curve, knots=knots, control_points=matrix @ curve.control_points)
+    return replace(curve, knots=knots, control_points=combined(matrix, curve.control_points))
 
 
 def split_curve(curve: BSplineCurve, v: float) -> tuple[BSplineCurve, BSplineCurve]:

@@ -23,6 +23,7 @@ from semispline.solver.splines.curves import combined_curves, elevate_curve, ins
 from semispline.solver.splines.knots import affine_knots, reversed_knots
 from semispline.solver.splines.refinement import (
     clamp_knots,
+    combined,
     elevated_knots,
     elevation_matrix,
     piece_matrix,
@@ -305,15 +306,13 @@ def _with_u(surface: S, degree: int, knots: FloatArray, matrix: SparseMatrix) ->
     """Return the surface whose rows are `matrix` times the old (homogeneous) rows."""
     if isinstance(surface, SemiStructuredSurface):
         return SemiStructuredSurface(degree, knots, combined_curves(surface.control_curves, matrix))
-    net = surface.homogeneous
-    net = np.asarray(matrix @ net.reshape(len(net), -1)).reshape(-1, *net.shape[1:])
+    net = combined(matrix, surface.homogeneous)
     return from_homogeneous(degree, surface.degree_v, knots, surface.knots_v, net)
 
 
 def _with_v(surface: BSplineSurface, degree: int, knots: FloatArray, matrix: SparseMatrix) -> BSplineSurface:
     """Return the surface whose columns are `matrix` times the old (homogeneous) columns."""
-    net = surface.homogeneous.transpose(1, 0, 2)
-    net = np.asarray(matrix @ net.reshape(len(net), -1)).reshape(-1, *net.shape[1:])
+    net = combined(matrix, surface.homogeneous.transpose(1, 0, 2))
     return from_homogeneous(surface.degree_u, degree, surface.knots_u, knots, net.transpose(1, 0, 2))
 
 

@@ -115,21 +115,42 @@ def gauss_rule(breaks: FloatArray, degree: int) -> tuple[FloatArray, FloatArray]
 def sample(basis: Basis, breaks: FloatArray, degree: int) -> Samples:
     """Sample a basis at the Gauss points that integrate polynomials of `degree` on every span of `breaks`."""
     x, weights = gauss_rule(breaks, degree)
-    p, t = basis.degree, basis.knots
     first = first_on_spans(basis, breaks)
+    return Samples(basis, weights, first, local_bases(basis, x, first, 2))
+
+
+def local_bases(basis: Basis, x: FloatArray, first: IndexArray, orders: int) -> tuple[FloatArray, ...]:
+    """Return the basis functions of derivatives of order 0 .. `orders`, as far as the degree goes, on given spans.
+
+    Parameters
+    ----------
+    basis : Basis
+    x : ndarray, shape (G, S)
+        Points of each span; on its ends the values are limits from inside.
+    first : ndarray of int, shape (S,)
+        Index of the first basis function that lives on the span.
+
+    Returns
+    -------
+    tuple of ndarray, each of shape (degree - order + 1, G, S)
+        To be multiplied with the control points of the derivative.
+
+    Source: Cox-de Boor.
+    """
+    p, t = basis.degree, basis.knots
     span = first + p
     values = np.ones((1, *x.shape))
     lower = [values]
     for d in range(1, p + 1):
-        # Cox-de Boor: each function of degree d - 1 rises into the next of degree d and falls out of its own.
+        # Each function of degree d - 1 rises into the next of degree d and falls out of its own.
         i = span - d + 1 + np.arange(d)[:, None]
         left, right = t[i], t[i + d]
         scaled = values / (right - left)[:, None]
         values = np.zeros((d + 1, *x.shape))
         values[1:] = (x - left[:, None]) * scaled
         values[:-1] += (right[:, None] - x) * scaled
-        lower = [values, *lower[:2]]
-    return Samples(basis, weights, first, tuple(lower))
+        lower = [values, *lower[:orders]]
+    return tuple(lower)
 
 
 def first_on_spans(basis: Basis, breaks: FloatArray) -> IndexArray:

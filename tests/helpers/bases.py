@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.interpolate import make_interp_spline
 
-from semispline import Base, BSplineSurface
+from semispline import Base, BSplineSurface, clamped_surface
 from semispline.solver.judge.de_boor import curve_points
 from semispline.solver.splines.refinement import clamp_knots
 
@@ -58,6 +58,14 @@ def turned(surface, edge, backwards):
 def moved(surface, matrix=IDENTITY, offset=(0, 0, 0), scale=1.0):
     net = scale * (surface.control_points @ np.asarray(matrix).T) + np.asarray(offset)
     return BSplineSurface(surface.degree_u, surface.degree_v, surface.knots_u, surface.knots_v, net)
+
+
+def ring(n, radius, heights):
+    """A closed base, smooth across its seam: a periodic net, clamped exactly."""
+    angle = 2 * np.pi * np.arange(n + 3) / n
+    net = np.array([[[radius * np.cos(t), radius * np.sin(t), z] for t in angle] for z in heights])
+    u = np.repeat([0.0, 1.0], len(heights))
+    return clamped_surface(len(heights) - 1, 3, u, np.arange(-3.0, n + 4), net)
 
 
 # Turns a patch so that it looks back at the first one over the gap.

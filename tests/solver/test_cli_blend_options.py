@@ -27,12 +27,26 @@ def run(folder, *options):
     return result, json.loads(report.read_text()) if report.exists() else None
 
 
-def test_default_is_proved(pair):
-    result, report = run(pair)
+def test_least_energy_is_proved(pair):
+    result, report = run(pair, "--alpha", "energy")
     assert result.exit_code == 0, result.output
     assert report["method"] == "reduced"
     assert report["proven_gap"] <= 1e-10
-    assert "least energy" in result.output
+    assert report["objective"]["name"] == "thin plate"
+    assert "proved least over the box" in result.output
+
+
+def test_the_fairest_shape_is_the_default_and_never_called_proved(pair):
+    result, report = run(pair)
+    assert result.exit_code == 0, result.output
+    assert report["objective"]["name"] == "fairness"
+    assert report["objective"]["value"] == pytest.approx(report["fairness"], rel=0.01)
+    assert report["proven_gap"] is None
+    assert "not proved" in report["objective"]["known"]
+    assert report["options"]["degree_u"] == 5
+    assert report["options"]["middle_curves"] == 0
+    assert [c["verdict"] for c in report["candidates"]].count("chosen") == 1
+    assert report["rows_converted"] >= report["rows_stored"] == report["control_points"]
 
 
 def test_alpha_and_box(pair):
@@ -46,7 +60,8 @@ def test_alpha_and_box(pair):
 
 
 def test_scale_changes_the_blend(pair):
-    (_, paper), (_, unit) = run(pair), run(pair, "--v-scale", "unit")
+    energy = ("--alpha", "energy")
+    (_, paper), (_, unit) = run(pair, *energy), run(pair, *energy, "--v-scale", "unit")
     assert paper["alpha2"] != unit["alpha2"]
 
 

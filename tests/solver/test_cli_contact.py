@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
+from helpers.papers_set import blend
 from semispline import (
     Base,
     BSplineCurve,
     BSplineSurface,
     ContactError,
     SemiStructuredSurface,
-    blend,
     measure_contact,
     read_surface,
     write_surface,
@@ -129,8 +129,19 @@ def test_refusal_ends_the_command_with_3(tmp_path):
 def test_the_report_holds_what_was_allowed(tmp_path):
     out, report = tmp_path / "c.json", tmp_path / "r.json"
     files = CASES / "vac2134_a.json", CASES / "vac2134_b.json"
-    options = ("--continuity", "C1", "--continuity-b", "G2", "--middle-curves", 0, "--v-scale", "unit")
-    done = run("blend", *files, *edges("v1", "u1"), *options, "-o", out, "--report", report)
+    options = (
+        "--continuity",
+        "C1",
+        "--continuity-b",
+        "G2",
+        "--middle-curves",
+        0,
+        "--v-scale",
+        "unit",
+        "--alpha",
+        "energy",
+    )
+    done = run("blend", *files, *edges("v1", "u1"), *options, "--alpha", "energy", "-o", out, "--report", report)
     assert done.exit_code == 0
     assert "warning: contact b: rounding alone" in done.stderr
     assert "relative curvature jump 0.0017 (0.017 allowed)" in done.stdout

@@ -21,11 +21,15 @@ OTHER = {
     "method": ("bfgs", ["--method", "bfgs"]),
     "flip": ("yes", ["--flip", "yes"]),
     "alpha": (("natural", 0.5), ["--alpha", "natural", "--alpha-b", "0.5"]),
+    "alpha_v": ("linear", ["--alpha-v", "linear"]),
+    "p2": ((0.1, -0.2), ["--p2", "0.1:-0.2"]),
+    "bulge": ((1.5, 0.5), ["--bulge-a", "1.5", "--bulge-b", "0.5"]),
     "box": ((0.5, 2.0), ["--box", "0.5", "2"]),
     "v_scale": ("unit", ["--v-scale", "unit"]),
     "u_knots": ((0.25, 0.5), ["--u-knots", "0.25,0.5"]),
     "middle_knots": (((0.5,), ()), ["--middle-knots", "0.5", "--middle-knots", ","]),
     "strict": (True, ["--strict"]),
+    "search_meets": (True, ["--search-meets"]),
 }
 
 
@@ -59,7 +63,9 @@ def test_a_flag_sets_its_option_and_no_other(name):
     assert options_of(words) == replace(BlendOptions(), **{name: value})
 
 
-@pytest.mark.parametrize(("flag", "pair"), [("--continuity-b", ("G2", "G1")), ("--alpha-b", ("energy", 0.5))])
+@pytest.mark.parametrize(
+    ("flag", "pair"), [("--continuity-b", ("G2", "G1")), ("--alpha-b", (None, 0.5)), ("--bulge-b", (1.0, 0.5))]
+)
 def test_what_is_said_of_b_alone_leaves_a_at_its_default(flag, pair):
     name = flag.removeprefix("--").removesuffix("-b")
     assert getattr(options_of([flag, str(pair[1])]), name) == pair
@@ -92,12 +98,77 @@ def test_lower_case_names_are_understood_and_kept_in_upper_case(written):
         ),
         (lambda: BlendOptions(u_knots=[0.5, float("nan")]), r"u_knots\[1\]: found nan, expected a finite number"),
         (lambda: BlendOptions(middle_knots=[0.5]), r"middle_knots\[0\]: found 0.5, expected numbers"),
-        (lambda: BlendOptions(middle_knots="0.5"), "middle_knots: found '0.5', expected sequences of numbers"),
+        (lambda: BlendOptions(middle_knots="0.5"), "middle_knots: found '0.5', expected one of fourth, paper"),
     ],
 )
 def test_what_no_option_can_be_is_refused(call, message):
     with pytest.raises(OptionError, match=message):
         call()
+
+
+@pytest.mark.parametrize("other", [{"method": "casadi"}, {"method": "bfgs"}, {"alpha": "energy"}])
+@pytest.mark.parametrize(
+    ("asked", "message"),
+    [
+        ({"alpha": ("fair", 1.0)}, "alpha: found fair with method .*, which minimises .*; give alpha energy"),
+        ({"alpha": ((0.3, 0.9), 1.0)}, r"alpha: found \(0.3, 0.9\) with .*, expected one number for each side"),
+        ({"alpha_v": "linear"}, "alpha_v: found linear with .*, expected constant"),
+        ({"p2": (0.1, 0.0)}, r"p2: found \(0.1, 0.0\) with .*, expected zero"),
+        ({"bulge": 1.5}, r"bulge: found \(1.5, 1.5\) with .*, expected 1"),
+        ({"continuity": ("G2", "G3")}, "continuity: found G3 with .*, expected at most G2"),
+    ],
+)
+def test_what_the_minimum_of_11_does_not_have_is_refused_beside_it(other, asked, message):
+    if "alpha" in other and "alpha" in asked:
+        other, message = {"alpha": (asked["alpha"][0], "energy")}, message.replace("method .*", "alpha energy")
+        asked = {}
+    with pytest.raises(OptionError, match=message):
+        BlendOptions(**(asked | other))
+
+
+def test_what_is_unsaid_is_decided_by_what_is_minimised():
+    fair, papers = BlendOptions().decided(), BlendOptions(alpha="energy").decided()
+    shown = "alpha", "alpha_v", "degree_u", "middle_curves", "middle_knots", "p2", "v_scale"
+    assert [getattr(fair, name) for name in shown] == [("fair", "fair"), "auto", 5, 0, "fourth", "auto", "length"]
+    assert [getattr(papers, name) for name in shown] == [
+        ("energy", "energy"), "constant", 3, 1, "paper", "zero", "paper",
+    ]  # fmt: skip
+    for method in ("casadi", "bfgs"):
+        assert BlendOptions(method=method).decided() == replace(papers, method=method)
+    assert BlendOptions().decided("generated C") == papers
+    assert fair.decided() == fair
+    assert papers.decided("generated C") == papers
+    # A number leaves the set as it is: it is that of the method.
+    assert BlendOptions(alpha=0.5).decided() == replace(fair, alpha=0.5)
+    assert BlendOptions(alpha=0.5, method="casadi").decided() == replace(papers, alpha=0.5, method="casadi")
+
+
+@pytest.mark.parametrize(
+    ("continuity", "degree"),
+    [("C0", 5), ("G2", 5), (("G3", "G1"), 6), (("G3", "C2"), 6), ("G3", 7), (("G4", "G3"), 8), ("G4", 9)],
+)
+def test_the_degree_leaves_neither_inner_knots_nor_middle_curves(continuity, degree):
+    decided = BlendOptions(continuity=continuity).decided()
+    assert (decided.degree_u, decided.middle_curves) == (degree, 0)
+
+
+@pytest.mark.parametrize("edge", [0.01, 100.0])
+def test_bulges_have_a_range_with_two_ends(edge):
+    assert BlendOptions(bulge=edge).bulges == (edge, edge)
+    with pytest.raises(OptionError, match=r"bulge: found .*, expected 0\.01 to 100"):
+        BlendOptions(bulge=edge * (1.001 if edge > 1 else 0.999))
+
+
+@pytest.mark.parametrize("p2", ["free", 0.1, (0.1,), (0.1, float("nan")), (1e21, 0), ("a", "b")])
+def test_p2_is_a_word_or_a_pair_of_numbers(p2):
+    with pytest.raises(OptionError, match="p2"):
+        BlendOptions(p2=p2)
+
+
+def test_a_pair_on_the_command_line_is_for_both_ends_of_v():
+    assert options_of(["--alpha", "0.3:0.9"]).alphas == ((0.3, 0.9), (0.3, 0.9))
+    assert options_of(["--alpha", "0.3:0.9", "--alpha-b", "natural"]).alphas == ((0.3, 0.9), "natural")
+    assert options_of(["--middle-knots", "paper"]).middle_knots == "paper"
 
 
 def test_said_holds_what_a_file_needs():

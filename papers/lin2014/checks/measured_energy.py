@@ -55,7 +55,7 @@ def _strain(surface: SemiStructuredSurface) -> tuple[float, float]:
 
 @cache
 def _blend_with(middle_curves: int) -> BlendResult:
-    return blend(*made_pair(), continuity="C2", middle_curves=middle_curves)
+    return blend(*made_pair(), continuity="C2", middle_curves=middle_curves, alpha="energy")
 
 
 def more_curves() -> Consequence:
@@ -72,7 +72,7 @@ def union_knots() -> Consequence:
     own = made_blend("C2")
     a, b = (side.surface for side in made_pair())
     inner = sorted({*a.knots_v[4:-4].tolist(), *b.knots_v[4:-4].tolist()})  # type: ignore[union-attr]
-    refined = blend(*made_pair(), continuity="C2", middle_curves=1, middle_knots=[inner])
+    refined = blend(*made_pair(), continuity="C2", alpha="energy", middle_knots=[inner])
     measured = {
         f"energy (11), {own.surface.n_control_points} control points": own.energy,
         f"energy (11) on the union of knots, {refined.surface.n_control_points} control points": refined.energy,

@@ -24,6 +24,7 @@ from semispline.papers.ledger import (
     given,
     holds,
     not_checkable,
+    of_data,
     part,
     proved,
 )
@@ -49,11 +50,6 @@ _COUNTING = "degrees of the rows, every m, n, k; rows found by substitution up t
 def _identity(cases: Any, method: str) -> Check:
     """Return a check that decides an identity for all degrees, parameters and control points, then at some degrees."""
     return Check(cases, Strength.SYMBOLIC_ORDER, method, proof=True)
-
-
-def _data(cases: Any, method: str) -> Check:
-    """Return a check that decides printed numbers, all of them."""
-    return Check(cases, Strength.RATIONAL, method, proof=True)
 
 
 _DECIMALS = "the printed decimals, exactly"
@@ -101,7 +97,7 @@ def _range_counterexample() -> Counterexample:
     return Counterexample((("n", "1"), ("rows", case.label)), "undefined", "Q_0^0 = sum of P_i0 B_i^m")
 
 
-_RANGE = _data(_range_cases, "each row of (6) against the range, every n")
+_RANGE = of_data(_range_cases, "each row of (6) against the range, every n")
 
 CLAIMS: tuple[Claim, ...] = (
     holds("eq-4", _WHERE, "A Bezier patch as a double sum over Bernstein polynomials.",
@@ -167,17 +163,17 @@ CLAIMS: tuple[Claim, ...] = (
     not_checkable("fig-2.rows", "Fig. 2", "Numbers of control points in each row, as the figure shows them.",
                   "the figure is not part of the text that we have; the counts in the text are decided on their own"),
     holds("fig-3.curves", "Fig. 3", "c1, .., c4 enclose a region inside the unit square.",
-          *(part(_data(trimming.curve_cases(name), "exact corners and exact roots of all common points"), formula)
+          *(part(of_data(trimming.curve_cases(name), "exact corners and exact roots of all common points"), formula)
             for name, formula in figures.SIDE_CURVES.items())),
     holds("fig-3.parameters", "Fig. 3", "The arguments of the Bernstein polynomials run over [0, 1] on the intervals.",
-          *(part(_data(trimming.parameter_cases(name), _DECIMALS), formula)
+          *(part(of_data(trimming.parameter_cases(name), _DECIMALS), formula)
             for name, formula in figures.SIDE_PARAMETERS.items()),
-          *(part(_data(trimming.interval_cases(name), _DECIMALS), formula)
+          *(part(of_data(trimming.interval_cases(name), _DECIMALS), formula)
             for name, formula in figures.SIDE_INTERVALS.items())),
     holds("fig-3.pieces", "Fig. 3",
           "The trimmed patch is made of four semi-structured patches and four ordinary Bezier patches, exactly.",
-          part(_data(trimming.tiling_cases, "sum of oriented boundaries, areas, lengths of exact rows"),
+          part(of_data(trimming.tiling_cases, "sum of oriented boundaries, areas, lengths of exact rows"),
                figures.PIECES), _LEMMA_PART),
     holds("fig-3.first-split", "Fig. 3", "The strip between v = 0.4 and v = 0.6 contains c1, which then divides it.",
-          part(_data(trimming.first_split_cases, _DECIMALS), figures.FIRST_SPLIT)),
+          part(of_data(trimming.first_split_cases, _DECIMALS), figures.FIRST_SPLIT)),
 )  # fmt: skip

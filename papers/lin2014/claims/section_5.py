@@ -24,6 +24,7 @@ from semispline.papers.ledger import (
     holds,
     holds_if,
     not_checkable,
+    of_data,
     part,
     proved,
     question,
@@ -65,18 +66,13 @@ REPAIRED_VECTOR = Formula(
 )
 
 
-def _data(cases: Any, method: str) -> Check:
-    """Return a check that decides printed numbers, all of them."""
-    return Check(cases, Strength.RATIONAL, method, proof=True)
-
-
 def _vector(key: str) -> Part:
-    return part(_data(numbers.knot_cases(key), _KNOTS), printed.VECTORS[key])
+    return part(of_data(numbers.knot_cases(key), _KNOTS), printed.VECTORS[key])
 
 
 def _sizes(figure: str) -> tuple[Part, ...]:
     sizes = enumerate(printed.SIZE[figure])
-    return tuple(part(_data(numbers.size_cases(figure, model), _SIZES), formula) for model, formula in sizes)
+    return tuple(part(of_data(numbers.size_cases(figure, model), _SIZES), formula) for model, formula in sizes)
 
 
 _AS_PRINTED, _CORRECTED = "with the conditions as they are printed", "with the corrected ones"
@@ -131,7 +127,7 @@ def _straight_or_curved(m: int) -> Check:
 
 CLAIMS: tuple[Claim, ...] = (
     holds("sec-5.bicubic", "Section 5", "All bases are bicubic: four rows and columns at least.",
-          part(_data(numbers.bicubic_cases, "ends of the printed vectors, sizes in Table 1"), printed.BICUBIC)),
+          part(of_data(numbers.bicubic_cases, "ends of the printed vectors, sizes in Table 1"), printed.BICUBIC)),
     ambiguous("sec-5.cylinders", "Section 5", "The bases of Figs. 8 to 10 are cylinders, and bicubic.",
               Reading((part(proved(numbers.circle_cases, "leading coefficients of x^2 + y^2, every degree")),),
                       label="circular cylinders"),
@@ -143,8 +139,8 @@ CLAIMS: tuple[Claim, ...] = (
           part(proved(numbers.cone_patch_cases, "a patch in the implicit equation of a circular cone")),
           remark="Possible on a circular cone too, between parabolas; between circles it is not, as for cylinders."),
     holds("sec-5.middle-curves", "Section 5", "Figs. 5, 6, 8, 9 have one middle curve, Figs. 10 and 11 none.",
-          part(_data(numbers.middle_curve_cases, "the two kinds of section 3, what the paragraphs repeat, and the "
-                     "printed inner knots"), printed.MIDDLE_CURVES)),
+          part(of_data(numbers.middle_curve_cases, "the two kinds of section 3, what the paragraphs repeat, and the "
+                       "printed inner knots"), printed.MIDDLE_CURVES)),
     ambiguous("sec-5.validation", "Section 5",
               "Mean curvature and zebra stripes show the C2 or G2 continuity of the examples.",
               Reading((part(proved(pictures.mean_curvature_cases, "H in the coefficients of both fundamental forms")),
@@ -177,7 +173,7 @@ CLAIMS: tuple[Claim, ...] = (
               remark="kappa_1^2 + kappa_2^2 = 4 H^2 - 2 K: on a saddle with kappa_2 = -kappa_1 the mean curvature is "
               "zero, and the energy of section 3 is not."),
     holds("fig-5.knots", "Fig. 5", "Contact curves over {1/2} and {1/3, 2/3}, in bases of 6 x 5 and 6 x 6 points.",
-          part(_data(numbers.first_vector_5_cases, _KNOTS + "; against its second print"),
+          part(of_data(numbers.first_vector_5_cases, _KNOTS + "; against its second print"),
                printed.VECTORS["fig-5.first"]),
           _vector("fig-5.second")),
     _c2("fig-5.c2", "Fig. 5", "Two planar patches are blended C2.",
@@ -187,7 +183,7 @@ CLAIMS: tuple[Claim, ...] = (
                     "of (3.1) cannot be seen in this figure."),
     holds_if("fig-5.same-knots", "Fig. 5", "Both planar patches can be given the knots {1/2}.",
              "the patch over {1/3, 2/3} is polynomial across these knots",
-             part(_data(numbers.removable_cases, "spline spaces by exact rank; the vector against its first print"),
+             part(of_data(numbers.removable_cases, "spline spaces by exact rank; the vector against its first print"),
                   printed.COMMON_VECTOR_5)),
     not_checkable("fig-5.revealed", "Fig. 5",
                   "Mean curvature and zebra stripes reveal that the curvature of the blend by [13] jumps.",
@@ -235,16 +231,16 @@ CLAIMS: tuple[Claim, ...] = (
                                         _CYLINDERS, "C2", cylinders),
                     remark="As fig-8.c2: the posture does not enter."),
     holds("fig-9.same-bases", "Fig. 9", "The bases are those of Fig. 8.",
-          *(part(_data(numbers.same_model_cases(model), "sizes in Table 1"), formula)
+          *(part(of_data(numbers.same_model_cases(model), "sizes in Table 1"), formula)
             for model, formula in enumerate(printed.SIZE["fig-9"]))),
     fails("fig-10.first-knots", "Fig. 10", "The first contact curve has the printed knots, three zeros to begin with.",
-          part(_data(numbers.first_vector_10_cases, _KNOTS10), printed.VECTORS["fig-10.first"]),
+          part(of_data(numbers.first_vector_10_cases, _KNOTS10), printed.VECTORS["fig-10.first"]),
           correction=Correction("Four zeros, as Bezier end conditions and Table 1 need.",
-                                (Part(_data(numbers.first_vector_10_cases, _KNOTS10), REPAIRED_VECTOR),)),
+                                (Part(of_data(numbers.first_vector_10_cases, _KNOTS10), REPAIRED_VECTOR),)),
           counterexample=numbers.knot_10_counterexample, consequence=numbers.knot_10_consequence,
           remark="Misprinted, or lost by the scan: with a fourth zero all numbers agree."),
     holds("fig-10.sevenths", "Fig. 10", "Its inner knots are 0.142857, .., 0.857143.",
-          part(_data(numbers.seventh_cases, "sevenths rounded to six places"), printed.SEVENTHS)),
+          part(of_data(numbers.seventh_cases, "sevenths rounded to six places"), printed.SEVENTHS)),
     holds("fig-10.second-knots", "Fig. 10", "The second contact curve has four inner knots, in a base of 8 x 8 points.",
           _vector("fig-10.second")),
     ambiguous("fig-10.g2", "Fig. 10", "Two complete cylinders are blended G2, without a middle curve.",
@@ -262,7 +258,7 @@ CLAIMS: tuple[Claim, ...] = (
               "figure says nothing for or against (3.1)."),
     not_checkable("fig-10.iterations", "Fig. 10", "fminunc needs 6 iterations.", _ITERATIONS),
     holds("fig-11.counts", "Fig. 11", "The contact curves have 10 control points on the cone, 64 on the free form.",
-          part(_data(numbers.cone_cases, "Table 1, 4 x 10 and 5 x 64"), printed.CONE_COUNTS_11)),
+          part(of_data(numbers.cone_cases, "Table 1, 4 x 10 and 5 x 64"), printed.CONE_COUNTS_11)),
     _g2("fig-11.g2", "Fig. 11", "A cone and a free form are blended G2, no middle curve.", 5,
           consequence=partial(measured_rows, "end", {1: pr.COND_2_2, 2: pr.COND_3_2},
                               "The made pair, whose second base stands for the free-form surface"),

@@ -52,7 +52,7 @@ def stand_in(figure: int) -> StoredProblem:
     }
     a, b = make[figure]() if figure != 9 else _part_cylinders(second_posture=True)
     printed = PRINTED[figure]
-    options = BlendOptions(continuity=printed.continuity, middle_curves=printed.middle_curves)
+    options = BlendOptions(continuity=printed.continuity, middle_curves=printed.middle_curves, alpha="energy")
     return StoredProblem(a, "u0", b, "u0", options)
 
 

@@ -8,20 +8,18 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import to_hex, to_rgb
 from matplotlib.figure import Figure
-from matplotlib.image import imread
 from matplotlib.patches import Polygon
 
 from semispline.derivations.trimming import Hole, Side
+from semispline.papers.lin2014.figures.panels import DPI, save, show
 from semispline.solver.arrays import FloatArray
-from semispline.solver.io import atomic_path, check_output
-from semispline.solver.pictures import CURVE_COLORS, PALETTE, render
+from semispline.solver.io import check_output
+from semispline.solver.pictures import CURVE_COLORS, PALETTE
 from semispline.solver.splines import (
     BezierFunction,
     BSplineCurve,
@@ -51,7 +49,6 @@ PIECES = {
 }  # fmt: skip
 _DIVIDING = (0.3, 0.95, 0.2, 0.6)
 _PLAIN = "#c9d3dc"
-_DPI = 200
 _RENDERED = (1600, 1200)
 
 
@@ -85,27 +82,27 @@ def draw_figure_1(path: str | Path) -> None:
     """Draw Fig. 1: the surface and the control points of each v-control curve, in a colour of its own."""
     check_output(path)
     surface = figure_1_surface()
-    figure = Figure(figsize=(8, 5.4), dpi=_DPI)
+    figure = Figure(figsize=(8, 5.4), dpi=DPI)
     axes = figure.add_axes((0.0, 0.09, 1.0, 0.91))
-    _show(axes, [surface], [_PLAIN], [True])
+    show(axes, [surface], _RENDERED, colors=[_PLAIN], control_points=[True])
     for i, count in enumerate(FIGURE_1_COUNTS):
         x = 0.08 + 0.13 * i
         figure.text(x, 0.045, "●", color=CURVE_COLORS[i], fontsize=13, va="center", ha="right")
         figure.text(x + 0.006, 0.045, f"$P_{i}(v)$: {count}", fontsize=11, va="center")
-    _save(figure, path)
+    save(figure, path)
 
 
 def draw_figure_2(path: str | Path) -> None:
     """Draw Fig. 2: a divided domain, the numbers of control points of both parts, and the parts in space."""
     check_output(path)
     lower, upper = divide_bezier(bicubic_patch(), _DIVIDING)
-    figure = Figure(figsize=(11, 8.2), dpi=_DPI)
+    figure = Figure(figsize=(11, 8.2), dpi=DPI)
     panels = [(0.06, 0.555, 0.38, 0.42), (0.54, 0.545, 0.43, 0.43), (0.02, 0.05, 0.47, 0.42), (0.51, 0.05, 0.47, 0.42)]
     axes = [figure.add_axes(panel) for panel in panels]
     _draw_division(axes[0])
     _draw_rows(axes[1], lower, upper)
-    _show(axes[2], [lower], [_tint(PALETTE[2])], [True])
-    _show(axes[3], [upper], [_tint(PALETTE[3])], [True])
+    show(axes[2], [lower], _RENDERED, colors=[_tint(PALETTE[2])], control_points=[True])
+    show(axes[3], [upper], _RENDERED, colors=[_tint(PALETTE[3])], control_points=[True])
     lists = (", ".join(str(len(curve.control_points)) for curve in part.control_curves) for part in (lower, upper))
     titles = ["domain, cut by $v = v(u)$ of degree 3", "control points in each row"]
     titles += [
@@ -113,7 +110,7 @@ def draw_figure_2(path: str | Path) -> None:
         for name, counts in zip(("P_1", "P_2"), lists, strict=True)
     ]
     _caption(figure, panels, titles, (0.495, 0.015))
-    _save(figure, path)
+    save(figure, path)
 
 
 def draw_trimmed_patch(path: str | Path) -> None:
@@ -121,14 +118,14 @@ def draw_trimmed_patch(path: str | Path) -> None:
     check_output(path)
     pieces = trimmed_patch()
     colors = [PALETTE[i] for i in range(len(pieces))]
-    figure = Figure(figsize=(12, 9.6), dpi=_DPI)
+    figure = Figure(figsize=(12, 9.6), dpi=DPI)
     panels = [(0.01, 0.545, 0.46, 0.44), (0.55, 0.57, 0.40, 0.41), (0.01, 0.045, 0.46, 0.44), (0.51, 0.045, 0.47, 0.44)]
     axes = [figure.add_axes(panel) for panel in panels]
-    _show(axes[0], [bicubic_patch()], [_PLAIN], [True])
+    show(axes[0], [bicubic_patch()], _RENDERED, colors=[_PLAIN], control_points=[True])
     _draw_trimmed_domain(axes[1], dict(zip(pieces, colors, strict=True)))
-    _show(axes[2], list(pieces.values()), colors, None)
+    show(axes[2], list(pieces.values()), _RENDERED, colors=colors, control_points=None)
     curved = [isinstance(piece, SemiStructuredSurface) for piece in pieces.values()]
-    _show(axes[3], list(pieces.values()), [_tint(color) for color in colors], curved)
+    show(axes[3], list(pieces.values()), _RENDERED, colors=[_tint(color) for color in colors], control_points=curved)
     titles = [
         "bicubic Bézier patch with its control points",
         "domain with trimming curves",
@@ -136,7 +133,7 @@ def draw_trimmed_patch(path: str | Path) -> None:
         "control points of each curve of Q1 to Q4",
     ]
     _caption(figure, panels, titles, (0.51, 0.015))
-    _save(figure, path)
+    save(figure, path)
 
 
 def _caption(
@@ -236,20 +233,3 @@ def _unit_square(axes: Any) -> None:
     axes.set_aspect("equal")
     axes.set_xlabel("$u$", labelpad=0)
     axes.set_ylabel("$v$", labelpad=0, rotation=0)
-
-
-def _show(axes: Any, surfaces: list[Surface], colors: list[str], control_points: list[bool] | None) -> None:
-    """Put a rendering of surfaces into a panel, its white margin cut off."""
-    with TemporaryDirectory() as folder:
-        picture = Path(folder) / "picture.png"
-        render(surfaces, picture, colors=colors, control_points=control_points, size=_RENDERED)
-        image = np.asarray(imread(picture))[..., :3]
-    inked = np.any(image < 0.99, axis=2)
-    rows, columns = np.flatnonzero(inked.any(axis=1)), np.flatnonzero(inked.any(axis=0))
-    axes.imshow(image[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1], interpolation="antialiased")
-    axes.axis("off")
-
-
-def _save(figure: Figure, path: str | Path) -> None:
-    with atomic_path(path) as temporary:
-        FigureCanvasAgg(figure).print_png(str(temporary), metadata={"Software": None})

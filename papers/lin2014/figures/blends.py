@@ -9,26 +9,23 @@ from collections.abc import Callable, Sequence
 from functools import cache, partial
 from pathlib import Path
 from string import ascii_lowercase
-from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
-from matplotlib.image import imread
 from matplotlib.patches import Rectangle
 
 from semispline.papers.baselines import BlendTask, as_spline, method
 from semispline.papers.lin2014.examples.bases import figure_5_on_common_knots
 from semispline.papers.lin2014.examples.section5 import FIGURES, PRINTED, example
+from semispline.papers.lin2014.figures.panels import DPI, save, show
 from semispline.papers.reproduction import Drawing
 from semispline.solver.blending import BlendResult, blend
-from semispline.solver.io import atomic_path, check_output
+from semispline.solver.io import check_output
 from semispline.solver.judge import Base
-from semispline.solver.pictures import BASE_COLOR, BLEND_COLOR, CURVE_COLORS, render
+from semispline.solver.pictures import BASE_COLOR, BLEND_COLOR, CURVE_COLORS
 from semispline.solver.splines import SemiStructuredSurface, Surface, greville
 
-_DPI = 200
 _RENDERED = (1200, 900)
 # Near enough for some stripes on a plane.
 _EYE = 1.2
@@ -41,7 +38,7 @@ _COLORS = (BASE_COLOR, BASE_COLOR, BLEND_COLOR)
 def figure_blend(figure: int) -> BlendResult:
     """Return the blend that the figure shows: C2 or G2 as there, and with as many middle curves."""
     task = example(figure)
-    return blend(task.a, task.b, continuity=task.continuity, middle_curves=task.middle_curves)
+    return blend(task.a, task.b, continuity=task.continuity, middle_curves=task.middle_curves, alpha="energy")
 
 
 def common_knots_task() -> BlendTask:
@@ -87,10 +84,10 @@ def draw_figure_7(path: str | Path) -> None:
     check_output(path)
     task = example(6)
     backwards, _ = as_spline(method("hartmann-inside").run(task).surface)
-    figure = Figure(figsize=(11, 6.2), dpi=_DPI)
+    figure = Figure(figsize=(11, 6.2), dpi=DPI)
     panels = [(0.01, 0.6, 0.48, 0.38), (0.51, 0.6, 0.48, 0.38), (0.06, 0.12, 0.88, 0.37)]
     for panel, view in zip(panels[:2], _VIEWS_7, strict=True):
-        _show(figure.add_axes(panel), _scene(task, backwards), towards_eye=view, colors=_COLORS)
+        show(figure.add_axes(panel), _scene(task, backwards), _RENDERED, towards_eye=view, colors=_COLORS)
     line = figure.add_axes(panels[2])
     t = np.linspace(0, 1, 400)
     for surface, color, width in zip(_scene(task, backwards), _COLORS, (5.0, 5.0, 1.8), strict=True):
@@ -103,20 +100,20 @@ def draw_figure_7(path: str | Path) -> None:
     _caption(figure, panels[:2], ["one side", "the other side"], 0.565)
     text = "the lines $v = 1/2$ of all three: the blend leaves both contacts backwards, on the bases"
     _caption(figure, panels[2:], [text], 0.02, first=2)
-    _save(figure, path)
+    save(figure, path)
 
 
 def draw_figure_4(path: str | Path) -> None:
     """Draw a blend with its control curves, and below it the domains: which knots each row has."""
     check_output(path)
     task, result = example(6), figure_blend(6)
-    figure = Figure(figsize=(10, 9), dpi=_DPI)
+    figure = Figure(figsize=(10, 9), dpi=DPI)
     space = figure.add_axes((0.02, 0.47, 0.96, 0.51))
-    _show(space, _scene(task, result.surface), colors=_COLORS, control_points=(False, False, True))
+    show(space, _scene(task, result.surface), _RENDERED, colors=_COLORS, control_points=(False, False, True))
     for x, y, text in ((0.12, 0.66, r"$\mathbf{R}(w, v)$"), (0.83, 0.86, r"$\mathbf{S}(t, v)$")):
         space.text(x, y, text, transform=space.transAxes, fontsize=16, color="white", ha="center")
     _draw_domains(figure.add_axes((0.05, 0.05, 0.9, 0.38)), task, result.surface)
-    _save(figure, path)
+    save(figure, path)
 
 
 def _scene(task: BlendTask, surface: Surface) -> list[Surface]:
@@ -126,7 +123,7 @@ def _scene(task: BlendTask, surface: Surface) -> list[Surface]:
 def _draw_rows(path: str | Path, rows: Sequence[list[Surface]], names: Sequence[str]) -> None:
     """Draw rendering, mean curvature and zebra of each scene in a row of its own."""
     height = 1 / len(rows)
-    figure = Figure(figsize=(14, 3.7 * len(rows)), dpi=_DPI)
+    figure = Figure(figsize=(14, 3.7 * len(rows)), dpi=DPI)
     fields: tuple[dict[str, Any], ...] = (
         {"colors": _COLORS},
         {"field": "curvature"},
@@ -136,10 +133,10 @@ def _draw_rows(path: str | Path, rows: Sequence[list[Surface]], names: Sequence[
         bottom = 1 - (i + 1) * height
         panels = [(0.005 + j / 3, bottom + 0.1 * height, 0.323, 0.88 * height) for j in range(3)]
         for panel, options in zip(panels, fields, strict=True):
-            _show(figure.add_axes(panel), scene, **options)
+            show(figure.add_axes(panel), scene, _RENDERED, **options)
         titles = [name + text for text in ("rendering", "mean curvature", "zebra")]
         _caption(figure, panels, titles, bottom + 0.04 * height, first=3 * i)
-    _save(figure, path)
+    save(figure, path)
 
 
 def _draw_domains(axes: Any, task: BlendTask, surface: SemiStructuredSurface) -> None:
@@ -179,20 +176,3 @@ def _caption(
     for i, (panel, title) in enumerate(zip(panels, titles, strict=True), start=first):
         text = f"({ascii_lowercase[i]}) {title}"
         figure.text(panel[0] + panel[2] / 2, height, text, ha="center", va="center", fontsize=11)
-
-
-def _show(axes: Any, scene: Sequence[Surface], **options: Any) -> None:
-    """Put a rendering into a panel, its white margin cut off."""
-    with TemporaryDirectory() as folder:
-        picture = Path(folder) / "picture.png"
-        render(scene, picture, size=_RENDERED, **options)
-        image = np.asarray(imread(picture))[..., :3]
-    inked = np.any(image < 0.99, axis=2)
-    rows, columns = np.flatnonzero(inked.any(axis=1)), np.flatnonzero(inked.any(axis=0))
-    axes.imshow(image[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1], interpolation="antialiased")
-    axes.axis("off")
-
-
-def _save(figure: Figure, path: str | Path) -> None:
-    with atomic_path(path) as temporary:
-        FigureCanvasAgg(figure).print_png(str(temporary), metadata={"Software": None})

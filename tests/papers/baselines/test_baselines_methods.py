@@ -7,7 +7,8 @@ import sys
 import numpy as np
 import pytest
 
-from semispline import Base, BSplineSurface, SemiStructuredSurface, blend, measure_contact
+from helpers.papers_set import blend
+from semispline import Base, BSplineSurface, SemiStructuredSurface, measure_contact
 from semispline.papers.baselines import open_cascade_filling
 from semispline.papers.baselines.contacts import contact_sides, on_common_knots, oriented_bases
 from semispline.papers.baselines.interface import BlendTask, NotApplicableError

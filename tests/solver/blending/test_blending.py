@@ -9,7 +9,8 @@ from hypothesis import strategies as st
 
 from helpers.bases import FACING, facing_pair, moved, patch, turned
 from helpers.occ import analyse, edge_point
-from semispline import Base, BSplineSurface, ContactError, EdgeError, OptionError, blend, measure_regularity
+from helpers.papers_set import blend
+from semispline import Base, BSplineSurface, ContactError, EdgeError, OptionError, measure_turn
 from semispline.solver.judge.de_boor import surface_points
 
 EDGES = ("u0", "u1", "v0", "v1")
@@ -296,6 +297,6 @@ def test_a_blend_that_leaves_into_the_base_raises(monkeypatch):
         blend(*facing_pair(np.random.default_rng(0)), alpha=1.0)
 
 
-def test_regularity_of_a_smooth_blend():
+def test_a_smooth_blend_turns_little():
     a, b = facing_pair(np.random.default_rng(0), planar=True)
-    assert measure_regularity(blend(a, b).surface).largest_turn_degrees < 20
+    assert measure_turn(blend(a, b).surface).degrees < 20

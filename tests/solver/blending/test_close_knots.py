@@ -8,6 +8,7 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from helpers.bases import tube, turned
+from helpers.papers_set import blend
 from semispline import (
     Base,
     BSplineCurve,
@@ -18,7 +19,6 @@ from semispline import (
     OptionError,
     SemisplineError,
     SemiStructuredSurface,
-    blend,
     insert_knots,
     read_surface,
 )
@@ -155,8 +155,8 @@ def test_an_energy_made_of_rounding_is_said_and_not_proved(degree, v_scale):
 
 
 def test_the_share_of_rounding_that_is_said_is_a_thousandth():
-    # Rounding grows with the inverse cube of the distance: these two are 0.0006 and 0.002 of the energy.
-    far, near = (blend(floor(3, 0.5 + step * np.arange(4)), WALL) for step in (6e-10, 4e-10))
+    # Rounding grows with the inverse cube of the distance: these two are 0.0008 and 0.0016 of the energy.
+    far, near = (blend(floor(3, 0.5 + step * np.arange(4)), WALL) for step in (7e-10, 5.5e-10))
     assert 5e-4 < far.energy_rounding / far.energy < 1e-3 < near.energy_rounding / near.energy < 2e-3
     assert not far.warnings
     assert far.proven_gap <= 1e-10
@@ -235,6 +235,45 @@ def test_a_narrow_span_hides_no_energy(place, continuity, v_scale):
         assert rounding_warnings(result) or result.energy == pytest.approx(true, rel=1e-3)
 
 
+def cut(degree, width, long=1.0):
+    """The floor again, so `long` across the edge and with a knot `width` from it."""
+    knots = clamped([1 - width], degree, 0.0, 1.0)
+    net = [[[1 - long + long * x, y, 0.0] for y in (0.0, 1.0)] for x in greville(knots, degree)]
+    return Base(BSplineSurface(degree, 1, knots, LINE, net), "u1")
+
+
+@pytest.mark.parametrize("degree", [2, 3])
+@pytest.mark.parametrize(("continuity", "order"), [("C1", 1), ("C2", 2)])
+def test_what_a_narrow_span_across_the_edge_rounds_is_said(continuity, order, degree):
+    """Prescribed rows are differences of the base's rows, divided by its span beside the edge once or twice."""
+    for width in (1e-2, 1e-3, 1e-4, 1e-5):
+        result = blend(cut(degree, width), WALL, continuity=continuity)
+        assert abs(result.energy - STRAIGHT[continuity]) <= result.energy_rounding
+        # Spacings of floats over the span; three digits are the weights of the derivatives.
+        assert 1 < result.energy_rounding / (2.2e-16 / width**order) < 2000
+
+
+@pytest.mark.parametrize("edge", ["u1", "u0", "v1", "v0"])
+def test_next_to_no_span_across_the_edge_is_the_reason_that_is_given(edge):
+    for width, said in ((0.9e-10, "9.0e-11"), (1e-12, "1.0e-12"), (1e-14, "1.0e-14")):
+        base = Base(turned(turned(cut(3, width).surface, "u1", False), edge, False), edge)
+        with pytest.raises(EdgeError, match=f"base a: knots_{edge[0]} leave a span of {said} beside the edge"):
+            blend(base, WALL, continuity=("C1", "G0"))
+        assert blend(base, WALL, continuity="G0").energy < 1e-12
+    # (10 long, so that its size is not what counts.)
+    assert blend(cut(3, 1.1e-10, 10.0), WALL, continuity=("C1", "G0")).contact_a.gap < 1e-12
+
+
+@pytest.mark.parametrize("degree", [2, 3])
+@pytest.mark.parametrize("long", [1.0, 0.1, 10.0])
+def test_the_shape_parameter_makes_up_for_how_fast_the_base_is(degree, long):
+    # (A narrower span leaves the proof too few digits.)
+    result = blend(cut(degree, 0.03 / min(long, 1.0), long), WALL, continuity="G2")
+    assert abs(result.energy - KNOWN) <= result.energy_rounding
+    span = 0.03 * max(long, 1.0)
+    assert 50 < result.energy_rounding / (2.2e-16 / span**2 * max(long, 1.0)) < 1000
+
+
 @pytest.mark.parametrize(
     ("degree", "inner", "kept"),
     [
@@ -284,12 +323,14 @@ def test_the_change_of_the_energy_by_errors_is_within_its_bound(seed, degree, wi
     rows = tuple(Basis(degree, clamped(inner if i % 2 else inner[:2], degree, 0.0, 1.0)) for i in range(6))
     form = EnergyForm(Basis(3, uniform_knots(3, 3)), rows)
     points, errors = rng.uniform(-1, 1, (form.offsets[-1], 3)), rng.uniform(0, 1e-3, 3)
-    moved = points + errors * rng.choice([-1.0, 1.0], points.shape)
+    largest = 10 ** rng.uniform(-3, 3, 6)
+    of_each = np.repeat(largest, [row.size for row in rows])[:, None] * errors
+    moved = points + of_each * rng.choice([-1.0, 1.0], points.shape)
     before, after = (float(form.products(p[None])[0, 0]) for p in (points, moved))
-    bound = form.change_by_errors(points, errors)
+    bound = form.change_by_errors(points, errors, largest)
     assert abs(after - before) <= bound * (1 + 1e-9)
     # Not out of proportion: errors as large as the points change about as much as there is.
-    assert form.change_by_errors(points, np.ones(3)) < 1e4 * before
+    assert form.change_by_errors(points, np.ones(3), np.ones(6)) < 1e4 * before
 
 
 def clusters(degree, start=0.0, end=1.0):

@@ -9,7 +9,8 @@ from hypothesis import strategies as st
 from scipy.optimize import brentq
 
 from helpers.bases import tube
-from semispline import Base, blend
+from helpers.papers_set import blend
+from semispline import Base
 from semispline.solver.blending.closing import with_least_size
 from semispline.solver.judge.correspondence import SNAP, correspond
 from semispline.solver.judge.de_boor import curve_points

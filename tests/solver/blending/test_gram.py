@@ -2,6 +2,7 @@
 
 from fractions import Fraction
 from itertools import pairwise
+from math import comb
 
 import numpy as np
 import pytest
@@ -11,7 +12,8 @@ from scipy.integrate import quad
 from scipy.interpolate import BSpline
 
 from helpers.bases import facing_pair, random_knots
-from semispline import BSplineCurve, BSplineSurface, InputError, SemiStructuredSurface, blend, thin_plate_energy
+from helpers.papers_set import blend
+from semispline import BSplineCurve, BSplineSurface, InputError, SemiStructuredSurface, thin_plate_energy
 from semispline.solver.blending.gram import EnergyForm, gram_matrix
 from semispline.solver.judge.de_boor import surface_points
 from semispline.solver.splines.quadrature import Basis, gauss_rule
@@ -49,6 +51,15 @@ def test_known_bernstein_gram():
         [float(Fraction(binomial[3][i] * binomial[3][j], binomial[6][i + j] * 7)) for j in range(4)] for i in range(4)
     ]
     np.testing.assert_allclose(gram_matrix(bezier, bezier).toarray(), exact, rtol=1e-14)
+
+
+@pytest.mark.parametrize("swapped", [False, True])
+def test_known_bernstein_gram_of_unlike_degrees(swapped):
+    # int B_i^1 B_j^5 = C(5,j) / (C(6,i+j) 7).
+    pair = Basis(1, np.repeat([0.0, 1.0], 2)), Basis(5, np.repeat([0.0, 1.0], 6))
+    exact = np.array([[comb(5, j) / (comb(6, i + j) * 7) for j in range(6)] for i in range(2)])
+    found = gram_matrix(*(pair[::-1] if swapped else pair)).toarray()
+    np.testing.assert_allclose(found.T if swapped else found, exact, rtol=1e-13)
 
 
 def test_knots_that_differ_by_rounding_count_as_one():

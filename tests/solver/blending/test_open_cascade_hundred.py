@@ -5,7 +5,7 @@ import pytest
 
 from helpers.bases import facing_pair
 from helpers.occ import analyse, edge_point
-from semispline import blend
+from helpers.papers_set import blend
 
 
 @pytest.mark.parametrize("seed", range(100))

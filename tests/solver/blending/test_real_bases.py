@@ -6,18 +6,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from helpers.bases import circle, cylinder, facing_pair, patch, turned
-from semispline import (
-    Base,
-    BSplineSurface,
-    EdgeError,
-    FoldError,
-    OptionError,
-    SemiStructuredSurface,
-    blend,
-    thin_plate_energy,
-)
+from helpers.papers_set import blend, state_problem
+from semispline import Base, BSplineSurface, EdgeError, FoldError, OptionError, SemiStructuredSurface, thin_plate_energy
 from semispline.solver.blending.closing import periodic_points, reseamed, seam_order
-from semispline.solver.blending.pipeline import state_problem
 from semispline.solver.judge.de_boor import curve_points, surface_points
 from semispline.solver.splines.operations import insert_knots, map_domain
 from semispline.solver.splines.quadrature import Basis
@@ -89,7 +80,7 @@ def test_closed_and_turned_round(backwards):
     result = blend(Base(a, "u0"), Base(b, "v1"))
     assert result.flipped == backwards
     assert result.contact_b.curvature_jump_relative < 1e-9
-    assert result.regularity.largest_turn_degrees < 30
+    assert result.shape.turn.degrees < 30
 
 
 def test_a_smooth_seam_has_a_lower_bound_in_the_open_problem():
@@ -247,7 +238,7 @@ def test_closed_and_creased(corner):
     result = blend(Base(a, "u0"), Base(b, "u0"))
     assert result.contact_b.angle_degrees < 1e-9
     # The tube has corners of 90 degrees, also at its seam; the blend has no others.
-    assert result.regularity.largest_turn_degrees < 120
+    assert result.shape.turn.degrees < 120
     assert result.seam.gap < 1e-13
 
 

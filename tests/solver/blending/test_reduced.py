@@ -11,9 +11,8 @@ from scipy.optimize import OptimizeResult, brute, minimize
 from scipy.stats import special_ortho_group
 
 from helpers.bases import cylinder, facing_pair, moved, patch
-from semispline import Base, BlendOptions, BSplineSurface, ComputationError, ContactError, EdgeError, FoldError, blend
-from semispline.solver.blending.pipeline import state_problem
-from semispline.solver.blending.problem import make_problem
+from helpers.papers_set import blend, make_problem, state_problem
+from semispline import Base, BSplineSurface, ComputationError, ContactError, EdgeError, FoldError
 from semispline.solver.blending.quasi_newton import solve_quasi_newton
 from semispline.solver.blending.reduced import shape_polynomial, solve_reduced
 from semispline.solver.blending.sides import make_side, matched_sides
@@ -174,7 +173,7 @@ def test_another_polynomial_is_refused(certificate):
 def problem_of(seed, **options):
     a, b = facing_pair(np.random.default_rng(seed), edges=("u0", "u0"), backwards=(False, False))
     sides = matched_sides(make_side(a, "G2"), make_side(b, "G2"), Correspondence(flipped=False))
-    return make_problem(*sides, BlendOptions(**options))
+    return make_problem(*sides, **options)
 
 
 def energy_at(problem, shape):

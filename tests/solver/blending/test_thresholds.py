@@ -7,21 +7,16 @@ import numpy as np
 import pytest
 
 from helpers.bases import facing_pair, moved, patch, tube
+from helpers.papers_set import blend, state_problem
 from semispline import (
     Base,
-    BSplineCurve,
     BSplineSurface,
     ComputationError,
     EdgeError,
     OptionError,
-    SemiStructuredSurface,
-    blend,
 )
 from semispline.solver.blending import nlp, reduced
 from semispline.solver.blending.closing import seam_order, with_least_size
-from semispline.solver.blending.pipeline import state_problem
-from semispline.solver.blending.warnings import shape_warnings
-from semispline.solver.judge import measure_creases, measure_regularity
 from semispline.solver.judge.correspondence import Correspondence, correspond, is_closed, snapped_seam
 from semispline.solver.splines.knots import clamped
 from semispline.solver.splines.quadrature import Basis
@@ -30,54 +25,8 @@ K1 = [0, 0, 1, 1]
 EPS = 2.0**-52
 
 
-def roof(*angles):
-    """Strips of degree 1 along v, each turned further down by an angle in degrees; straight and even in u."""
-    turns = np.radians(np.cumsum([0.0, *angles]))
-    steps = np.stack([np.zeros_like(turns), np.cos(turns), -np.sin(turns)], axis=1)
-    ridge = np.concatenate([np.zeros((1, 3)), np.cumsum(steps, axis=0)])
-    knots = [0, 0, *np.arange(1, len(turns)) / len(turns), 1, 1]
-    curves = [BSplineCurve(1, knots, ridge + np.array([x, 0, 0])) for x in (0, 1)]
-    return SemiStructuredSurface(1, K1, curves)
-
-
 def flat(x, y=(0.0, 1.0), z=0.0):
     return BSplineSurface(1, 1, K1, K1, [[[at, along, z] for along in y] for at in x])
-
-
-@pytest.mark.parametrize(
-    ("angle", "said"), [(59.0, []), (61.0, ["turns steeply"]), (89.0, ["turns steeply"]), (91.0, ["folds"])]
-)
-def test_a_turn_of_60_degrees_is_steep_and_a_right_angle_a_fold(angle, said):
-    # Were the roof no crease it would be a fold.
-    warnings = shape_warnings(measure_regularity(roof(angle)), ())
-    assert [word for word in ("folds", "turns steeply") for text in warnings if word in text] == said
-    assert all(f"by {angle:.0f} degrees" in text for text in warnings)
-    assert len(warnings) == len(said)
-
-
-@pytest.mark.parametrize(("angle", "creased"), [(0.5e-3, False), (0.9e-3, False), (1.1e-3, True), (2e-3, True)])
-def test_a_thousandth_of_a_degree_is_a_crease(angle, creased):
-    surface = roof(angle)
-    warnings = shape_warnings(measure_regularity(surface), measure_creases(surface))
-    assert any("creased at v = 0.5" in text for text in warnings) is creased
-
-
-@pytest.mark.parametrize(("creases", "more"), [(5, ""), (7, " and 2 more")])
-def test_five_creases_are_named(creases, more):
-    surface = roof(*[1.0] * creases)
-    (warning,) = shape_warnings(measure_regularity(surface), measure_creases(surface))
-    named = ", ".join(f"v = {i / (creases + 1):g}" for i in range(1, 6))
-    assert f"creased at {named}{more}, by up to 1 degrees" in warning
-
-
-@pytest.mark.parametrize(("part", "pinched"), [(0.5e-3, True), (0.9e-3, True), (1.1e-3, False), (2e-3, False)])
-def test_an_area_element_of_a_thousandth_is_a_pinch(part, pinched):
-    # A trapezoid from 2 wide down to `width`: the area element falls evenly, so that its mean is half way.
-    width = part / (1 - part / 2)
-    surface = BSplineSurface(1, 1, K1, K1, [[[0, 0, 0], [0, 2, 0]], [[1, 0, 0], [1, width, 0]]])
-    found = measure_regularity(surface)
-    assert found.least_area_ratio == pytest.approx(part, rel=1e-9)
-    assert any("pinched" in text for text in shape_warnings(found, ())) is pinched
 
 
 @pytest.mark.parametrize(
@@ -131,6 +80,27 @@ def test_seams_are_closed_up_to_a_billionth_and_rounding(times, order, largest, 
     assert (seam_order(along, rows, largest) >= 0) is (order == 0)
 
 
+@pytest.mark.parametrize(("times", "order"), [(0.5, 0), (0.9, 0), (1.1, -1), (2.0, -1)])
+@pytest.mark.parametrize("length", [1e-3, 1.0])
+def test_seams_are_smooth_up_to_a_billionth_of_the_largest_derivative(times, order, length):
+    along, rows = ring()
+    along = Basis(along.degree, length * along.knots)
+    # Closed still, and turned a little where it begins: derivatives do not go with the extent.
+    first = along.degree / along.knots[along.degree + 1]
+    derivatives = along.degree * np.diff(rows[0], axis=0) / (along.knots[4:-1] - along.knots[1:-4])[:, None]
+    rows[0, 1, 2] += times * 1e-9 * max(np.abs(derivatives).max(), np.ptp(rows, axis=1).max()) / first
+    assert (seam_order(along, rows, 1.0) >= 1) is (order == 0)
+
+
+@pytest.mark.parametrize(("times", "order"), [(0.9, 0), (1.1, -1)])
+def test_where_a_ring_is_counts_on_both_sides_of_the_origin(times, order):
+    for offset in (100.0, -100.0):
+        along, rows = ring()
+        rows += offset
+        rows[0, -1, 2] += times * (1e-9 * np.abs(rows).max() + 16 * EPS * 100)
+        assert (seam_order(along, rows, 100.0) >= 0) is (order == 0)
+
+
 @pytest.mark.parametrize("distance", [1e3, 1e5, 1e7])
 def test_a_closed_pair_far_away_keeps_its_seam_smooth(distance):
     rng = np.random.default_rng(0)
@@ -170,6 +140,19 @@ def test_far_away_the_blend_is_rounded_once(closed):
         assert np.abs((second.rows - offset) - first.rows).max() <= most
 
 
+def test_degrees_and_knots_at_the_ends_of_their_ranges():
+    pair = Base(flat((-1.0, 0.0)), "u1"), Base(flat((1.0, 2.0), z=1.0), "u0")
+    # Six rows without middle curves: one span of degree 5.
+    assert len(state_problem(*pair, degree_u=5, middle_curves=0).problem.rows) == 6
+    with pytest.raises(OptionError, match=r"degree_u: found 6, expected 2 to 5 with 0 middle curve\(s\)"):
+        state_problem(*pair, degree_u=6, middle_curves=0)
+    for at in (0.0, 1.0):
+        with pytest.raises(OptionError, match=r"middle_knots\[0\]: found .*, expected values inside \(0.0, 1.0\)"):
+            state_problem(*pair, middle_knots=[[0.5, at]], middle_curves=1)
+        with pytest.raises(OptionError, match=r"u_knots: found .*, expected values inside"):
+            state_problem(*pair, u_knots=[0.5, at], middle_curves=0, degree_u=3)
+
+
 def test_spans_within_a_billionth_are_equally_long():
     for apart, inner in ((0.5e-9, 3), (2e-9, 2)):
         # Two spans, the second a little longer: halved together or alone.
@@ -200,6 +183,20 @@ def test_no_shift_at_all_within_a_billionth():
         angle = 2 * np.pi * turn
         matrix = np.array([[np.cos(angle), -np.sin(angle), 0], [np.sin(angle), np.cos(angle), 0], [0, 0, 1]])
         assert (correspond(a, Base(moved(a.surface, matrix), "u1")).shift == 0) is is_none
+
+
+@pytest.mark.parametrize("spans", [1, 3, 700])
+def test_the_natural_size_is_a_mean_over_the_contact(spans):
+    # A gap of sqrt(1 + (5 v)^2) over a speed of 2 on one side and 1 on the other: no polynomial.
+    knots = np.concatenate([[0.0], np.linspace(0, 1, spans + 1), [1.0]])
+    v = knots[1:-1]
+    row = np.stack([np.zeros_like(v), v, np.zeros_like(v)], axis=1)
+    tilted = np.stack([np.ones_like(v), v, 5 * v], axis=1)
+    a = BSplineSurface(1, 1, K1, knots, np.stack([row - [2.0, 0, 0], row]))
+    b = BSplineSurface(1, 1, K1, knots, np.stack([tilted, tilted + np.array([1.0, 0, 0])]))
+    mean = (np.sqrt(26) + np.arcsinh(5) / 5) / 2
+    problem = state_problem(Base(a, "u1"), Base(b, "u0")).problem
+    assert problem.natural == pytest.approx((mean / 2, mean), rel=1e-9)
 
 
 @pytest.mark.parametrize(("times", "refused"), [(0.5, True), (0.9, True), (1.1, False), (2.0, False)])

@@ -5,8 +5,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from helpers.bases import facing_pair, moved
-from semispline import Base, BSplineSurface, blend, clamped_surface
+from helpers.bases import facing_pair, moved, ring
+from helpers.papers_set import blend
+from semispline import Base, BSplineSurface
 
 # Moving rounds the input itself: eps times 10^4 sizes is 2e-12 of the size, and the blend, whose rows are differences
 # of such points, repeats that a few times over. What is asked for leaves a factor of a hundred.
@@ -68,14 +69,6 @@ def test_a_change_of_units_alone_costs_no_digits(method, unit):
     plain, other = (blend(*pair, method=method) for pair in (bases, copies))
     # Only roundings of single operations, some hundred in a row.
     assert np.abs(stacked(other) / unit - stacked(plain)).max() <= 1e-13 * size_of(bases)
-
-
-def ring(n, radius, heights):
-    """A closed base, smooth across its seam: a periodic net, clamped exactly."""
-    angle = 2 * np.pi * np.arange(n + 3) / n
-    net = np.array([[[radius * np.cos(t), radius * np.sin(t), z] for t in angle] for z in heights])
-    u = np.repeat([0.0, 1.0], len(heights))
-    return clamped_surface(len(heights) - 1, 3, u, np.arange(-3.0, n + 4), net)
 
 
 @pytest.mark.parametrize("method", ["reduced", "casadi"])

@@ -1,15 +1,19 @@
-"""What a user should look at is a warning: steep turns and shape parameters at their bounds, from both sides."""
+"""What a user should look at is a warning: shape parameters at their bounds, from both sides, and rounding."""
 
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from helpers.bases import facing_pair
-from semispline import Base, BSplineSurface, ContactError, FoldError, Regularity, blend
-from semispline.solver.blending.warnings import remedy, shape_warnings
-from semispline.solver.judge import Crease, NoNormal
+from helpers.bases import turned
+from helpers.papers_set import blend
+from semispline import Base, BSplineSurface, ContactError, FoldError
+from semispline.solver.blending.shape_parameters import Found
+from semispline.solver.blending.warnings import contact_warnings, remedy
+from semispline.solver.judge import NoNormal
 from semispline.solver.splines import greville
+from semispline.solver.splines.operations import all_control_points
 
 LINE = [0, 0, 1, 1]
 FLOOR = Base(BSplineSurface(1, 1, LINE, LINE, [[[0, 0, 0], [0, 1, 0]], [[1, 0, 0], [1, 1, 0]]]), "u1")
@@ -18,39 +22,6 @@ WALL = Base(BSplineSurface(1, 1, LINE, LINE, [[[2, 0, 1], [2, 1, 1]], [[2, 0, 2]
 BEST = 64 / 39
 # Natural size: a gap of sqrt(2) over a speed of 1.
 NATURAL = np.sqrt(2)
-
-
-@pytest.mark.parametrize(
-    ("turn", "bend", "said"),
-    [
-        (60.0, 0.0, None),
-        (60.001, 0.0, "turns steeply"),
-        (89.999, 0.0, "turns steeply"),
-        (90.0, 0.0, "folds"),
-        # A crease explains the rest.
-        (100.0, 40.0, None),
-        (100.0, 39.99, "turns steeply"),
-    ],
-)
-def test_turns_from_both_sides(turn, bend, said):
-    found = shape_warnings(Regularity(0.5, turn, None), (Crease("v", 0.5, bend),) if bend else ())
-    found = [warning for warning in found if "creased" not in warning]
-    assert len(found) == (said is not None)
-    assert all(said in warning for warning in found)
-
-
-def test_a_steep_turn_does_not_hide_a_pinch():
-    found = shape_warnings(Regularity(1e-4, 75.0, None), ())
-    assert ["steeply" in found[0], "pinched" in found[1]] == [True, True]
-
-
-def test_a_blend_that_turns_steeply_is_warned_of_and_strict_refuses_it():
-    a, b = facing_pair(np.random.default_rng(4))
-    result = blend(a, b, alpha="natural")
-    assert 60 < result.regularity.largest_turn_degrees < 90
-    assert [w for w in result.warnings if "turns steeply" in w]
-    with pytest.raises(FoldError, match="turns steeply"):
-        blend(a, b, alpha="natural", strict=True)
 
 
 @pytest.mark.parametrize("method", ["reduced", "casadi"])
@@ -107,6 +78,41 @@ def test_a_base_without_a_normal_is_named():
 
 
 @pytest.mark.parametrize(("width", "named"), [(0.9e-3, True), (1.1e-3, False)])
-def test_a_span_is_narrow_below_a_thousandth(width, named):
-    base = flat_with([0, 0, 0, 0, 1 - width, 1, 1, 1, 1])
-    assert ("beside the edge" in remedy(base, blend(FLOOR, WALL).surface, [], None)) is named
+@pytest.mark.parametrize("edge", ["u0", "u1", "v0", "v1"])
+def test_a_span_is_narrow_below_a_thousandth_of_the_base(width, named, edge):
+    domain = 400.0
+    surface = flat_with(domain * np.array([0, 0, 0, 0, 1 - width, 1, 1, 1, 1])).surface
+    base = Base(turned(turned(surface, "u1", False), edge, False), edge)
+    said = remedy(base, blend(FLOOR, WALL).surface, [], None)
+    assert (f"knots_{edge[0]} of the base leave a span of {width * domain:.1e} beside the edge" in said) is named
+    # Nobody asks for what is narrow elsewhere.
+    other = Base(base.surface, edge[0] + {"0": "1", "1": "0"}[edge[1]])
+    assert "beside the edge" not in remedy(other, blend(FLOOR, WALL).surface, [], None)
+
+
+@pytest.mark.parametrize(("times", "far"), [(0.9, False), (1.1, True)])
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_a_thousand_sizes_from_the_origin_is_far(times, side, far):
+    surface = blend(FLOOR, WALL).surface
+    size = float(np.ptp(all_control_points(surface), axis=0).max())
+    distance = times * 1e3 * size
+    away = replace(
+        surface,
+        control_curves=[
+            replace(c, control_points=c.control_points + np.array([0.0, side * distance, 0.0]))
+            for c in surface.control_curves
+        ],
+    )
+    said = remedy(FLOOR, away, [], None)
+    assert ("1e+03 times the size of the blend away: work in coordinates nearer to it" in said) is far
+
+
+@pytest.mark.parametrize(("places", "named"), [(4, 4), (5, 5), (7, 5)])
+def test_five_places_without_a_normal_are_named(places, named):
+    result = blend(FLOOR, WALL, continuity="G1", alpha=1.3)
+    bare = tuple(NoNormal("b", i / 8, (2.0, i / 8, 1.0), "the derivative vanishes", 1e-9) for i in range(places))
+    contacts = result.contact_a, replace(result.contact_b, no_normal=bare)
+    found = Found(1.69, 1.69, "linear")
+    said = contact_warnings((FLOOR, WALL), result.surface, contacts, ("G1", "G1"), found)
+    assert ["base b: " in text and "G1 says nothing there" in text for text in said] == [True] * named
+    assert not contact_warnings((FLOOR, WALL), result.surface, contacts, ("G1", "C1"), found)

@@ -6,22 +6,14 @@ import casadi as ca
 import numpy as np
 import pytest
 
-from helpers.bases import facing_pair
-from semispline import Base, BSplineSurface, ComputationError, blend, clamped_surface
+from helpers.bases import facing_pair, ring
+from helpers.papers_set import blend, state_problem
+from semispline import Base, BSplineSurface, ComputationError
 from semispline.solver.blending.nlp import constrained_problem
-from semispline.solver.blending.pipeline import state_problem
 from semispline.solver.c_export.files import c_files, c_functions
 
 pytestmark = pytest.mark.compiler
 FLAGS = ["-Wall", "-Wextra", "-Werror", "-Wno-unused-parameter", "-pedantic", "-std=c99"]
-
-
-def ring(n, radius, heights):
-    """A closed base, smooth across its seam: a periodic net, clamped exactly."""
-    angle = 2 * np.pi * np.arange(n + 3) / n
-    net = np.array([[[radius * np.cos(t), radius * np.sin(t), z] for t in angle] for z in heights])
-    u = np.repeat([0.0, 1.0], len(heights))
-    return clamped_surface(len(heights) - 1, 3, u, np.arange(-3.0, n + 4), net)
 
 
 def far_pair():

@@ -1,5 +1,6 @@
 import json
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -19,9 +20,13 @@ from OCP.STEPControl import STEPControl_StepModelType, STEPControl_Writer
 from OCP.TopoDS import TopoDS, TopoDS_Compound
 from typer.testing import CliRunner
 
-from semispline import BSplineSurface
+from semispline import BlendOptions, BSplineSurface
+from semispline.papers.cli import app as all_commands
+from semispline.solver.c_export import write_c
 from semispline.solver.cli import app
+from semispline.solver.errors import TrimError
 from semispline.solver.io.face_boundary import FaceBoundary, edge_offset, joined
+from semispline.solver.io.json_files import StoredProblem, write_problem
 from semispline.solver.io.occ import read_occ
 from semispline.solver.io.occ_boundary import edges_of
 from semispline.solver.io.occ_writing import occ_surface
@@ -318,3 +323,25 @@ def test_blend_warns_and_strict_refuses(pair):
     assert WORDS in done.stderr
     assert done.stderr.count("\n") == 1
     assert sorted(p.name for p in pair.iterdir()) == ["cut.step", "far.json", "next.json"]
+
+
+def test_c_of_a_stored_problem_warns_and_strict_refuses(pair):
+    problem = StoredProblem("far.json", "u0", "cut.step#0", "u1", BlendOptions(continuity="C1"))
+    write_problem(pair / "problem.json", problem)
+    done = CliRunner().invoke(
+        all_commands, ["generate", "--c", str(pair / "out"), "--problem", str(pair / "problem.json")]
+    )
+    assert done.exit_code == 0, done.output
+    assert done.stderr == (
+        f"warning: the edge u1 of {pair / 'cut.step#0'} {WORDS}: the face is trimmed, its surface goes on\n"
+    )
+    assert len(list((pair / "out").iterdir())) == 3
+    # The edges of one surface: none is there where it ends, and the other one stands in the file itself.
+    write_problem(pair / "problem.json", replace(problem, edge_b="u0"))
+    assert write_c(pair / "out", pair / "problem.json")[1] == ()
+    write_problem(pair / "problem.json", replace(problem, a=sheet(start=60.0)))
+    assert [WORDS in text for text in write_c(pair / "out", pair / "problem.json")[1]] == [True]
+    write_problem(pair / "problem.json", replace(problem, options=BlendOptions(continuity="C1", strict=True)))
+    with pytest.raises(TrimError, match=WORDS):
+        write_c(pair / "strict", pair / "problem.json")
+    assert not (pair / "strict").exists()

@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 from helpers.bases import facing_pair, tube
+from helpers.papers_set import blend
 from helpers.shapes import sheets
-from semispline import Base, EdgeError, blend
+from semispline import Base, EdgeError
 from semispline.solver.judge.continuation import continuation
 from semispline.solver.judge.sections import unit_normals
 

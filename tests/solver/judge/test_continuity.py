@@ -150,8 +150,8 @@ def test_measured_in_parts_as_measured_at_once(monkeypatch, at_once, edges):
     found = []
     for size in (10**9, at_once):
         monkeypatch.setattr(continuity, "_AT_ONCE", size)
-        contact = asdict(measure_contact(a, b, flip="no"))
-        places = [contact.pop(f"{name}_at") for name in ("gap", "angle", "curvature")]
+        contact = asdict(measure_contact(a, b, flip="no", order=4))
+        places = [contact.pop(f"{name}_at") for name in ("gap", "angle", "curvature", "rate", "second_rate")]
         rounding = contact.pop("rounding") | {f"{name} allowed": x for name, x in contact.pop("allowed").items()}
         assert contact.pop("no_normal") == ()
         found.append((rounding, contact, [(p["parameter"], *p["point"]) for p in places]))

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from helpers.bases import facing_pair, patch
-from semispline import Base, BSplineCurve, FoldError, SemiStructuredSurface, blend, insert_knots
+from helpers.papers_set import blend
+from semispline import Base, BSplineCurve, FoldError, SemiStructuredSurface, insert_knots
 from semispline.solver.judge.creases import measure_creases
 
 

@@ -52,7 +52,7 @@ def test_an_area_element_beside_rounding_is_none(times, vanishes):
     # A trapezoid, 2 wide and, at the other end, next to nothing.
     width = times * 1e-14 * 2
     surface = BSplineSurface(1, 1, K1, K1, [[[0, 0, 0], [0, 2, 0]], [[1, 0, 0], [1, width, 0]]])
-    assert (measure_regularity(surface) == Regularity(0.0, 180.0, None)) is vanishes
+    assert (measure_regularity(surface) == Regularity(0.0, None)) is vanishes
 
 
 @pytest.mark.parametrize(("times", "tied"), BOTH_SIDES)

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from helpers.bases import cylinder, tube
+from helpers.papers_set import blend
 from helpers.shapes import arc, extruded, line, revolved, sheets, torus
-from semispline import Base, BSplineSurface, blend, measure_meets, transform
+from semispline import Base, BSplineSurface, measure_meets, transform
 from semispline.solver.judge import confirmed_meetings
 from semispline.solver.judge.box_tree import box_tree, overlapping
 from semispline.solver.judge.confirmed_meetings import search_itself
@@ -359,7 +360,8 @@ def test_what_is_certified_is_not_searched():
 def test_a_search_may_be_left_out():
     found = measure_meets(extruded(loop(0.2), 1.0), search=False)
     assert (found.searched, found.found, found.seen_from) == ((), (), None)
-    assert found.sentences == ("no direction shows it whole, and no mesh was searched",)
+    assert found.answer("itself") is None
+    assert found.sentences == ("not known whether it meets itself: no direction shows it, and no mesh was searched",)
 
 
 def test_boxes_against_all_pairs():

@@ -6,20 +6,13 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
+from helpers.polynomials import polynomial
 from semispline.solver.proof.certificates import Certificate, Leaf
 from semispline.solver.proof.checker import CertificateError, check_certificate
 
 SQUARE = ((-1.0, 1.0), (-1.0, 1.0))
 UNIT = ((0.0, 1.0), (0.0, 1.0))
 WHOLE = (0, 0)
-
-
-def polynomial(**coefficients):
-    """`x2y1=3` is 3 x^2 y."""
-    table = np.zeros((5, 5))
-    for name, value in coefficients.items():
-        table[int(name[1]), int(name[3])] = value
-    return table
 
 
 def claim(table, *leaves, box=SQUARE, point=(0.0, 0.0), bound=0.0, tolerance=0.0):

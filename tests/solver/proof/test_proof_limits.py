@@ -5,9 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from helpers.polynomials import polynomial
 from semispline import ComputationError
 from semispline.solver.proof import check_certificate
-from semispline.solver.proof.box_search import least_point
+from semispline.solver.proof.box_search import best_of_grid, least_point
 
 # (x^2 - 1)^2 + x / 4 + y^2: two wells, the left one lower.
 TILTED = np.array([[1.0, 0, 1], [0.25, 0, 0], [-2, 0, 0], [0, 0, 0], [1, 0, 0]])
@@ -57,3 +58,37 @@ def test_hundreds_of_parts_come_before_sums_of_squares(tilt, by_squares):
     assert any(leaf.squares is not None for leaf in proof.leaves) is by_squares
     # (4 x (x^2 - 1) = -e has its least root beyond -1.)
     assert -1.0 > proof.point[0] > -1.2
+
+
+@pytest.mark.parametrize("a", [-3.0, -2.0, -1.998, 0.3, 1.7, 1.9, 2.0, 4.0])
+@pytest.mark.parametrize("b", [-2.0, -1.0, -0.9985, -0.25, 0.97, 1.0, 5.0])
+@pytest.mark.parametrize("mixed", [0.0, 0.5])
+def test_the_search_ends_where_a_bowl_is_lowest_in_the_box(a, b, mixed):
+    # (x - a)^2 + (y - b)^2 + 2 m (x - a) (y - b): over the box by turns, each the best for the other, to the end.
+    m = mixed
+    table = polynomial(
+        x2y0=1, x0y2=1, x1y1=2 * m, x1y0=-2 * a - 2 * m * b, x0y1=-2 * b - 2 * m * a, x0y0=a * a + b * b + 2 * m * a * b
+    )
+    x, y = 0.0, 0.0
+    for _ in range(100):
+        x = np.clip(a - m * (y - b), *BOX[0])
+        y = np.clip(b - m * (x - a), *BOX[1])
+    assert best_of_grid(table, BOX) == pytest.approx((x, y), abs=1e-12)
+    # A fixed parameter stays what it is.
+    assert best_of_grid(table, (BOX[0], (y, y))) == pytest.approx((x, y), abs=1e-12)
+    assert best_of_grid(table, ((x, x), BOX[1])) == pytest.approx((x, y), abs=1e-12)
+
+
+def test_the_search_finds_the_lower_of_two_wells():
+    for tilt in (0.25, -0.25):
+        table = TILTED.copy()
+        table[1, 0] = tilt
+        x, y = best_of_grid(table, BOX)
+        assert np.sign(x) == -np.sign(tilt)
+        assert 4 * x * (x**2 - 1) == pytest.approx(-tilt, abs=1e-12)
+        assert abs(y) < 1e-12
+
+
+def test_the_search_leaves_a_saddle():
+    # x y over a square: two corners are lowest.
+    assert sorted(best_of_grid(polynomial(x1y1=1), ((-1.0, 1.0), (-1.0, 1.0)))) == [-1.0, 1.0]

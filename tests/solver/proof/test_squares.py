@@ -5,35 +5,31 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
+from flint import fmpq, fmpq_mat
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from helpers.polynomials import polynomial
 from semispline import ComputationError
+from semispline.solver.proof import squares as proof_squares
 from semispline.solver.proof.box_search import least_point
 from semispline.solver.proof.checker import CertificateError, check_certificate
+from semispline.solver.proof.squares import NoSquares, gram_matrices
 
 BOX = ((-2.0, 3.0), (-2.0, 2.5))
 ADMISSIBLE = ((0.125, 8.0), (0.125, 8.0))
 
 
-def quartic(**coefficients):
-    """`x2y1=3` is 3 x^2 y."""
-    table = np.zeros((5, 5))
-    for name, value in coefficients.items():
-        table[int(name[1]), int(name[3])] = value
-    return table
-
-
-CIRCLE = quartic(x4y0=1, x0y4=1, x2y2=2, x2y0=-2, x0y2=-2, x0y0=1)
-HYPERBOLA = quartic(x2y2=1, x1y1=-2, x0y0=1)
-PARABOLA = quartic(x2y0=1, x1y2=-2, x0y4=1)
+CIRCLE = polynomial(x4y0=1, x0y4=1, x2y2=2, x2y0=-2, x0y2=-2, x0y0=1)
+HYPERBOLA = polynomial(x2y2=1, x1y1=-2, x0y0=1)
+PARABOLA = polynomial(x2y0=1, x1y2=-2, x0y4=1)
 
 
 @pytest.mark.parametrize("box", [BOX, ADMISSIBLE])
 @pytest.mark.parametrize("table", [CIRCLE, HYPERBOLA, PARABOLA], ids=["circle", "hyperbola", "parabola"])
 @pytest.mark.parametrize("level", [0.0, 5.0])
 def test_a_curve_of_equal_minima_is_proved(table, box, level):
-    raised = table + quartic(x0y0=level)
+    raised = table + polynomial(x0y0=level)
     certificate = least_point(raised, box, 1e-10)
     check_certificate(certificate)
     assert any(leaf.squares is not None for leaf in certificate.leaves)
@@ -44,7 +40,7 @@ def test_a_curve_of_equal_minima_is_proved(table, box, level):
 def test_a_slight_tilt_of_a_circle_is_followed_to_its_lowest_point():
     # (x^2 + y^2 - 1)^2 + e x is least at y = 0, 4 x (x^2 - 1) = -e: x = -1 - e / 8 up to e^2.
     tilt = 1e-9
-    certificate = least_point(CIRCLE + quartic(x1y0=tilt), BOX, 1e-13)
+    certificate = least_point(CIRCLE + polynomial(x1y0=tilt), BOX, 1e-13)
     check_certificate(certificate)
     assert certificate.point == pytest.approx((-1 - tilt / 8, 0), abs=1e-9)
     assert certificate.bound == pytest.approx(-tilt, abs=1e-13)
@@ -119,4 +115,28 @@ def test_malformed_squares_are_refused(proof, squares):
 
 def test_a_tolerance_finer_than_floats_is_refused():
     with pytest.raises(ComputationError, match="spacing of floats"):
-        least_point(CIRCLE + quartic(x0y0=1e9), BOX, 1e-12)
+        least_point(CIRCLE + polynomial(x0y0=1e9), BOX, 1e-12)
+
+
+@pytest.mark.parametrize("exponents", [None, (4, 1), (1, 4), (3, 2), (4, 4)])
+def test_no_squares_of_nothing_and_of_what_is_no_polynomial(exponents):
+    table = fmpq_mat(5, 5)
+    if exponents:
+        table[exponents] = table[0, 0] = fmpq(1)
+    assert gram_matrices(table) == NoSquares((0.0, 0.0))
+
+
+def test_a_curve_of_equal_minima_of_higher_degree_is_given_up():
+    # (x^2 y - 1)^2 is zero along a curve, but no quartic.
+    with pytest.raises(ComputationError, match="within 300 boxes, nor by 20 sums of squares"):
+        least_point(polynomial(x4y2=1, x2y1=-2, x0y0=1), BOX, 1e-10)
+
+
+def test_what_the_search_in_floats_finds_is_believed_only_where_it_is_definite(monkeypatch):
+    # 8 + 3 x^2 + ... as it is spread: Q0 is definite, Q1 and Q2 are zero until the search has found some.
+    table = fmpq_mat(5, 5)
+    for exponents, c in {(0, 0): 8, (2, 0): 3, (0, 2): 3, (4, 0): 2, (0, 4): 2, (2, 2): 3}.items():
+        table[exponents] = fmpq(c)
+    assert not isinstance(gram_matrices(table), NoSquares)
+    monkeypatch.setattr(proof_squares, "_definite", lambda start: [fmpq(0)] * 18)
+    assert gram_matrices(table) == NoSquares((0.0, 0.0))

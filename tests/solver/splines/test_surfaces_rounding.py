@@ -1,5 +1,7 @@
 """Knots and cuts that differ by rounding: nothing as narrow as rounding is left behind, and none is confused."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -11,7 +13,7 @@ from semispline.solver.errors import KnotError
 from semispline.solver.judge.curvature import mean_curvature
 from semispline.solver.judge.de_boor import surface_points
 from semispline.solver.splines.curves import insert_curve_knots, restrict_curve, set_curve_continuity, split_curve
-from semispline.solver.splines.operations import insert_knots, split_u, split_v
+from semispline.solver.splines.operations import all_control_points, elevate_degree, insert_knots, split_u, split_v
 from semispline.solver.splines.refinement import snapped
 from semispline.solver.splines.surfaces import BSplineCurve, BSplineSurface, SemiStructuredSurface
 
@@ -157,3 +159,40 @@ def test_the_bound_of_a_merged_knot_is_met_within_a_factor_of_ten(degree):
     u, v = np.ones(4000), np.linspace(0, 1, 4000)
     moved = np.linalg.norm(surface_points(merged.surface, u, v) - surface_points(surface, u, v), axis=1).max()
     assert moved <= merged.change <= 10 * moved
+
+
+def many_kinds():
+    """Rows of different degrees and knots between -1 and 1, whose points far away are floats too."""
+    rng = np.random.default_rng(0)
+    rows = [curve_over(np.sort(rng.uniform(0, 1, n)), d, n) for d, n in ((1, 20), (2, 15), (3, 20), (5, 10), (3, 5))]
+    rows = [replace(row, control_points=(row.control_points + 1e6) - 1e6) for row in rows]
+    return SemiStructuredSurface(2, [0, 0, 0, 1 / 3, 2 / 3, 1, 1, 1], rows)
+
+
+@pytest.mark.parametrize("offset", [1e3, -1e6])
+@pytest.mark.parametrize(
+    "change",
+    [
+        lambda s: s.to_bspline(),
+        lambda s: elevate_degree(s, degree_v=7),
+        lambda s: insert_knots(s, knots_v=np.linspace(0.05, 0.93, 9)),
+        lambda s: insert_knots(between_of(s), np.linspace(0.05, 0.93, 9)),
+        lambda s: elevate_degree(between_of(s), 5),
+        lambda s: elevate_degree(between_of(s), degree_v=6),
+        lambda s: split_v(s, 0.31)[1],
+    ],
+)
+def test_far_from_the_origin_only_the_result_rounds(change, offset):
+    near = many_kinds()
+    far = replace(
+        near, control_curves=[replace(c, control_points=c.control_points + offset) for c in near.control_curves]
+    )
+    here, there = (all_control_points(change(s)) for s in (near, far))
+    # Half of the spacing, and what rounds near the origin.
+    assert np.abs((there - offset) - here).max() <= 0.501 * np.spacing(abs(offset))
+
+
+def between_of(surface):
+    """A surface of one kind that has the same points as one of the rows."""
+    row = surface.control_curves[2]
+    return BSplineSurface(1, 3, UNIT, row.knots, np.stack([row.control_points, row.control_points]))

@@ -1,0 +1,120 @@
+"""A smooth function of few unknowns between bounds: its least value by projected BFGS, from a Hessian that is given."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from semispline.solver.arrays import FloatArray
+
+# Steps, halvings of one step, and refusals of one, at most.
+_MOST_STEPS, _MOST_HALVINGS, _MOST_REFUSALS = 60, 12, 5
+# A step has to gain this fraction of what the slope promises.
+_ENOUGH = 1e-4
+# A model is at least so convex, in units of its most convex direction.
+_LEAST_CONVEX = 1e-6
+
+
+@dataclass(frozen=True, eq=False)
+class Point:
+    """A place, value and gradient there, and a model of the Hessian."""
+
+    x: FloatArray
+    value: float
+    gradient: FloatArray
+    hessian: FloatArray
+
+
+def descend(
+    function: Callable[[FloatArray], tuple[float, FloatArray]],
+    start: Point,
+    low: FloatArray,
+    high: FloatArray,
+    longest: FloatArray,
+    tolerance: float,
+) -> Point:
+    """Go down from a start until no entry of the gradient that bounds leave free exceeds the tolerance.
+
+    Parameters
+    ----------
+    function : callable
+        Value and gradient; the value is infinite where there is no admissible one.
+    start : Point
+    low, high : ndarray, shape (n,)
+        Bounds; where they are equal the unknown stays.
+    longest : ndarray, shape (n,)
+        Of each entry of a step.
+    tolerance : float
+
+    Source: J. Nocedal, S. Wright, Numerical Optimization, 2006, sections 3.1 and 6.1, with an active set of bounds.
+
+    Examples
+    --------
+    >>> x = np.array([3.0, 1.0])
+    >>> start = Point(x, 10.0, 2 * x, np.eye(2))
+    >>> end = descend(lambda y: (y @ y, 2 * y), start, np.array([1.0, -9]), np.array([9.0, 9]), np.ones(2), 1e-9)
+    >>> end.x.round(6)
+    array([ 1., -0.])
+    """
+    at = replace(start, hessian=convex(start.hessian))
+    for _ in range(_MOST_STEPS):
+        free = unbound(at.x, at.gradient, low, high)
+        if not len(free) or np.abs(at.gradient[free]).max() <= tolerance:
+            break
+        step = np.zeros_like(at.x)
+        step[free] = -np.linalg.solve(at.hessian[np.ix_(free, free)], at.gradient[free])
+        step /= max(1.0, float((np.abs(step) / longest).max()))
+        following = _stepped(function, at, step, low, high)
+        if following is None:
+            break
+        at = following
+    return at
+
+
+def unbound(x: FloatArray, gradient: FloatArray, low: FloatArray, high: FloatArray) -> NDArray[np.intp]:
+    """Return the unknowns that no bound holds back from going down."""
+    held = (low >= high) | ((x <= low) & (gradient > 0)) | ((x >= high) & (gradient < 0))
+    return np.flatnonzero(~held)
+
+
+def convex(hessian: FloatArray) -> FloatArray:
+    """Return the symmetric matrix with its eigenvalues made positive."""
+    values, vectors = np.linalg.eigh((hessian + hessian.T) / 2)
+    size = np.maximum(np.abs(values), _LEAST_CONVEX * np.abs(values).max())
+    return np.asarray((vectors * np.maximum(size, np.finfo(float).tiny)) @ vectors.T)
+
+
+def _stepped(
+    function: Callable[[FloatArray], tuple[float, FloatArray]],
+    at: Point,
+    step: FloatArray,
+    low: FloatArray,
+    high: FloatArray,
+) -> Point | None:
+    """Return the next place, the model of its Hessian updated; none where no part of the step goes down."""
+    refusals = 0
+    for _ in range(_MOST_HALVINGS):
+        x = np.clip(at.x + step, low, high)
+        moved = x - at.x
+        value, gradient = function(x)
+        # Where there is no value the way is shut: what is left of a step is not worth many trials.
+        refusals += not np.isfinite(value)
+        if refusals > _MOST_REFUSALS:
+            return None
+        if value <= at.value + _ENOUGH * float(at.gradient @ moved):
+            return Point(x, value, gradient, _updated(at.hessian, moved, gradient - at.gradient))
+        step = step / 2
+    return None
+
+
+def _updated(hessian: FloatArray, moved: FloatArray, change: FloatArray) -> FloatArray:
+    """Return the BFGS update, left out where the function is not convex along the step."""
+    curved = float(moved @ change)
+    pushed = hessian @ moved
+    known = float(moved @ pushed)
+    if curved <= 1e-12 * float(np.linalg.norm(moved) * np.linalg.norm(change)) or known <= 0:
+        return hessian
+    return np.asarray(hessian + np.multiply.outer(change, change) / curved - np.multiply.outer(pushed, pushed) / known)

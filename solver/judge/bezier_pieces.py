@@ -1,0 +1,193 @@
+"""A polynomial surface cut into its Bezier pieces: to be measured piece by piece, or evaluated fast on many grids."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from functools import cache
+from itertools import pairwise
+from math import perm
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from semispline.solver.arrays import FloatArray, SparseMatrix
+from semispline.solver.judge.parametric import ParametricSurface
+from semispline.solver.splines import BSplineSurface, SemiStructuredSurface, Surface, blossom_matrix, elevation_matrix
+
+# Polynomial pieces that are worked on at once: a long surface has more of them than memory should hold.
+_PIECES_AT_ONCE = 2048
+
+
+@dataclass(frozen=True, eq=False)
+class Part:
+    """Some spans of v.
+
+    Attributes
+    ----------
+    v_widths : ndarray, shape (S,)
+    rows : ndarray, shape (m + 1, 3 or 4, S, q + 1)
+        Bezier points of all rows; homogeneous for a rational surface.
+    is_last : bool
+        The spans are the last ones.
+    """
+
+    v_widths: FloatArray
+    rows: FloatArray
+    is_last: bool
+
+
+def parts_of(surface: Surface) -> Iterator[Part]:
+    """Cut a surface along v into parts of some polynomial pieces."""
+    q, n_u = surface.degree_v, len(surface.breakpoints[0]) - 1
+    v_breaks = surface.breakpoints[1]
+    groups, (n_rows, d) = _rows_by_knots(surface)
+    step = max(1, _PIECES_AT_ONCE // n_u)
+    for at in range(0, len(v_breaks) - 1, step):
+        breaks = v_breaks[at : at + step + 1]
+        nets = np.empty((n_rows, d, len(breaks) - 1, q + 1))
+        for group in groups:
+            degree = group.degree
+            # Of a long row only what these spans read.
+            low, high = np.searchsorted(group.knots, _middles(breaks)[[0, -1]], side="right") - 1
+            matrix = bezier_matrix(degree, group.knots[low - degree : high + degree + 2], breaks)
+            points = (matrix @ group.points[low - degree : high + 1]).reshape(-1, degree + 1, len(group.rows), d)
+            own = points.transpose(2, 3, 0, 1)
+            ends = np.repeat([0.0, 1.0], degree + 1)
+            nets[group.rows] = own @ elevation_matrix(degree, ends, q).toarray().T if degree < q else own
+        yield Part(np.diff(breaks), nets, at + step >= len(v_breaks) - 1)
+
+
+def bezier_matrix(degree: int, knots: FloatArray, breaks: FloatArray) -> SparseMatrix:
+    """Return the matrix that takes control points to Bezier points, shape (spans x (degree + 1), n).
+
+    Bezier point j of a span is the blossom at its start, degree - j times, and its end, j times. Which polynomial that
+    is the middle of the span decides: ends of spans may be merged knots, off by rounding.
+    """
+    ends = np.arange(degree) >= degree - np.arange(degree + 1)[:, None]
+    arguments = np.where(ends, breaks[1:, None, None], breaks[:-1, None, None])
+    return blossom_matrix(degree, knots, np.repeat(_middles(breaks), degree + 1), arguments.reshape(-1, degree))
+
+
+def bernstein(degree: int, t: FloatArray) -> FloatArray:
+    """Return the Bernstein polynomials at t, shape (len(t), degree + 1)."""
+    values = np.zeros((len(t), degree + 1))
+    values[:, 0] = 1.0
+    t = t[:, None]
+    for k in range(1, degree + 1):
+        raised = t * values[:, :k]
+        values[:, :k] -= raised
+        values[:, 1 : k + 1] += raised
+    return values
+
+
+@dataclass(frozen=True, eq=False)
+class _Rows:
+    """Rows over the same knots, as one curve: indices of the rows, points of shape (n, rows x coordinates)."""
+
+    rows: NDArray[np.intp]
+    degree: int
+    knots: FloatArray
+    points: FloatArray
+
+
+def _rows_by_knots(surface: Surface) -> tuple[list[_Rows], tuple[int, int]]:
+    """Return the rows of a surface, and how many rows of how many coordinates there are."""
+    if isinstance(surface, BSplineSurface):
+        n_u, n_v, d = surface.homogeneous.shape
+        points = surface.homogeneous.transpose(1, 0, 2).reshape(n_v, n_u * d)
+        return [_Rows(np.arange(n_u), surface.degree_v, surface.knots_v, points)], (n_u, d)
+    alike: dict[tuple[int, bytes], list[int]] = {}
+    for i, curve in enumerate(surface.control_curves):
+        alike.setdefault((curve.degree, curve.knots.tobytes()), []).append(i)
+    groups = []
+    for rows in alike.values():
+        curves = [surface.control_curves[i] for i in rows]
+        points = np.concatenate([curve.control_points for curve in curves], axis=1)
+        groups.append(_Rows(np.array(rows), curves[0].degree, curves[0].knots, points))
+    return groups, (len(surface.control_curves), 3)
+
+
+def _middles(breaks: FloatArray) -> FloatArray:
+    return np.asarray((breaks[:-1] + breaks[1:]) / 2)
+
+
+def in_pieces(surface: ParametricSurface) -> ParametricSurface:
+    """Return the same surface, evaluated many times as fast on small grids where it is a polynomial spline."""
+    if isinstance(surface, SemiStructuredSurface) or (isinstance(surface, BSplineSurface) and surface.weights is None):
+        return _Pieces.of(surface)
+    return surface
+
+
+@dataclass(frozen=True, eq=False)
+class _Pieces:
+    """A surface by the Bezier points of its rows, shape (S, q + 1, (m + 1) x 3), and by the matrix that cuts u."""
+
+    breakpoints: tuple[FloatArray, FloatArray]
+    degree_u: int
+    rows: FloatArray
+    cut_u: SparseMatrix
+    # Grids share their parameters.
+    known: dict[tuple[int, int, bytes], tuple[NDArray[np.intp], FloatArray]] = field(default_factory=dict)
+
+    @staticmethod
+    def of(surface: Surface) -> _Pieces:
+        rows = np.concatenate([part.rows for part in parts_of(surface)], axis=2)
+        rows = np.ascontiguousarray(rows.transpose(2, 3, 0, 1)).reshape(*rows.shape[2:], -1)
+        breaks = surface.breakpoints
+        return _Pieces(breaks, surface.degree_u, rows, bezier_matrix(surface.degree_u, surface.knots_u, breaks[0]))
+
+    @property
+    def domain(self) -> tuple[tuple[float, float], tuple[float, float]]:
+        """The ranges of u and v."""
+        u, v = self.breakpoints
+        return (float(u[0]), float(u[-1])), (float(v[0]), float(v[-1]))
+
+    def evaluate(self, u: ArrayLike, v: ArrayLike, du: int = 0, dv: int = 0) -> FloatArray:
+        """Return the point or a derivative at (u[k], v[k]), shape (K, 3)."""
+        (at_u, of_u), (at_v, of_v) = self._basis(0, u, du), self._basis(1, v, dv)
+        cut = np.asarray(self.cut_u.toarray()).reshape(-1, self.degree_u + 1, self.cut_u.shape[1])
+        rows = np.einsum("kj,kjx->kx", of_v, self.rows[at_v]).reshape(len(at_v), self.cut_u.shape[1], 3)
+        return np.asarray(np.einsum("ki,kim,kmd->kd", of_u, cut[at_u], rows))
+
+    def evaluate_grid(self, u: ArrayLike, v: ArrayLike, du: int = 0, dv: int = 0) -> FloatArray:
+        """Return the same on the grid u x v, shape (len(u), len(v), 3)."""
+        (at_u, of_u), (at_v, of_v) = self._basis(0, u, du), self._basis(1, v, dv)
+        rows = np.einsum("vj,vjx->vx", of_v, self.rows[at_v])
+        # Components apart, and each in one piece: what is done with them is then done fast.
+        turned = rows.reshape(len(at_v), -1, 3).transpose(1, 2, 0).reshape(-1, 3 * len(at_v))
+        pieces = (self.cut_u @ turned).reshape(-1, self.degree_u + 1, turned.shape[1])
+        found = np.empty((len(at_u), turned.shape[1]))
+        ends = [0, *(np.flatnonzero(at_u[1:] != at_u[:-1]) + 1).tolist(), len(at_u)]
+        for start, end in pairwise(ends):
+            found[start:end] = of_u[start:end] @ pieces[at_u[start]]
+        return found.reshape(len(at_u), 3, len(at_v)).transpose(0, 2, 1)
+
+    def _basis(self, axis: int, x: ArrayLike, order: int) -> tuple[NDArray[np.intp], FloatArray]:
+        """Return the piece of each parameter, and what each Bezier point of the piece has to do with the derivative."""
+        x = np.asarray(x, dtype=np.float64)
+        key = axis, order, x.tobytes()
+        if key not in self.known:
+            breaks = self.breakpoints[axis]
+            at = np.searchsorted(breaks[1:-1], x, side="right")
+            self.known[key] = at, _derivatives(self._degree(axis), x, breaks, at, order)
+        return self.known[key]
+
+    def _degree(self, axis: int) -> int:
+        return self.degree_u if axis == 0 else self.rows.shape[1] - 1
+
+
+def _derivatives(degree: int, x: FloatArray, breaks: FloatArray, at: NDArray[np.intp], order: int) -> FloatArray:
+    """Return the derivatives of the Bernstein polynomials of each parameter's own span, shape (len(x), degree + 1)."""
+    if order > degree:
+        return np.zeros((len(x), degree + 1))
+    start = breaks[at]
+    width = breaks[at + 1] - start
+    values = bernstein(degree - order, (x - start) / width)
+    return np.asarray(values @ _differences(degree, order) / width[:, None] ** order) if order else values
+
+
+@cache
+def _differences(degree: int, order: int) -> FloatArray:
+    """Return the matrix from Bezier points to those of a derivative, on a span of length 1."""
+    return np.asarray(perm(degree, order) * np.diff(np.eye(degree + 1), n=order, axis=0))

@@ -1,0 +1,73 @@
+"""What rounding of control points may do to the derivatives of a surface along an edge."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from semispline.solver.arrays import FloatArray
+from semispline.solver.judge.base import Base
+from semispline.solver.splines import BSplineSurface, bounding_box
+
+# The bound on rounding counts each control point once; a few operations follow before it is measured.
+_ROUNDINGS = 8.0
+
+
+def derivative_noises(base: Base, origin: FloatArray, order: int = 2) -> FloatArray:
+    """Bound what rounding may do to the derivatives, shape (order + 1, order + 1): across in rows, along in columns.
+
+    That of storing the control points, once, and that of some operations with them, which are counted from `origin`.
+    """
+    eps = float(np.finfo(float).eps)
+    box = bounding_box(base.surface)
+    stored = eps / 2 * float(np.linalg.norm(np.abs(box).max(axis=0)))
+    worked = _ROUNDINGS * eps * float(np.abs(box - origin).max())
+    across, along = _directions(base, order)
+    rational = isinstance(base.surface, BSplineSurface) and base.surface.weights is not None
+    at_end = base.edge[1] == "1"
+    first = np.max(
+        [_factors(degree, _end_widths(degree, knots, at_end, order), rational) for degree, knots in across], 0
+    )
+    second = np.max([_factors(degree, _inner_widths(degree, knots, order), rational) for degree, knots in along], 0)
+    return np.asarray((stored + worked) * np.multiply.outer(first, second))
+
+
+def _directions(base: Base, order: int) -> tuple[list[tuple[int, FloatArray]], list[tuple[int, FloatArray]]]:
+    """Return degree and knots across the edge, and along it: of each curve that is read."""
+    surface, across_u = base.surface, base.edge[0] == "u"
+    in_u = [(surface.degree_u, surface.knots_u)]
+    if isinstance(surface, BSplineSurface):
+        in_v = [(surface.degree_v, surface.knots_v)]
+    else:
+        curves = surface.control_curves
+        if across_u:
+            curves = curves[: order + 1] if base.edge[1] == "0" else curves[-order - 1 :]
+        in_v = [(curve.degree, curve.knots) for curve in curves]
+    return (in_u, in_v) if across_u else (in_v, in_u)
+
+
+def _end_widths(degree: int, knots: FloatArray, at_end: bool, order: int) -> list[float]:
+    """Return the least distance of knots that each order of difference at an end divides by: the first span."""
+    steps = np.abs(knots[::-1] - knots[-1]) if at_end else knots - knots[0]
+    return [float(steps[degree + 1])] * order
+
+
+def _inner_widths(degree: int, knots: FloatArray, order: int) -> list[float]:
+    """Return the least distance of knots that each order of difference divides by anywhere."""
+    result = []
+    for s in range(order):
+        p = max(degree - s, 1)
+        t = knots[degree - p : len(knots) - degree + p]
+        widths = t[1 + p : -1] - t[1 : -1 - p]
+        result.append(float(widths[widths > 0].min()))
+    return result
+
+
+def _factors(degree: int, widths: list[float], rational: bool) -> FloatArray:
+    """Return how much a derivative of each order, from 0, may magnify an error of the control points.
+
+    A quotient has derivatives above its degree too.
+    """
+    factors = [1.0]
+    for s, width in enumerate(widths):
+        factors.append(factors[-1] * 2 * max(degree - s, 1 if rational else 0) / width)
+    return np.array(factors)

@@ -1,0 +1,140 @@
+"""The table of a fair search: J, its gradient, what is refused, and how many nodes it takes."""
+
+import numpy as np
+import pytest
+
+from helpers.facing import random_facing
+from semispline import Base, BSplineSurface, transform
+from semispline.solver.blending.fairness_grid import NODES_U, across, along, rough_along
+from semispline.solver.blending.fairness_table import FOLDS, LOOPS, FairnessTable
+from semispline.solver.blending.pipeline import state_problem
+from semispline.solver.blending.refusals import needed_turn, turned
+
+QUINTIC = {"degree_u": 5, "middle_curves": 0, "alpha": "fair"}
+
+
+def sheet(x, height, slope, *, bend=0.3, inner=()):
+    """A curved sheet from x on whose edge u0 rises by `slope`; knots along v as given."""
+    v = np.linspace(0, 2, 4 + len(inner))
+    rows = [[[x + i * 0.5, y, height + slope * i * 0.5 + bend * np.sin(2 * y + i)] for y in v] for i in range(4)]
+    knots = [0.0] * 4 + list(inner) + [1.0] * 4
+    return BSplineSurface(3, 3, [0, 0, 0, 0, 1, 1, 1, 1], knots, rows)
+
+
+def sheets(**more):
+    """Two sheets that face each other: the first one turned round."""
+    first = transform(sheet(0.0, 0.0, 0.2, **more), np.diag([-1.0, 1.0, 1.0]))
+    return Base(first, "u0"), Base(sheet(1.2, 0.6, 0.4, bend=0.2, inner=(0.4,)), "u0")
+
+
+def table_of(pair, *, nodes_u=NODES_U, times=1, least_cosine=0.5, **options):
+    problem = state_problem(*pair, **(QUINTIC | options)).problem
+    layers, exponents = problem.shape_layers()
+    grid = across(problem.form.u, times * nodes_u), along(problem.rows, times)
+    return FairnessTable(problem, layers, *grid, least_cosine), exponents
+
+
+def monomials(x, y, p2_a=0.0, p2_b=0.0):
+    """1, p2, a, a^2 of side a; p2, b, b^2 of side b."""
+    return [1.0, p2_a, x, x**2, p2_b, y, y**2]
+
+
+@pytest.mark.parametrize("inner", [(), (0.5, 0.5)], ids=["smooth", "only C1 at v = 1/2"])
+@pytest.mark.parametrize("options", [{}, {"degree_u": 3, "middle_curves": 1}])
+def test_the_gradient_is_that_of_the_value(inner, options):
+    table, _ = table_of(sheets(inner=inner), **options)
+    assert table.along.lines.tolist() == ([0.5] if inner else [])
+    at = np.array([monomials(0.9, 1.1, 0.3, -0.2)])
+    measured, gradient = table.with_gradient(at)
+    assert measured.values == pytest.approx(table.measure(at).values, rel=1e-14)
+
+    def slope(k, h):
+        step = np.eye(at.shape[1])[k] * h
+        return float((table.measure(at + step).values - table.measure(at - step).values)[0] / (2 * h))
+
+    for k in range(at.shape[1]):
+        # Richardson: the error of the difference is of fourth order.
+        known = (4 * slope(k, 5e-5) - slope(k, 1e-4)) / 3
+        assert gradient[0, k] == pytest.approx(known, rel=1e-6, abs=1e-6 * abs(measured.values[0]))
+
+
+@pytest.mark.parametrize("inner", [(), (0.5, 0.5)])
+def test_a_batch_measures_what_each_alone_does(inner):
+    table, _ = table_of(sheets(inner=inner))
+    batch = np.array([monomials(x, y, z, -z) for x, y, z in ((0.5, 0.7, 0.0), (1, 2, 0.5), (8, 8, 0), (1.1, 0.9, 3))])
+    measured, gradients = table.with_gradient(batch)
+    for k, candidate in enumerate(batch):
+        alone, gradient = table.with_gradient(candidate[None])
+        assert measured.values[k] == pytest.approx(alone.values[0], rel=1e-12)
+        assert measured.refused[k] == alone.refused[0]
+        np.testing.assert_allclose(gradients[k], gradient[0], rtol=1e-9)
+    assert measured.refused[2] != 0
+    assert not measured.refused[[0, 1]].any()
+
+
+def test_six_nodes_on_the_span_of_a_quintic_are_too_few():
+    # The trap that the number of nodes avoids: the usual rule of a node more than the degree.
+    at = np.array([monomials(0.35, 2.0)])
+    right, coarse, fine = (
+        float(table_of(sheets(), nodes_u=nodes, times=times)[0].measure(at).values[0])
+        for nodes, times in ((NODES_U, 1), (6, 1), (NODES_U, 3))
+    )
+    assert right == pytest.approx(fine, rel=0.01)
+    assert coarse != pytest.approx(fine, rel=0.01)
+
+
+def test_a_rough_look_has_few_nodes_however_many_spans():
+    short, long = (state_problem(*sheets(inner=inner), **QUINTIC).problem for inner in ((), np.arange(1, 40) / 40))
+    assert rough_along(short.rows).nodes.size <= 12
+    assert rough_along(long.rows).nodes.size == 12
+    assert along(long.rows).nodes.size == 80
+
+
+def strips():
+    """Flat strips at a distance of 2."""
+    knots = [0, 0, 1, 1]
+    left = BSplineSurface(1, 1, knots, knots, [[[0, 0, 0], [0, 1, 0]], [[1, 0, 0], [1, 1, 0]]])
+    right = BSplineSurface(1, 1, knots, knots, [[[3, 0, 0], [3, 1, 0]], [[4, 0, 0], [4, 1, 0]]])
+    return Base(left, "u1"), Base(right, "u0")
+
+
+def test_what_is_reversed_folds():
+    table, _ = table_of(strips())
+    refused = table.measure(np.array([monomials(1, 1), monomials(4, 4), monomials(0.3, 0.3)])).refused
+    assert refused.tolist() == [0, FOLDS, 0]
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_eight_times_the_arc_is_a_loop_for_g4(seed):
+    options = {"continuity": "G4", "degree_u": 9}
+    pair = random_facing(np.random.default_rng([11, seed]), most_angle=60)
+    problem = state_problem(*pair, **(QUINTIC | options)).problem
+    # Whatever folds.
+    table, exponents = table_of(pair, least_cosine=-2.0, **options)
+    powers = np.concatenate([[0.0], exponents[0][1:, 0], exponents[1][1:, 0]])
+    fair, far = (table.measure(((factor * problem.exits.arc) ** powers)[None]) for factor in (0.6, 8))
+    assert fair.refused[0] == 0
+    assert far.refused[0] == LOOPS
+
+
+def tangents(degrees, up=(0, 1, 0)):
+    """Unit tangents in the plane of x and `up`, at angles from x: shape (3, n, 1)."""
+    angle = np.radians(np.asarray(degrees, dtype=float))
+    return (np.multiply.outer([1, 0, 0], np.cos(angle)) + np.multiply.outer(up, np.sin(angle)))[..., None]
+
+
+@pytest.mark.parametrize(
+    ("first", "last", "needed"),
+    # An arch by twice, an S by four times its angle; beyond 90 degrees the other way round may be less.
+    [(50, -50, 100), (50, 50, 200), (0, 0, 0), (0, 60, 120), (170, -170, 340), (135, 135, 360)],
+)
+def test_the_biarc_between_two_exits(first, last, needed):
+    ends = tangents([first, last])
+    chord = np.array([[2.0], [0], [0]])
+    assert np.degrees(needed_turn(ends[:, 0], ends[:, 1], chord)) == pytest.approx(needed)
+
+
+def test_turning_is_the_length_on_the_sphere():
+    back_and_forth = [0, 20, 40, 20, 0, -10]
+    assert np.degrees(turned(tangents(back_and_forth))) == pytest.approx(90)
+    assert np.degrees(turned(tangents(back_and_forth, (0, 0.6, 0.8)) * 7)) == pytest.approx(90)

@@ -1,0 +1,78 @@
+"""Projected BFGS: known minima, inside and at bounds, and ways that are shut."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from semispline.solver.blending.projected import Point, convex, descend, unbound
+
+WIDE = np.full(2, -np.inf), np.full(2, np.inf)
+
+
+def rosenbrock(x):
+    return (1 - x[0]) ** 2 + 100 * (x[1] - x[0] ** 2) ** 2, np.array(
+        [-2 * (1 - x[0]) - 400 * x[0] * (x[1] - x[0] ** 2), 200 * (x[1] - x[0] ** 2)]
+    )
+
+
+def started(function, x, hessian=None):
+    value, gradient = function(np.array(x, dtype=float))
+    return Point(np.array(x, dtype=float), value, gradient, np.eye(len(x)) if hessian is None else hessian)
+
+
+def test_a_bent_valley_is_followed_to_its_end():
+    end = descend(rosenbrock, started(rosenbrock, [-1.2, 1.0]), *WIDE, np.ones(2), 1e-8)
+    np.testing.assert_allclose(end.x, 1.0, atol=1e-6)
+    assert np.abs(end.gradient).max() <= 1e-8
+
+
+def test_a_hessian_that_is_not_convex_is_no_obstacle():
+    end = descend(rosenbrock, started(rosenbrock, [-1.2, 1.0], np.diag([-5.0, 1e-9])), *WIDE, np.ones(2), 1e-8)
+    np.testing.assert_allclose(end.x, 1.0, atol=1e-6)
+
+
+@given(st.lists(st.floats(-2, 2), min_size=6, max_size=6))
+def test_a_convex_quadratic_ends_where_no_free_slope_is_left(numbers):
+    a, b, c, d, low_x, low_y = numbers
+    matrix = np.array([[a, b], [c, d]])
+    matrix = matrix.T @ matrix + np.eye(2)
+    low, high = np.array([low_x, low_y]), np.array([low_x, low_y]) + 1
+
+    def quadratic(x):
+        off = x - np.array([0.3, -0.4])
+        return float(off @ matrix @ off) / 2, matrix @ off
+
+    end = descend(quadratic, started(quadratic, (low + high) / 2), low, high, np.ones(2), 1e-7)
+    assert np.all((low <= end.x) & (end.x <= high))
+    free = unbound(end.x, end.gradient, low, high)
+    assert np.abs(end.gradient[free]).max(initial=0.0) <= 1e-7
+    # No point of the box is lower.
+    corners = np.array([[x, y] for x in np.linspace(0, 1, 9) for y in np.linspace(0, 1, 9)]) + low
+    assert end.value <= min(quadratic(x)[0] for x in corners) + 1e-9
+
+
+def test_an_unknown_without_room_stays():
+    start = started(rosenbrock, [-1.0, 0.5])
+    end = descend(rosenbrock, start, np.array([-1.0, -5]), np.array([-1.0, 5]), np.ones(2), 1e-9)
+    np.testing.assert_allclose(end.x, [-1.0, 1.0], atol=1e-8)
+
+
+def test_where_the_way_is_shut_it_ends_before_the_wall():
+    calls = 0
+
+    def walled(x):
+        nonlocal calls
+        calls += 1
+        return (np.inf if x[0] > 0.5 else float((x[0] - 1) ** 2), np.array([2 * (x[0] - 1), 0.0]))
+
+    end = descend(walled, started(walled, [0.0, 0.0]), *WIDE, np.ones(2), 1e-9)
+    assert 0.3 < end.x[0] <= 0.5
+    assert np.isfinite(end.value)
+    assert calls < 60
+
+
+def test_convex_keeps_what_is_convex():
+    matrix = np.array([[2.0, 1], [1, 3]])
+    np.testing.assert_allclose(convex(matrix), matrix)
+    assert np.linalg.eigvalsh(convex(np.diag([-1.0, 2.0]))) == pytest.approx([1.0, 2.0])
