@@ -10,16 +10,16 @@ from semispline import SemisplineError, blend, measure_fairness, measure_turn
 from semispline.papers.reproduction.families.problems import Family, ShapeProblem
 from semispline.papers.reproduction.families.suite import SIZES, shape_problem
 
-CANDIDATES = {
+CANDIDATES: dict[str, dict[str, Any]] = {
     f"degree {degree}, {'one middle curve' if middle else 'none'}": {
         "alpha": "fair",
         "degree_u": degree,
         "middle_curves": middle,
-        "v_scale": "length",
+        "alpha_v": "constant",
     }
     for degree in (3, 4, 5)
     for middle in (0, 1)
-}
+} | {"degree 5, none, linear alpha": {"degree_u": 5, "middle_curves": 0, "alpha_v": "linear"}, "the default": {}}
 # Two that may be tried both.
 PAIR = ("degree 5, none", "degree 5, one middle curve")
 # So many of each family, evenly spread over its seeds.

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, get_args
 
 import numpy as np
@@ -19,8 +19,8 @@ _HEAD = """\
 Made by `make shapes`; do not edit. Every pair of the families in `papers/reproduction/families/` is blended twice, with
 G2 on both sides, and what comes out is measured by `solver/judge/` alone:
 
-- the *fair* set, {fair}
-- the *energy* set, the paper's choice, {energy}
+- the *fair* set, what a user gets: {fair}
+- the *energy* set, the paper's choice (cubic, one middle curve, its scale of v): {energy}
 
 What is counted:
 
@@ -87,9 +87,8 @@ def _faults(row: Row) -> list[str]:
     return found
 
 
-def _options(options: object) -> str:
-    assert hasattr(options, "items")
-    return ", ".join(f"`{name}={value!r}`" for name, value in options.items())
+def _options(options: Mapping[str, Any]) -> str:
+    return f"`blend({', '.join(['a', 'b', *(f'{name}={value!r}' for name, value in options.items())])})`"
 
 
 def _of(rows: Sequence[Row], family: Family) -> list[Row]:
@@ -223,9 +222,10 @@ def _listed(rows: Sequence[Row]) -> str:
 
 def _candidates(compared: Compared) -> str:
     text = (
-        'alpha by fairness with each; middle curves by thin plate with `v_scale="length"`. In how many pairs it is the '
-        "best of the six; A · GH over that of the best (median, 90 %, largest); how often refused, at a bound, and "
-        "turning by more than 30 degrees; median of converted points. The last line takes the fairer of two.\n\n"
+        "alpha² constant unless said otherwise, by fairness with each; middle curves by thin plate with v scaled by "
+        "length, on every fourth knot. In how many pairs it is the best of all; A · GH over that of the best (median, "
+        "90 %, largest); how often refused, at a bound, and turning by more than 30 degrees; median of converted points. "
+        "The last line takes the fairer of two.\n\n"
     )
     parts = []
     for family in FAMILIES:

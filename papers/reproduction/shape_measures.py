@@ -22,8 +22,8 @@ from semispline.solver.judge import (
 from semispline.solver.proof import least_point
 
 # The two sets that the suite compares: what a user gets, and the paper's choice.
-FAIR_SET: Mapping[str, Any] = {"alpha": "fair", "degree_u": 5, "middle_curves": 0}
-ENERGY_SET: Mapping[str, Any] = {"alpha": "energy", "degree_u": 3, "middle_curves": 1, "v_scale": "paper"}
+FAIR_SET: Mapping[str, Any] = {}
+ENERGY_SET: Mapping[str, Any] = {"alpha": "energy"}
 # What a warning of a fold says.
 _SAYS_FOLD = ("fold", "turns")
 # Where alpha^2 and beta^2 are sought without a box, in natural units; and, of the energy there, how near to the least
@@ -37,7 +37,9 @@ class Shape:
 
     Attributes
     ----------
-    alpha2, beta2 : float or None
+    layout : str
+        Degree across, middle curves, and whether alpha^2 is constant or linear along v.
+    alpha2, beta2 : float, (float, float) or None
     at_bound : tuple of str
     warnings : tuple of str
     turn_degrees : float
@@ -57,6 +59,7 @@ class Shape:
         Processor time of `blend`, all its checks included.
     """
 
+    layout: str
     alpha2: Any
     beta2: Any
     at_bound: tuple[str, ...]
@@ -129,10 +132,11 @@ def judged(
 
 def shape_of(result: BlendResult, a: Base, b: Base, seconds: float) -> Shape:
     """Measure a blend of two bases."""
-    surface = result.surface
+    surface, options = result.surface, result.options
     fairness, exits, waist = measure_fairness(surface), measure_exits(surface), measure_waist(surface)
     n_u, n_v = surface.to_bspline().control_points.shape[:2]
     return Shape(
+        layout=f"degree {options.degree_u}, {options.middle_curves} middle, {options.alpha_v} alpha",
         alpha2=result.alpha2,
         beta2=result.beta2,
         at_bound=result.active_bounds,

@@ -25,6 +25,7 @@ from semispline.papers.reproduction.shape_suite import Row, quotients, run_probl
 from semispline.solver.blending.pipeline import state_problem
 
 GOOD = Shape(
+    layout="degree 5, 0 middle, constant alpha",
     alpha2=1.0,
     beta2=1.0,
     at_bound=(),
