@@ -38,8 +38,9 @@ def choice_of_alpha() -> Iterator[Finding]:
         "alpha^2 <= 0",
         "There (11) is least where the blend would leave a base backwards. "
         f"{wants['below 1/8']} more want less than an eighth of the natural size, a crease at the seam; held within "
-        f"1/8 to 8 of it, {energy['at_bound']} end at a bound, {energy['turns_30']} turn by more than 30 degrees within "
-        f"a fiftieth of the length and {energy['folds']} fold. With the least area times integral of |grad H|^2 instead "
+        f"1/8 to 8 of it, {energy['at_bound']} end at a bound, {energy['turns_30']} turn by more than 30 degrees "
+        f"within a fiftieth of the length and {energy['folds']} fold. With the least area times integral of |grad H|^2 "
+        f"instead "
         f"{fair['at_bound']} end at a bound, {fair['turns_30']} turn by more than 30 degrees and {fair['folds']} fold; "
         f"that measure is {median:.2g} times as large in the median. Of {turns['energy']['problems']} U-turns "
         f"{turns['energy']['folds']} fold with least energy, {turns['fair']['folds']} with the fairest shape; of "
