@@ -45,6 +45,22 @@ def paper_sizes_table() -> tuple[str, Table]:
     return title, result
 
 
+def fair_table() -> tuple[str, Table]:
+    """Show the fairest blend against that of least energy."""
+    median, most = paper_sizes.FAIR_LIMITS
+    title = (
+        f"The whole default blend (fairest shape) over that of least energy, checks included: {median:g} times in the "
+        f"median, {most:g} at most"
+    )
+    ratios = paper_sizes.fair_ratios()
+    result = table("pair", "times", "")
+    for name, ratio in ratios.items():
+        result.add_row(name, f"{ratio:.2f}", verdict(ratio < most))
+    middle = float(np.median(list(ratios.values())))
+    result.add_row("median", f"{middle:.2f}", verdict(middle < median))
+    return title, result
+
+
 def race_table() -> tuple[str, Table]:
     """Show casadi against bfgs."""
     race = paper_sizes.race()
@@ -91,7 +107,7 @@ def main() -> None:
         f"Python {platform.python_version()}, NumPy {np.__version__}, SciPy {scipy.__version__}, "
         f"CasADi {casadi.__version__}, {platform.machine()}; each time is the least of several runs"
     )
-    for make in (paper_sizes_table, race_table, growth_table):
+    for make in (paper_sizes_table, fair_table, race_table, growth_table):
         console.print("", *make(), sep="\n")
     largest, refused, message = long_contacts.trusted_sizes()
     beyond = f"refused with {refused}: {message}" if refused else "refused with none that was tried"

@@ -19,6 +19,7 @@ from semispline.derivations.contact import (
 )
 from semispline.derivations.energy import SECOND_DERIVATIVES, gram_block, thin_plate_density
 from semispline.derivations.fairness import fairness_program
+from semispline.derivations.linear_alpha import linear_powers
 from semispline.derivations.shape import MAX_POWER, contact_row_powers, energy_polynomial, product_symbol
 from semispline.derivations.splines import end_derivatives, span_symbols
 
@@ -138,6 +139,19 @@ def chain_table_routine(order: int) -> Routine:
         form="matrix",
         values=tuple(row for exponents in chain_monomials(order) for row in _rows(tables[exponents])),
         names=("T",),
+    )
+
+
+def linear_powers_routine(order: int) -> Routine:
+    """Return `linear_powers_n()`: powers of a linear function by its end values."""
+    return Routine(
+        name=f"linear_powers_{order}",
+        summary=f"Rows (i, i0, i1, c): (a0 (1 - s) + a1 s)^i sums c a0^i0 a1^i1 (1 - s)^i0 s^i1; i <= {order}.",
+        source="derivations/linear_alpha.py",
+        arguments=(),
+        form="matrix",
+        values=tuple(tuple(map(Integer, row)) for row in linear_powers(order)),
+        names=("powers",),
     )
 
 
@@ -263,7 +277,9 @@ def generated_files() -> dict[str, str]:
         for routine in (derivative_rows_routine, chain_monomials_routine, chain_table_routine)
     )
     title = "Rows of a blend from its derivatives at a contact, and these from the chain rule"
-    files["rows_numpy.py"] = python_module(title, contact_sources, rows, NUMPY)
+    files["rows_numpy.py"] = python_module(
+        title, (*contact_sources, "derivations/linear_alpha.py"), (*rows, linear_powers_routine(MAX_ORDER)), NUMPY
+    )
     source, program = "derivations/fairness.py", fairness_program()
     summary = "|grad H|^2 per du dv, area element, mean curvature, speed along u"
     files["fairness_numpy.py"] = program_module(

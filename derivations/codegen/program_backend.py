@@ -86,10 +86,13 @@ def operations(program: Program) -> int:
 def program_module(title: str, source: str, functions: Sequence[str]) -> str:
     """Return the text of one generated file that holds the functions."""
     body = "\n\n".join(functions)
+    # Each function says in its docstring how many it has.
+    total = sum(int(text.partition("Operations: ")[2].partition(".")[0]) for text in functions)
     return (
         f'"""{title} (NumPy).\n\n'
         f"Written by `semispline generate` from {source}.\n"
-        'Do not edit: change the derivation and generate again.\n"""\n\n'
+        "Do not edit: change the derivation and generate again.\n"
+        f'Operations: {total} in {len(functions)} functions.\n"""\n\n'
         "from __future__ import annotations\n\nfrom collections.abc import Callable, Iterable\n\n"
         "import numpy as np\nfrom numpy.typing import NDArray\n\n"
         f"FloatArray = NDArray[np.float64]\n\n\n{body}"

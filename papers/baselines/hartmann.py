@@ -33,7 +33,7 @@ _PIECES = np.arange(9) / 8
 
 
 def weight(t: FloatArray, n: int, mu: float, order: int = 0) -> FloatArray:
-    """Return f or its first or second derivative.
+    """Return f or a derivative of it.
 
     Examples
     --------

@@ -54,7 +54,7 @@ class FormulaSurface:
     Attributes
     ----------
     at : callable
-        (u, v, du, dv) -> shape (K, 3), for arrays u, v of shape (K,) and du + dv <= 2.
+        (u, v, du, dv) -> shape (K, 3), for arrays u, v of shape (K,) and du + dv <= 3.
     breakpoints_u, breakpoints_v : ndarray
         Their ends are the domain.
     """

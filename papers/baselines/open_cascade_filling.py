@@ -8,6 +8,7 @@ unit square by a Coons map of its four edges, so that it is measured like the ot
 from __future__ import annotations
 
 import time
+from itertools import product
 from math import comb
 from typing import Any
 
@@ -135,30 +136,35 @@ def _on_unit_square(plate: BSplineSurface, a: ContactSide, b: ContactSide) -> Fo
 def _chain(
     plate: BSplineSurface, parameters: BSplineSurface, x: FloatArray, y: FloatArray, du: int, dv: int
 ) -> FloatArray:
-    """Return plate(parameters(x, y)) or its derivatives of order 1 and 2, by the chain rule."""
+    """Return a derivative of plate(parameters(x, y)), by the chain rule: a term for each way to part the directions."""
     p, q = parameters.evaluate(x, y)[:, :2].T
     # A foot point on an edge of the plate's domain may be off by rounding.
     (p0, p1), (q0, q1) = plate.domain
     p, q = np.clip(p, p0, p1), np.clip(q, q0, q1)
+    total = np.zeros((len(p), 3))
+    for groups in partitions("u" * du + "v" * dv):
+        inner = [parameters.evaluate(x, y, group.count("u"), group.count("v"))[:, :2] for group in groups]
+        for axes in product((0, 1), repeat=len(groups)):
+            factor = np.prod([part[:, axis] for part, axis in zip(inner, axes, strict=True)], axis=0)
+            total += factor[..., None] * plate.evaluate(p, q, axes.count(0), axes.count(1))
+    return total
 
-    def d(i: int, j: int) -> FloatArray:
-        return plate.evaluate(p, q, i, j)
 
-    if du + dv == 0:
-        return d(0, 0)
-    first, second = ([(1, 0)] * du + [(0, 1)] * dv + [(0, 0)])[:2]
-    one = parameters.evaluate(x, y, *first)[:, :2]
-    if du + dv == 1:
-        return one[:, :1] * d(1, 0) + one[:, 1:] * d(0, 1)
-    two, both = parameters.evaluate(x, y, *second)[:, :2], parameters.evaluate(x, y, du, dv)[:, :2]
-    mixed = one[:, 0] * two[:, 1] + one[:, 1] * two[:, 0]
-    return (
-        (one[:, 0] * two[:, 0])[:, None] * d(2, 0)
-        + mixed[:, None] * d(1, 1)
-        + (one[:, 1] * two[:, 1])[:, None] * d(0, 2)
-        + both[:, :1] * d(1, 0)
-        + both[:, 1:] * d(0, 1)
-    )
+def partitions(letters: str) -> list[list[str]]:
+    """Return all ways to part letters into groups.
+
+    Examples
+    --------
+    >>> partitions("uv")
+    [['uv'], ['u', 'v']]
+    """
+    if not letters:
+        return [[]]
+    found = []
+    for rest in partitions(letters[1:]):
+        found += [[*rest[:i], letters[0] + group, *rest[i + 1 :]] for i, group in enumerate(rest)]
+        found.append([letters[0], *rest])
+    return found
 
 
 def closest_parameters(surface: BSplineSurface, points: FloatArray) -> FloatArray:

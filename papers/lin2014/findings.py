@@ -6,7 +6,8 @@ from collections.abc import Callable, Iterable, Iterator
 
 from semispline.papers.reproduction import ROUNDING, Comparison, Comparisons, Finding, Measures, reached
 
-AS_PRINTED, CORRECTED, LEAST = "paper-as-printed", "paper-corrected", "semistructured-reduced"
+AS_PRINTED, CORRECTED = "paper-as-printed", "paper-corrected"
+LEAST, FAIR = "semistructured-reduced", "semistructured-fair"
 # Second derivatives across a contact agree up to rounding: a fraction of the larger of both.
 C2_LIMIT = 1e-9
 # Energies count as the same within this fraction: a search by finite differences stops there.
@@ -17,7 +18,7 @@ def findings(comparisons: Comparisons) -> tuple[Finding, ...]:
     """Return what was found; a rival that cannot be used on any example is left out."""
     makers: tuple[Callable[[Comparisons], Iterator[Finding]], ...] = (
         _corrected, _as_printed, _search, _same_knots, _tangent_only, _lower, _hartmann, _bloor_wilson, _tools,
-        _real_pair,
+        _fair, _real_pair,
     )  # fmt: skip
     return tuple(finding for make in makers for finding in make(comparisons))
 
@@ -183,25 +184,69 @@ def _tools(comparisons: Comparisons) -> Iterator[Finding]:
         )
 
 
-def _real_pair(comparisons: Comparisons) -> Iterator[Finding]:
-    """Say what the blends of real CAD surfaces look like, beyond their contact."""
-    for example in (name for name in comparisons if not name.startswith("figure-") and name != "made"):
-        blends = [
-            (contact, by_method(comparisons, method).get(example))
-            for contact, method in (("C2", "semistructured-c2"), ("G2", LEAST))
+def _fair(comparisons: Comparisons) -> Iterator[Finding]:
+    """Set the fairest blends beside those of least energy, and name the exact rivals that are fairer still."""
+    fair, least = by_method(comparisons, FAIR), by_method(comparisons, LEAST)
+    both = [e for e in fair if e in least]
+    if not both:
+        return
+    quotient = {e: value / ours for e in both if (ours := fair[e][1].fairness) and (value := least[e][1].fairness)}
+    better = [e for e in both if not fair[e][1].folds and (least[e][1].folds or quotient.get(e, 0.0) > 1)]
+    folded = [e for e in both if least[e][1].folds]
+    turns = [_range((found[e][1].turn_degrees for e in both), ".0f") for found in (fair, least)]
+    cost = [100 * (fair[e][1].energy / least[e][1].energy - 1) for e in both]
+    points = [_count(fair[e][0]) / _count(least[e][0]) for e in both]
+    yield Finding(
+        f"The fairest blend, which is the default, beats that of least energy in {_of(better, both)} examples",
+        f"Both have G2 contact. Area times the integral of |grad H|^2 is {_range(quotient.values(), '.3g')} times as "
+        f"much where alpha, beta and a middle curve minimise (11), which folds in {_names(folded)}; the normal turns "
+        f"by up to {turns[1]} degrees there within a fiftieth of the length, and by {turns[0]} on the fairest. That "
+        f"changes (11) by {_range(cost, '+.2g')} % and takes {_range(points, '.2g')} times the control points. "
+        f"{_fairer_rivals(comparisons, fair)}",
+    )
+
+
+def _fairer_rivals(comparisons: Comparisons, fair: dict[str, tuple[Comparison, Measures]]) -> str:
+    """Return a sentence on the exact G2 rivals without a fold that are fairer somewhere."""
+    named = []
+    for name in dict.fromkeys(c.method.name for found in comparisons.values() for c in found):
+        found = {} if name == FAIR else by_method(comparisons, name)
+        where = [
+            e
+            for e, (c, m) in found.items()
+            if e in fair and reached(c.task, m) == "G2" and not m.folds and _is_fairer(m, fair[e][1])
         ]
-        shown = [(contact, found[1]) for contact, found in blends if found is not None]
-        if not shown:
+        if where:
+            named.append(f"{found[where[0]][0].method.title} ({_names(where)})")
+    return f"Of all other methods with exact G2 and no fold, fairer somewhere: {', '.join(named) or 'none'}."
+
+
+def _is_fairer(one: Measures, other: Measures) -> bool:
+    return one.fairness is not None and other.fairness is not None and one.fairness < other.fairness
+
+
+def _real_pair(comparisons: Comparisons) -> Iterator[Finding]:
+    """Say what least energy and the search for the fairest shape make of real CAD surfaces, beyond their contact."""
+    titles = (("C2, least energy", "semistructured-c2"), ("G2, least energy", LEAST), ("G2, fairest shape", FAIR))
+    for example in (name for name in comparisons if not name.startswith("figure-") and name != "made"):
+        found = {title: by_method(comparisons, method).get(example) for title, method in titles}
+        blends = {title: one for title, one in found.items() if one is not None}
+        fair = blends.get("G2, fairest shape")
+        if fair is None or len(blends) == 1:
             continue
+        folded = [title for title, (_, m) in blends.items() if m.folds]
         words = "; ".join(
-            f"the {contact} blend {'folds over itself' if m.folds else 'does not fold'}: its normal turns by up to "
-            f"{m.turn_degrees:.0f} degrees within a fiftieth of its length, its least area element is "
-            f"{m.least_area_ratio:.2g} of the mean"
-            for contact, m in shown
+            f"{title}: the normal turns by up to {m.turn_degrees:.0f} degrees within a fiftieth of the length, the "
+            f"least area element is {m.least_area_ratio:.2g} of the mean, {_count(c)} control points, energy "
+            f"{m.energy:.4g}"
+            for title, (c, m) in blends.items()
         )
+        exact = all(reached(c.task, m) == "G2" for c, m in blends.values())
         yield Finding(
-            f"On the real pair ({example}) the contact is exact, the shape is not one to build",
-            f"The gap closes to a narrow corner at one end, and there {words}.",
+            f"On the real pair ({example}) {len(folded)} of {len(blends)} blends fold, and the fairest does "
+            f"{'so too' if fair[1].folds else 'not'}",
+            f"{'Each of them meets both bases exactly. ' * exact}The gap closes to a narrow corner at one end, and "
+            f"there shapes differ. {words}.",
         )
 
 

@@ -21,7 +21,7 @@ class Results:
     comparisons : mapping
         Every method on every example.
     blends : Table
-        C2 and G2 blends of the pairs, edge by edge.
+        Blends of the pairs by our own solver, edge by edge.
     pictures : mapping
         Name of a drawing -> its PNG file.
     environment : mapping

@@ -20,6 +20,7 @@ from semispline.solver.blending import thin_plate_energy
 from semispline.solver.judge import (
     ParametricSurface,
     geometry_grid,
+    measure_fairness,
     measure_regularity,
     measure_turn,
     model_size,
@@ -46,6 +47,9 @@ class Measures:
         Thin-plate energy (11) over [0, 1] x the v-domain of a's edge.
     bending : float or None
         Integral of k1^2 + k2^2 over the surface; None where it does not settle, as on a folded surface.
+    fairness : float or None
+        Area times integral of |grad H|^2, with what jumps of H add; None where the surface folds inside, or where it
+        does not settle.
     area : float
     control_points, iterations : int or None
     seconds : float
@@ -65,6 +69,7 @@ class Measures:
     contact_b: ContactMeasure
     energy: float
     bending: float | None
+    fairness: float | None
     area: float
     control_points: int | None
     iterations: int | None
@@ -111,6 +116,7 @@ def measure(task: BlendTask, outcome: Outcome) -> Measures:
         contact_measure(side, surface, end, aligned=outcome.aligned) for end, side in enumerate(sides)
     )
     bending, area = bending_and_area(surface)
+    turn = measure_turn(surface)
     own = mean_curvature_range(surface)
     others = [mean_curvature_range(side.surface) for side in sides]
     return Measures(
@@ -118,12 +124,13 @@ def measure(task: BlendTask, outcome: Outcome) -> Measures:
         contact_b,
         plate_energy(surface),
         bending,
+        None if turn.is_fold else settled_fairness(surface),
         area,
         outcome.control_points,
         outcome.iterations,
         outcome.seconds,
         least_area_ratio(surface),
-        measure_turn(surface).degrees,
+        turn.degrees,
         own,
         (min(own[0], *(low for low, _ in others)), max(own[1], *(high for _, high in others))),
         seam_measure(surface) if task.closed else None,
@@ -153,6 +160,12 @@ def bending_and_area(surface: ParametricSurface) -> tuple[float | None, float]:
     (rough, _), (fine, area) = found
     # NaN where the surface is degenerate, which fails the comparison.
     return (fine if abs(fine - rough) <= _SETTLED * abs(fine) else None), area
+
+
+def settled_fairness(surface: ParametricSurface) -> float | None:
+    """Return area times integral of |grad H|^2, jumps of H included; None where it does not settle."""
+    found = measure_fairness(surface)
+    return found.value if found.settled else None
 
 
 def least_area_ratio(surface: ParametricSurface) -> float:

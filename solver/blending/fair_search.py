@@ -21,7 +21,8 @@ from semispline.solver.blending.fairness_grid import (
     along,
     rough_along,
 )
-from semispline.solver.blending.fairness_table import LEAST_COSINE, FairnessTable
+from semispline.solver.blending.fairness_table import FOLDS, LEAST_COSINE, LOOPS, FairnessTable
+from semispline.solver.blending.linear_alpha import LinearInV
 from semispline.solver.blending.problem import BlendProblem
 from semispline.solver.blending.projected import Point, descend, unbound
 from semispline.solver.errors import ComputationError
@@ -52,9 +53,10 @@ class FairSolution:
 
     Attributes
     ----------
-    a, b : float
-        alpha^2 and beta^2, in the parameters of the bases.
-    p2 : (float, float)
+    a, b : float or (float, float)
+        alpha^2 and beta^2, in the parameters of the bases; where linear in v the values at its start and its end.
+    p2 : pair
+        Numbers; where tied to a linear alpha^2 pairs of end values.
     value : float
         J, on the finer grid.
     slope : float
@@ -64,25 +66,60 @@ class FairSolution:
         Evaluations of J.
     refused : dict
         How many candidates were refused for each reason, "folds" and "loops".
+    condoned : tuple of str
+        What is no longer refused, because every candidate was: "folds", then "loops" too.
     """
 
-    a: float
-    b: float
-    p2: tuple[float, float]
+    a: LinearInV
+    b: LinearInV
+    p2: tuple[LinearInV, LinearInV]
     value: float
     slope: float
     tried: int
     refused: dict[str, int]
+    condoned: tuple[str, ...] = ()
 
 
-def solve_fair(problem: BlendProblem) -> FairSolution:
+def solve_fair(problem: BlendProblem, known: FairSolution | None = None) -> FairSolution:
     """Find the shape parameters of the fairest blend.
+
+    Where the bases are so rough, or face each other so badly, that every candidate is refused, the fairest of them is
+    taken all the same: what is wrong with it is measured on the finished surface, and said.
+
+    Parameters
+    ----------
+    problem : BlendProblem
+    known : FairSolution, optional
+        That for constant alpha, from where the search for a linear one starts, too.
 
     Raises
     ------
     ComputationError
-        Every candidate is refused, or what is left cannot be measured.
+        No candidate can be measured.
     """
+    refused: dict[str, int] = {}
+    for refusable, condoned in (((FOLDS, LOOPS), ()), ((LOOPS,), ("folds",))):
+        try:
+            found = _solved(problem, refusable, known)
+        except _AllRefusedError as refusal:
+            refused = refused or refusal.counts
+            continue
+        return replace(found, refused=refused or found.refused, condoned=condoned)
+    return replace(_solved(problem, (), known), refused=refused, condoned=("folds", "loops"))
+
+
+class _AllRefusedError(ComputationError):
+    def __init__(self, counts: dict[str, int]) -> None:
+        reasons = " and ".join(f"{n} run loops" if name == "loops" else f"{n} fold" for name, n in counts.items() if n)
+        super().__init__(
+            f"no candidate is left: {reasons or 'none can be measured'}; try another edge, another direction (flip), "
+            "or a middle curve"
+        )
+        self.counts = counts
+
+
+def _solved(problem: BlendProblem, refusable: tuple[int, ...], known: FairSolution | None = None) -> FairSolution:
+    """Find them with what is refused; `_AllRefusedError` where that leaves nothing."""
     # Where a large block was freed, the C library keeps what is freed after it: else half of the time goes into pages.
     np.empty(_WORKSPACE)
     layers, exponents = problem.shape_layers()
@@ -90,13 +127,13 @@ def solve_fair(problem: BlendProblem) -> FairSolution:
     u, rows = problem.form.u, problem.rows
 
     def grid(in_u: Across, in_v: Along, least_cosine: float = LEAST_COSINE) -> FairObjective:
-        return FairObjective(unknowns, FairnessTable(problem, layers, in_u, in_v, least_cosine))
+        return FairObjective(unknowns, FairnessTable(problem, layers, in_u, in_v, least_cosine, refusable))
 
     # The tips of U-turns are sharp.
     rough = grid(across(u, NODES_U) if problem.exits.u_turn else across(u, ROUGH_U), rough_along(rows), _SCAN_COSINE)
     cells, values = _scan(rough, _WIDE_CELLS if problem.exits.u_turn else _CELLS)
     refused = dict(rough.refused)
-    starts = _starts(cells, values)
+    starts = [*_starts(cells, values), *([] if known is None else [_known_start(problem, unknowns, known)])]
     ends = [_descended(rough, rough.point(start), _NEAR) for start in starts]
     nodes = HIGH_ORDER_NODES_U if max(problem.a.order, problem.b.order) > 2 else NODES_U
     search, fine = grid(across(u, nodes), along(rows)), grid(across(u, 2 * nodes), along(rows, 2))
@@ -115,36 +152,22 @@ def solve_fair(problem: BlendProblem) -> FairSolution:
         start = kept[np.argmin(search.values(kept))]
         found = _settled(_refined(search.point(start), start, levels[-1:]), start, fine)
     if found is None:
-        name = "folds" if fine.refused["folds"] + search.refused["folds"] else "runs a loop"
-        raise ComputationError(
-            f"the fairest blend found {name}; try another edge, another direction (flip), or a middle curve"
-        )
+        raise _AllRefusedError({name: refused[name] + fine.refused[name] for name in refused})
     tried = sum(objective.tried for objective in (rough, between, search, fine) if objective is not None)
     return _solution(problem, unknowns, found, fine, tried, refused)
 
 
 def _scan(objective: FairObjective, cells: int) -> tuple[FloatArray, FloatArray]:
-    """Return the cells of the window, shape (B, n), and their values, one axis for each unknown that is scanned."""
+    """Return the cells of the window, shape (B, n), and their values, with one axis for both ends of each side."""
     unknowns = objective.unknowns
-    is_scanned = unknowns.logarithmic
-    axes = [
-        low + (high - low) * (np.arange(cells) + 0.5) / cells if low < high else np.array([low])
-        for low, high in zip(unknowns.low[is_scanned], unknowns.high[is_scanned], strict=True)
-    ]
-    grids = np.meshgrid(*axes, indexing="ij")
-    points = np.zeros((*grids[0].shape, len(unknowns.low)))
-    points[..., is_scanned] = np.stack(grids, axis=-1)
+    parts = [(np.arange(cells) + 0.5) / cells if unknowns.is_free(side) else np.zeros(1) for side in (0, 1)]
+    points = np.zeros((len(parts[0]), len(parts[1]), len(unknowns.low)))
+    for side, part in enumerate(np.meshgrid(*parts, indexing="ij")):
+        ends = unknowns.ends[side]
+        points[..., ends] = unknowns.low[ends] + part[..., None] * (unknowns.high - unknowns.low)[ends]
     values = objective.values(points.reshape(-1, points.shape[-1])).reshape(points.shape[:-1])
     if not np.isfinite(values).any():
-        reasons = " and ".join(
-            f"{count} run loops" if name == "loops" else f"{count} fold"
-            for name, count in objective.refused.items()
-            if count
-        )
-        raise ComputationError(
-            f"each of {values.size} candidates is refused: {reasons}; try another edge, another direction (flip), or a "
-            "middle curve"
-        )
+        raise _AllRefusedError(dict(objective.refused))
     return points.reshape(-1, points.shape[-1]), values
 
 
@@ -195,14 +218,7 @@ def _descended(objective: FairObjective, start: Point, tolerance: float) -> Poin
 def _solution(
     problem: BlendProblem, unknowns: Unknowns, found: Point, fine: FairObjective, tried: int, refused: dict[str, int]
 ) -> FairSolution:
-    a, b = (
-        min(max(float(np.exp(found.x[k])) * unit, low), high)
-        for k, unit, (low, high) in zip((0, 2), problem.natural, problem.bounds, strict=True)
-    )
-    p2_a, p2_b = (
-        float(found.x[k]) * unit if second.free else second.at(alpha)
-        for k, unit, second, alpha in zip((1, 3), problem.natural, problem.p2, (a, b), strict=True)
-    )
+    (a, p2_a), (b, p2_b) = (_side_values(problem, unknowns, found.x, side) for side in (0, 1))
     free = unbound(found.x, found.gradient, unknowns.low, unknowns.high)
     return FairSolution(
         a,
@@ -213,3 +229,29 @@ def _solution(
         tried,
         refused,
     )
+
+
+def _side_values(problem: BlendProblem, unknowns: Unknowns, y: FloatArray, side: int) -> tuple[LinearInV, LinearInV]:
+    """Return alpha^2 and p2 of a side."""
+    unit, second, linear = problem.natural[side], problem.p2[side], problem.linear[side]
+    if not problem.free[side]:
+        given = problem.given[side]
+        return given, second.at(given)
+    bounds = (problem.bounds[side],) if linear is None else linear.bounds
+    ends = [
+        min(max(float(np.exp(x)) * unit, low), high)
+        for x, (low, high) in zip(y[unknowns.ends[side]], bounds, strict=True)
+    ]
+    value: LinearInV = ends[0] if linear is None else (ends[0], ends[1])
+    return value, float(y[unknowns.ends[side].stop]) * unit if second.free else second.at(value)
+
+
+def _known_start(problem: BlendProblem, unknowns: Unknowns, known: FairSolution) -> FloatArray:
+    """Return the unknowns at what was found for a constant alpha."""
+    y = np.zeros(len(unknowns.low))
+    for side, (value, second) in enumerate(zip((known.a, known.b), known.p2, strict=True)):
+        if problem.free[side]:
+            y[unknowns.ends[side]] = np.log(np.array(value) / problem.natural[side])
+            if problem.p2[side].free:
+                y[unknowns.ends[side].stop] = np.array(second).mean() / problem.natural[side]
+    return np.clip(y, unknowns.low, unknowns.high)

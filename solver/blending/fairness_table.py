@@ -51,6 +51,8 @@ class FairnessTable:
     along : Along
     least_cosine : float
         Between the normals of neighbouring nodes.
+    refusable : tuple of int
+        What is refused at all.
     """
 
     def __init__(
@@ -60,8 +62,10 @@ class FairnessTable:
         across: Across,
         along: Along,
         least_cosine: float = LEAST_COSINE,
+        refusable: tuple[int, ...] = (FOLDS, LOOPS),
     ) -> None:
         self.across, self.along = across, along
+        self._refusable = refusable
         self.least_cosine = least_cosine
         offsets = problem.form.offsets
         count, rows = len(layers), len(problem.rows)
@@ -173,6 +177,8 @@ class FairnessTable:
         return np.asarray(by_candidate.reshape(len(by_candidate), -1) @ self._table.T)
 
     def _refused(self, rows: FloatArray, planes: list[FloatArray]) -> NDArray[np.int8]:
+        if not self._refusable:
+            return np.zeros(rows.shape[3], dtype=np.int8)
         # Without the columns of the lines, and candidates first.
         shape = 3, len(self.across.weights), -1, self._shape[-1]
         ax, ay, az, bx, by, bz = planes[:6]
@@ -188,7 +194,10 @@ class FairnessTable:
             if self._ends_given:
                 self._needed = needed = needed[:1]
         loops = np.any(turns - needed > LOOP, axis=-1)
-        return np.where(folds(normal, self.least_cosine), FOLDS, np.where(loops, LOOPS, 0)).astype(np.int8)
+        found = np.where(loops, LOOPS, 0)
+        if FOLDS in self._refusable:
+            found = np.where(folds(normal, self.least_cosine), FOLDS, found)
+        return found.astype(np.int8)
 
 
 @dataclass(frozen=True, eq=False)

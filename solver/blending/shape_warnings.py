@@ -8,6 +8,8 @@ from semispline.solver.judge import FOLD_DEGREES, LOOP_DEGREES, Crease, Regulari
 
 # A normal that turns this far within one window is well on its way to a fold.
 STEEP_DEGREES = 60.0
+# A U-turn whose normal turns this far within one window has a tip to be looked at.
+SHARP_TIP_DEGREES = 30.0
 # An area element this far below its mean is as good as none.
 PINCH = 1e-3
 # A blend between closed rims is pinched below this part of the waist of straight rulings.
@@ -18,18 +20,24 @@ SHARP = 1e-3
 _NAMED = 5
 
 
-def shape_warnings(shape: ShapeReport, regularity: Regularity, creases: Sequence[Crease]) -> tuple[str, ...]:
-    """Return a warning for each thing that a surface modeller would not keep without a look."""
+def shape_warnings(
+    shape: ShapeReport, regularity: Regularity, creases: Sequence[Crease], *, is_fair: bool = False
+) -> tuple[str, ...]:
+    """Return a warning for each thing that a surface modeller would not keep without a look.
+
+    What is the fairest already is not advised to become it.
+    """
+    fair = "" if is_fair else "alpha fair, "
     return (
-        *_turns(shape, max((crease.angle_degrees for crease in creases), default=0.0)),
-        *_pinches(shape, regularity),
-        *_exits(shape),
+        *_turns(shape, max((crease.angle_degrees for crease in creases), default=0.0), fair),
+        *_pinches(shape, regularity, fair),
+        *_exits(shape, fair),
         *_meetings(shape),
         *_creased([crease for crease in creases if crease.angle_degrees >= SHARP]),
     )
 
 
-def _turns(shape: ShapeReport, crease: float) -> Iterator[str]:
+def _turns(shape: ShapeReport, crease: float, fair: str) -> Iterator[str]:
     turn = shape.turn
     along = "v" if turn.section == "u" else "u"
     where = (
@@ -38,27 +46,27 @@ def _turns(shape: ShapeReport, crease: float) -> Iterator[str]:
     )
     # A turn that a crease explains is no fold.
     if turn.degrees - crease > FOLD_DEGREES:
-        yield f"the blend folds: {where}; try alpha fair, a smaller alpha, the other direction of B, or other edges"
+        yield f"the blend folds: {where}; try {fair}a smaller alpha, the other direction of B, or other edges"
     elif turn.degrees - crease > STEEP_DEGREES:
-        yield f"the blend turns steeply: {where}; try alpha fair, a smaller alpha, or a wider gap there"
+        yield f"the blend turns steeply: {where}; try {fair}a smaller alpha, or a wider gap there"
 
 
-def _pinches(shape: ShapeReport, regularity: Regularity) -> Iterator[str]:
+def _pinches(shape: ShapeReport, regularity: Regularity, fair: str) -> Iterator[str]:
     if regularity.least_area_ratio < PINCH:
         yield (
             f"the blend is pinched: its area element falls to {regularity.least_area_ratio:.1e} of the mean; try "
-            "alpha fair, another alpha, or edges that are apart everywhere"
+            f"{fair}another alpha, or edges that are apart everywhere"
         )
     waist = shape.waist
     if waist is not None and waist.distance < WAIST * waist.of_rulings:
         yield (
             f"the blend is pinched between its rims: opposite points come as close as {waist.distance:.3g} at "
             f"u = {waist.u:.3g}, near {_point(waist.points[0])}, where straight rulings keep {waist.of_rulings:.3g}; "
-            "try alpha fair, a smaller alpha, or no middle curve"
+            f"try {fair}a smaller alpha, or no middle curve"
         )
 
 
-def _exits(shape: ShapeReport) -> Iterator[str]:
+def _exits(shape: ShapeReport, fair: str) -> Iterator[str]:
     exits, loop = shape.exits, shape.loop
     if exits.must_loop:
         yield (
@@ -67,15 +75,17 @@ def _exits(shape: ShapeReport) -> Iterator[str]:
             "another edge, or blend in two steps"
         )
         return
-    if exits.is_u_turn:
+    # A U-turn of even bend is what was asked for.
+    if exits.is_u_turn and shape.turn.degrees > SHARP_TIP_DEGREES:
         yield (
             f"the blend is a U-turn: it leaves its bases {exits.theta_0:.0f} and {exits.theta_1:.0f} degrees away from "
-            "the straight way between the contacts; look at its tip, or name edges that face each other"
+            f"the straight way between the contacts, and turns by {shape.turn.degrees:.0f} degrees at its tip; look at "
+            "it, or name edges that face each other"
         )
     if loop.degrees > LOOP_DEGREES:
         yield (
             f"the blend loops or waves: its section v = {loop.v:.3g} turns by {loop.turning_degrees:.0f} degrees, and "
-            f"its exits need {loop.needed_degrees:.0f}; try a smaller alpha, a box that ends lower, or alpha fair"
+            f"its exits need {loop.needed_degrees:.0f}; try {fair}a smaller alpha, or a box that ends lower"
         )
 
 

@@ -1,8 +1,8 @@
 """Rows of a blend from its derivatives at a contact, and these from the chain rule (NumPy).
 
-Written by `semispline generate` from derivations/splines.py and derivations/contact.py.
+Written by `semispline generate` from derivations/splines.py and derivations/contact.py and derivations/linear_alpha.py.
 Do not edit: change the derivation and generate again.
-Operations: 78 in 12 functions.
+Operations: 78 in 13 functions.
 """
 
 from __future__ import annotations
@@ -392,6 +392,37 @@ def chain_table_4() -> FloatArray:
             [0.0, 0.0, 0.0, 0.0, 0.0],
             [0.0, 0.0, 0.0, 0.0, 0.0],
             [0.0, 0.0, 0.0, 0.0, 1.0],
+        ],
+        dtype=np.float64,
+    )
+
+
+def linear_powers_4() -> FloatArray:
+    """Rows (i, i0, i1, c): (a0 (1 - s) + a1 s)^i sums c a0^i0 a1^i1 (1 - s)^i0 s^i1; i <= 4.
+
+    Returns
+    -------
+    powers : matrix, shape (15, 4)
+
+    Source: derivations/linear_alpha.py. Operations: 0.
+    """
+    return np.array(
+        [
+            [0.0, 0.0, 0.0, 1.0],
+            [1.0, 1.0, 0.0, 1.0],
+            [1.0, 0.0, 1.0, 1.0],
+            [2.0, 2.0, 0.0, 1.0],
+            [2.0, 1.0, 1.0, 2.0],
+            [2.0, 0.0, 2.0, 1.0],
+            [3.0, 3.0, 0.0, 1.0],
+            [3.0, 2.0, 1.0, 3.0],
+            [3.0, 1.0, 2.0, 3.0],
+            [3.0, 0.0, 3.0, 1.0],
+            [4.0, 4.0, 0.0, 1.0],
+            [4.0, 3.0, 1.0, 4.0],
+            [4.0, 2.0, 2.0, 6.0],
+            [4.0, 1.0, 3.0, 4.0],
+            [4.0, 0.0, 4.0, 1.0],
         ],
         dtype=np.float64,
     )

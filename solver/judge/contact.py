@@ -83,7 +83,7 @@ class Contact:
         Largest difference of the rate of curvature, 1/length^2, and of its second rate, 1/length^3.
     rate_jump_relative, second_rate_jump_relative : float or None
         The same over the largest such rate of either side, not below the square (the cube) of the largest curvature
-        across the edge, nor below 1e-3 / size^2 (1e-3 / size^3).
+        across the edge or along it, nor below 1e-3 / size^2 (1e-3 / size^3).
     rate_at, second_rate_at : Place or None
     """
 

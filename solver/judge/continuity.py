@@ -94,7 +94,9 @@ def measure_contact(
         "c1_residual": _over(noises[0][1] + noises[1][1], first),
         "c2_residual": _over(noises[0][2] + noises[1][2], second),
     }
-    rates, rates_rounding = _rate_measures([part.rates for part in parts], largest, size)
+    rates, rates_rounding = _rate_measures(
+        [part.rates for part in parts], float(np.max([part.bend for part in parts])), size
+    )
     rounding |= rates_rounding
     return Contact(
         gap=gap.value,
@@ -133,6 +135,8 @@ class _Part:
     gap, angle, jump : _Worst
     curvature : float
         Largest of either side, across the edge.
+    bend : float
+        Largest of either side, across the edge or along it.
     differences, derivatives : (float, float)
         Largest difference of first and second cross derivatives, and largest such derivative of either side.
     speeds : (float, float)
@@ -145,6 +149,7 @@ class _Part:
     angle: _Worst
     jump: _Worst
     curvature: float
+    bend: float
     differences: tuple[float, float]
     derivatives: tuple[float, float]
     speeds: tuple[float, float]
@@ -188,6 +193,7 @@ class _Edges:
             angle=worst(angle),
             jump=worst(np.abs(k_a - k_b)),
             curvature=float(np.max(np.abs([k_a, k_b]))),
+            bend=float(np.max(np.abs([k_a, k_b, side_a.curvature_along(), side_b.curvature_along()]))),
             differences=(_longest(side_a.x_w - sign * side_b.x_w), _longest(side_a.x_ww - side_b.x_ww)),
             derivatives=(_longest(side_a.x_w, side_b.x_w), _longest(side_a.x_ww, side_b.x_ww)),
             speeds=(side_a.least_cross_speed(), side_b.least_cross_speed()),
@@ -213,16 +219,18 @@ class _Edges:
 
 
 def _rate_measures(
-    parts: Sequence[tuple[_Rate, ...]], largest_curvature: float, size: float
+    parts: Sequence[tuple[_Rate, ...]], bend: float, size: float
 ) -> tuple[dict[str, Any], dict[str, float]]:
-    """Return what `Contact` holds of the rates of curvature, and what rounding may do to it."""
+    """Return what `Contact` holds of the rates of curvature, and what rounding may do to it.
+
+    What bends along the edge counts too: a pipe is straight across its rim, and a jump is small or large beside its
+    radius, not beside its length.
+    """
     found: dict[str, Any] = {}
     rounding = {}
     for name, power, of_parts in zip(("rate", "second_rate"), (2, 3), zip(*parts, strict=True), strict=False):
         jump = _first_worst([part.jump for part in of_parts])
-        scale = max(
-            float(np.max([part.largest for part in of_parts])), largest_curvature**power, _STRAIGHT / size**power
-        )
+        scale = max(float(np.max([part.largest for part in of_parts])), bend**power, _STRAIGHT / size**power)
         found |= {f"{name}_jump": jump.value, f"{name}_jump_relative": jump.value / scale, f"{name}_at": jump.place}
         rounding[f"{name}_jump_relative"] = float(np.max([part.noise for part in of_parts])) / scale
     return found, rounding
@@ -261,6 +269,10 @@ class _Side:
         y, d = self.across()
         second = self.x_ww + 2 * y[:, None] * self.x_ws + (y**2)[:, None] * self.x_ss
         return np.asarray(np.sum(second * self.normal, axis=1) / np.sum(d**2, axis=1))
+
+    def curvature_along(self) -> FloatArray:
+        """Return normal curvature in the direction of the edge, shape (K,)."""
+        return np.asarray(np.sum(self.x_ss * self.normal, axis=1) / np.sum(self.x_s**2, axis=1))
 
     def least_cross_speed(self) -> float:
         """Return the least speed across the edge."""

@@ -46,7 +46,7 @@ _REQUIRED = {
 
 
 def allowed_measures(size: float, rounding: dict[str, float]) -> dict[str, float]:
-    """Return the limit of each measure for a model of a size, with what rounding may do on top of it."""
+    """Return the limit of each measure for a model of a size, with what rounding may do on top."""
     limits = {
         "gap": GAP_LIMIT * size,
         "angle_degrees": ANGLE_LIMIT,

@@ -25,6 +25,8 @@ _POINTS, _POINTS_IN_SPAN = 32, 8
 _SECTIONS, _SECTIONS_IN_SPAN = 20, 2
 # Exits that leave the chord by less, in the mean sine, leave it to no side: a degree.
 _NO_SIDE = 0.0175
+# A section that is slower than this part of the fastest has no tangent there.
+_NO_SPEED = 1e-12
 
 
 @dataclass(frozen=True)
@@ -140,8 +142,11 @@ def measure_exits(surface: ParametricSurface) -> Exits:
     (45.0, 'same', False)
     """
     v = spread(surface.breakpoints[1], _SECTIONS, _SECTIONS_IN_SPAN)
-    u = spread(surface.breakpoints[0], _POINTS)
-    theta, (a, b) = _against_chord(surface, _tangents(surface.evaluate_grid(u, v, 1, 0)), v)
+    # What lies between is needed where an end has no tangent.
+    slopes = surface.evaluate_grid(np.array(surface.domain[0]), v, 1, 0)
+    if not (speed := lengths(slopes)).min() > _NO_SPEED * speed.max():
+        slopes = surface.evaluate_grid(spread(surface.breakpoints[0], _POINTS), v, 1, 0)
+    theta, (a, b) = _against_chord(surface, _tangents(slopes), v)
     cosine, (sine_0, sine_1) = np.cos(np.radians(theta)), np.sin(np.radians(theta))
     # The way out at the other end is -t.
     together, sizes = float(-(np.sum(a * b, axis=-1) * sine_0 * sine_1).mean()), float((sine_0 * sine_1).mean())
@@ -159,7 +164,7 @@ def measure_exits(surface: ParametricSurface) -> Exits:
 def _tangents(pu: FloatArray) -> FloatArray:
     """Return unit tangents, shape (len(u), len(v), 3); where there is none, that of the nearest one before or after."""
     speed = lengths(pu)[..., None]
-    missing = ~(speed > 1e-12 * speed.max())
+    missing = ~(speed > _NO_SPEED * speed.max())
     tangents: FloatArray = np.divide(pu, speed, out=np.zeros_like(pu), where=~missing)
     rows = range(len(pu) if missing.any() else 0)
     for row, neighbour in [*zip(rows[1:], rows, strict=False), *zip(rows[-2::-1], rows[:0:-1], strict=True)]:

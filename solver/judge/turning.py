@@ -145,12 +145,22 @@ def _first_looks(sections: _Sections, fineness: int) -> list[_Look]:
     looks = []
     some = max(1, _AT_ONCE // len(run))
     for first in range(0, len(at), some):
-        turns, ends = sections.turns(run, at[first : first + some])
-        for k, (row, row_ends) in enumerate(zip(turns, ends, strict=True), first):
-            i = int(row.argmax())
-            turn = sections.turn(float(row[i]), float(at[k]), (float(run[i]), float(row_ends[i])))
-            looks.append(_Look(turn, sections, run, at[max(k - 1, 0) : k + 2], i))
+        found = sections.turns(run, at[first : first + some])
+        for k, i in enumerate(found.degrees.argmax(axis=1).tolist()):
+            turn = sections.turn(found, (k, i))
+            looks.append(_Look(turn, sections, run, at[max(first + k - 1, 0) : first + k + 2], i))
     return looks
+
+
+@dataclass(frozen=True, eq=False)
+class _Turns:
+    """Turns from samples `run` of the sections `at`: points, degrees (-1: none) and the parameters where they end."""
+
+    run: FloatArray
+    at: FloatArray
+    points: FloatArray
+    degrees: FloatArray
+    ends: FloatArray
 
 
 @dataclass(frozen=True, eq=False)
@@ -176,15 +186,18 @@ class _Sections:
             run = _divided(run, parts.astype(int))
         return run
 
-    def turns(self, run: FloatArray, at: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return the turns from each sample of each section, -1 where there is none, and the parameters they end at."""
+    def turns(self, run: FloatArray, at: FloatArray) -> _Turns:
+        """Return the turns from each sample of each section."""
+        points = self.values(run, at)
         normals = unit_normals(self.values(run, at, 1, 0), self.values(run, at, 0, 1))
-        return _turns_of_sections(run, self.values(run, at), normals, self.window, self.closed)
+        return _Turns(run, at, points, *_turns_of_sections(run, points, normals, self.window, self.closed))
 
-    def turn(self, degrees: float, at: float, between: tuple[float, float]) -> Turn:
-        """Return a turn with its place."""
-        x, y, z = self.values(np.array(between[:1]), np.array([at]))[0, 0].tolist()
-        return Turn(degrees, self.section, at, between, (x, y, z), self.window)
+    def turn(self, turns: _Turns, place: tuple[int, int]) -> Turn:
+        """Return one of these turns."""
+        k, i = place
+        x, y, z = turns.points[k, i].tolist()
+        between = float(turns.run[i]), float(turns.ends[k, i])
+        return Turn(float(turns.degrees[k, i]), self.section, float(turns.at[k]), between, (x, y, z), self.window)
 
     def closely(self, look: _Look, fineness: int) -> _Look:
         """Return the largest turn around another one: on more sections beside it, in shorter steps."""
@@ -197,10 +210,9 @@ class _Sections:
         beside = _divided(look.beside, np.full(len(look.beside) - 1, _PARTS_BESIDE * fineness))
         # Away from its ends a section is open; what turns across the seam is left to the first look.
         part = _Sections(self.surface, self.section, self.window, closed=False)
-        turns, ends = part.turns(near, beside)
-        k, i = divmod(int(turns.argmax()), turns.shape[1])
-        turn = self.turn(float(turns[k, i]), float(beside[k]), (float(near[i]), float(ends[k, i])))
-        return _Look(turn, part, near, beside[max(k - 1, 0) : k + 2], i)
+        turns = part.turns(near, beside)
+        k, i = divmod(int(turns.degrees.argmax()), turns.degrees.shape[1])
+        return _Look(self.turn(turns, (k, i)), part, near, beside[max(k - 1, 0) : k + 2], i)
 
 
 def _divided(run: FloatArray, parts: np.ndarray) -> FloatArray:

@@ -8,7 +8,7 @@ from typer.testing import CliRunner
 
 from helpers.bases import moved
 from helpers.high_order import facing, hand_made
-from semispline import BSplineSurface, OptionError, blend, write_surface
+from semispline import BSplineSurface, write_surface
 from semispline.solver.cli import app
 
 
@@ -105,22 +105,20 @@ def test_unknown_orders_are_refused_by_name(tmp_path):
     assert "expected one of C0, C1, C2, G0, G1, G2, G3, G4" in done.stderr
 
 
-@pytest.mark.parametrize("continuity", ["G3", ("G2", "G4")])
-def test_blends_do_not_have_them_yet(continuity):
-    a, b, *_ = facing(np.random.default_rng(2), 3)
-    with pytest.raises(OptionError, match="measured but not yet blended"):
-        blend(a, b, continuity=continuity)
-
-
-def test_a_report_of_a_blend_holds_no_rates(tmp_path):
-    a, b, *_ = facing(np.random.default_rng(2), 3)
+@pytest.mark.parametrize(("continuity", "rates"), [("G2", 0), ("G3", 1), ("G4", 2)])
+def test_a_report_of_a_blend_holds_the_rates_that_were_asked_for(tmp_path, continuity, rates):
+    a, b, *_ = facing(np.random.default_rng(0), 3)
     for name, base in (("a", a), ("b", b)):
         write_surface(tmp_path / f"{name}.json", base.surface)
     report = tmp_path / "r.json"
-    edges = "--edge-a", "u0", "--edge-b", "u0"
-    done = run("blend", tmp_path / "a.json", tmp_path / "b.json", *edges, "-o", tmp_path / "c.json", "--report", report)
+    call = tmp_path / "a.json", tmp_path / "b.json", "--edge-a", "u0", "--edge-b", "u0", "--continuity", continuity
+    done = run("blend", *call, "-o", tmp_path / "c.json", "--report", report)
     assert done.exit_code == 0
-    assert "rate" not in done.stdout
-    contact = json.loads(report.read_text())["contact_a"]
-    assert not [name for name in contact if "rate" in name]
-    assert set(contact["allowed"]) == set(contact["rounding"]) <= set(contact)
+    assert done.stdout.count("relative jump of its rate") == (2 if rates > 0 else 0)
+    assert done.stdout.count("relative jump of its second rate") == (2 if rates > 1 else 0)
+    for side in ("contact_a", "contact_b"):
+        contact = json.loads(report.read_text())[side]
+        for k, name in enumerate(("rate", "second_rate")):
+            found = {f"{name}_jump", f"{name}_jump_relative", f"{name}_at"} & set(contact)
+            assert len(found) == (3 if k < rates else 0)
+        assert set(contact["allowed"]) == set(contact["rounding"]) <= set(contact)

@@ -18,7 +18,13 @@ from semispline.papers.reproduction.contact_measures import (
     seam_measure,
     turn_between,
 )
-from semispline.papers.reproduction.measures import bending_and_area, mean_curvature_range, measure, plate_energy
+from semispline.papers.reproduction.measures import (
+    bending_and_area,
+    mean_curvature_range,
+    measure,
+    plate_energy,
+    settled_fairness,
+)
 from semispline.solver.splines.construction import plane, revolve
 from semispline.solver.splines.operations import reverse_u
 
@@ -67,6 +73,42 @@ def test_a_strip_that_goes_on_turns_off_or_runs_back(end, turn, flipped):
 def test_energy_of_formulas_is_that_of_splines(curved):
     surface = curved[2]
     np.testing.assert_allclose(plate_energy(as_formula(surface)), plate_energy(surface), rtol=1e-12)
+
+
+def test_fairness_of_formulas_is_that_of_splines(curved):
+    surface = curved[2]
+    np.testing.assert_allclose(settled_fairness(as_formula(surface)), settled_fairness(surface), rtol=1e-9)
+
+
+def test_known_fairness():
+    def torus(u, v, du, dv):
+        def wave(x, order):
+            return np.cos(x + order * np.pi / 2)
+
+        # A tube of radius 1 round a circle of radius 3, u along the circle and v round the tube.
+        tube = wave(v, dv) + (3 if dv == 0 else 0)
+        return np.stack(
+            [wave(u, du) * tube, wave(u - np.pi / 2, du) * tube, (du == 0) * wave(v - np.pi / 2, dv) + 0 * u], 1
+        )
+
+    half = FormulaSurface(torus, np.array([0.0, 1.0]), np.array([0.0, np.pi]))
+    # H = (3 + 2 cos v) / (2 (3 + cos v)), dH/dv = -3 sin v / (2 (3 + cos v)^2), dA = (3 + cos v) du dv.
+    x, w = np.polynomial.legendre.leggauss(60)
+    v = np.pi / 2 * (1 + x)
+    integral = np.pi / 2 * float(w @ (9 * np.sin(v) ** 2 / (4 * (3 + np.cos(v)) ** 3)))
+    np.testing.assert_allclose(settled_fairness(half), 3 * np.pi * integral, rtol=1e-6)
+
+
+def test_fairness_of_a_fold_is_not_measured():
+    task = planes_task()
+    zigzag = plane([0, 0, 0], [1, 0, 0], [0, 1, 0], 3, 3).control_points.copy()
+    flat = BSplineSurface(3, 3, [0] * 4 + [1] * 4, [0] * 4 + [1] * 4, zigzag)
+    assert measure(task, outcome(flat)).fairness == pytest.approx(0, abs=1e-12)
+    # It runs to 1, back to 0 with its normal turned over, and on to 1 again.
+    zigzag[1, :, 0], zigzag[2, :, 0], zigzag[1, :, 2] = 2.0, -1.0, 1e-3
+    folded = measure(task, outcome(BSplineSurface(3, 3, flat.knots_u, flat.knots_v, zigzag)))
+    assert folded.turn_degrees > 90
+    assert folded.fairness is None
 
 
 def test_known_energy():

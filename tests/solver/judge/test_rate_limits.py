@@ -13,7 +13,7 @@ from semispline.solver.splines.operations import split_u
 
 K1, K4 = [0, 0, 1, 1], [0, 0, 0, 0, 0, 1, 1, 1, 1, 1]
 RATES = ("rate_jump_relative", "second_rate_jump_relative")
-BOTH_SIDES = [(0.5, True), (0.8, True), (1.3, False), (2.0, False)]
+BOTH_SIDES = [(0.5, True), (0.97, True), (1.3, False), (2.0, False)]
 
 
 def graph(curvature, rate, quartic, bend=1.0):

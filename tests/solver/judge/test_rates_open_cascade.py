@@ -5,7 +5,7 @@ import pytest
 
 from helpers.high_order import SIZES, facing, hand_made
 from helpers.occ_rates import Contact, section
-from semispline import Base, BSplineSurface, measure_contact
+from semispline import Base, BSplineSurface, blend, measure_contact
 from semispline.solver.judge import shortfalls
 from semispline.solver.splines.operations import split_u
 
@@ -25,6 +25,20 @@ def test_both_confirm_what_is_exact(order, seed, edges):
             judged = Contact(*pair, order).relative_jumps()
             assert len(judged) == order - 1
             assert (judged < np.array(LIMITS[: order - 1]) / 10).all(), judged
+
+
+@pytest.mark.parametrize("continuity", ["G3", "G4", ("G4", "G3")])
+@pytest.mark.parametrize(("seed", "edges"), [(0, ("u0", "u0")), (3, ("u1", "v0"))])
+def test_the_second_judge_confirms_blends(continuity, seed, edges):
+    a, b, *_ = facing(np.random.default_rng(seed), 3, edges)
+    result = blend(a, b, continuity=continuity)
+    surface = result.surface
+    for pair, asked, flipped in (
+        ((a, Base(surface, "u0")), result.continuity[0], False),
+        ((Base(surface, "u1"), b), result.continuity[1], result.flipped),
+    ):
+        judged = Contact(*pair, int(asked[1]), flipped=flipped).relative_jumps()
+        assert (judged < np.array(LIMITS[: len(judged)]) / 10).all(), judged
 
 
 FAULTS = [(3, (2, 2)), (3, (3, 3)), (3, (3, 2)), (4, (3, 3)), (4, (4, 4)), (4, (4, 3)), (4, (4, 2)), (4, (3, 1))]
