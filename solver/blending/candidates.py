@@ -9,12 +9,15 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import cast
 
-from semispline.solver.blending.linear_problem import try_linear_alpha
+from semispline.solver.blending.linear_problem import gap_ratio, try_linear_alpha
 from semispline.solver.blending.problem import BlendProblem, make_problem
 from semispline.solver.blending.shape_parameters import Found, active_bounds, find_shape_parameters, found_fair
 from semispline.solver.blending.sides import Side
 from semispline.solver.errors import ComputationError, OptionError
 from semispline.solver.options import AlphaV, BlendOptions
+
+# A middle curve is tried where gap / |R_w| varies by this factor along a contact and alpha is constant all the same.
+MIDDLE_RATIO = 2.0
 
 
 @dataclass(frozen=True)
@@ -86,6 +89,10 @@ def find_layout(a: Side, b: Side, said: BlendOptions) -> tuple[Layout, tuple[Can
     if best is None:
         raise cast("ComputationError", tried[0][1])
     best, linear = _with_linear_alpha(best, first.alpha_v)
+    # What a linear alpha would follow, a middle curve follows less well; closed rims it would pull together.
+    varies = best.options.alpha_v == "constant" and gap_ratio(best.problem) >= MIDDLE_RATIO
+    if said.middle_curves == "auto" and varies:
+        best = cast("Layout", _fairer(best, attempt(replace(first, middle_curves=1, alpha_v="constant"))))
     return best, (*(_candidate(options, result, best) for options, result in tried), *linear)
 
 

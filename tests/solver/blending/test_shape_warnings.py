@@ -253,3 +253,29 @@ def test_a_blend_that_is_no_surface_is_refused():
     ]
     with pytest.raises(ComputationError, match="the blend is no surface: surface: has no tangent plane anywhere"):
         blend(Base(strips[0], "u0"), Base(strips[1], "u0"), continuity="G0")
+
+
+@pytest.mark.parametrize("section", ["u", "v"])
+def test_where_a_surface_folds_is_told_by_both_parameters(section):
+    report = measure_shape(sheets(1, 1)[0])
+    turn = replace(report.turn, degrees=95.0, section=section, at=0.25, between=(0.5, 0.75))
+    regular = measure_regularity(sheets(1, 1)[0])
+    (said,) = shape_warnings(replace(report, turn=turn), regular, ())
+    assert {"u": "at u = 0.25, v = 0.5,", "v": "at v = 0.25, u = 0.5,"}[section] in said
+    # The sharpest crease may explain it, and a slight one beside it takes nothing away.
+    for angles, kind in (((40.0, 10.0), []), ((10.0, 40.0), []), ((10.0, 20.0), ["the blend turns steeply"])):
+        creases = tuple(Crease("v", 0.5, angle) for angle in angles)
+        found = kinds(shape_warnings(replace(report, turn=turn), regular, creases))
+        assert [one for one in found if "creased" not in one] == kind
+
+
+@pytest.mark.parametrize(("places", "more"), [(4, None), (5, None), (6, 1), (9, 4)])
+def test_five_places_where_it_meets_something_are_named(places, more):
+    report, regular = measure_shape(sheets(1, 1)[0]), measure_regularity(sheets(1, 1)[0])
+    found = tuple(f"meets itself at place {i}" for i in range(places))
+    said = shape_warnings(replace(report, meets=replace(report.meets, found=found)), regular, ())
+    named = [f"the blend {place}; try" for place in found[:5]]
+    assert [text.startswith(start) for text, start in zip(said, named, strict=False)] == [True] * len(named)
+    assert list(said[len(named) :]) == (
+        [f"the blend meets itself or its bases in {more} more place(s)"] if more else []
+    )

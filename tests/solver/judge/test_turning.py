@@ -107,6 +107,12 @@ def test_hardly_changes_when_samples_double():
         assert once == pytest.approx(twice, rel=0.03, abs=0.1)
 
 
+def test_rough_sheets_are_looked_at_closely():
+    """Looked at once, two of these would be off by 1.6 % and more; the narrowest bend stays 1 % short."""
+    for surface in sheets(5, 10, rough=0.5):
+        assert measure_turn(surface).degrees == pytest.approx(turn_on_samples(surface, 6).degrees, rel=0.01)
+
+
 def between_samples(surface):
     """The largest angle between normals of neighbours among 8 samples in every span."""
     u, v = (spread(breaks, 1, 8) for breaks in surface.breakpoints)
