@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from functools import cache, partial
-from importlib.util import find_spec
 from pathlib import Path
 
 from semispline.papers.baselines import BlendTask
@@ -14,7 +13,7 @@ from semispline.papers.lin2014.figures.bezier import draw_figure_1, draw_figure_
 from semispline.papers.lin2014.findings import AS_PRINTED, CORRECTED, findings, meets_demand
 from semispline.papers.lin2014.paper_as_printed import METHODS as PRINTED_METHODS
 from semispline.papers.report import cell
-from semispline.papers.reproduction import Comparison, Comparisons, Drawing, Example, Study, Table
+from semispline.papers.reproduction import Comparison, Comparisons, Drawing, Example, Study, Table, impeller_path
 from semispline.solver.blending import blend
 from semispline.solver.io import read_surfaces
 from semispline.solver.judge import Base
@@ -78,15 +77,6 @@ def pair(name: str) -> Example:
         "their untrimmed surfaces: real data, whose parameter speeds and knots nobody chose for us."
     )
     return Example(BlendTask(name, title, *_impeller()), (note,), pictures)
-
-
-def impeller_path() -> Path | None:
-    """Return the IGES model in the installed package `pyiges`, or None where it or the `cad` extra is missing."""
-    spec = find_spec("pyiges")
-    if spec is None or not spec.submodule_search_locations or find_spec("OCP") is None:
-        return None
-    path = Path(spec.submodule_search_locations[0]) / "examples" / "impeller.igs"
-    return path if path.is_file() else None
 
 
 def _impeller() -> tuple[Base, Base]:

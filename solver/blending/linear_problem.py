@@ -18,8 +18,9 @@ from semispline.solver.splines import Basis, basis_matrix
 TRIED_RATIO, TAKEN_SHARE = 1.5, 0.7
 # Ends of the linear function that follows gap / |R_w|, over its mean, are at least this.
 _LEAST_SHAPE = 0.25
-# The window of an end is so much wider than that of a constant, on both sides: one end gives way to the other.
-_WIDER = 2.0
+# The window of an end is so much wider than that of a constant, at its top and at its foot: one end gives way to the
+# other.
+WIDER = 2.0
 # Where gap / |R_w| is compared.
 _PLACES = np.arange(65) / 64
 
@@ -39,16 +40,16 @@ def gap_ratio(problem: BlendProblem) -> float:
     return max(ratios)
 
 
-def with_linear_alpha(problem: BlendProblem) -> BlendProblem:
+def with_linear_alpha(problem: BlendProblem, wider: float = WIDER) -> BlendProblem:
     """Return the problem with alpha^2 linear in v wherever it is searched.
 
-    Each end has a window of its own, around the linear function that fits gap / |R_w| best.
+    Each end has a window of its own, around the linear function that fits gap / |R_w| best, and by a factor wider.
     """
     linear = list(problem.linear)
     rows, scaled = list(problem.rows), list(problem.form.rows)
     for index, (side, indices, _) in enumerate(problem.contacts):
         if problem.free[index]:
-            linear[index] = _fitted(problem, index)
+            linear[index] = _fitted(problem, index, wider)
             for r in range(side.order + 1):
                 i = indices[r]
                 rows[i], scaled[i] = raised_basis(rows[i], r), raised_basis(scaled[i], r)
@@ -56,11 +57,11 @@ def with_linear_alpha(problem: BlendProblem) -> BlendProblem:
     return replace(problem, form=form, rows=tuple(rows), linear=(linear[0], linear[1]))
 
 
-def _fitted(problem: BlendProblem, index: int) -> LinearEnds:
+def _fitted(problem: BlendProblem, index: int, wider: float) -> LinearEnds:
     sizes = _natural_along(problem, index)
     slope, start = np.polyfit(_PLACES, sizes / sizes.mean(), 1)
     shape = max(float(start), _LEAST_SHAPE), max(float(start + slope), _LEAST_SHAPE)
-    low, high = problem.bounds[index][0] / _WIDER, problem.bounds[index][1] * _WIDER
+    low, high = problem.bounds[index][0] / wider, problem.bounds[index][1] * wider
     return LinearEnds(((low * shape[0], high * shape[0]), (low * shape[1], high * shape[1])), shape)
 
 
@@ -96,7 +97,9 @@ class LinearTrial:
     verdict: str
 
 
-def try_linear_alpha(problem: BlendProblem, constant: FairSolution, *, always: bool = False) -> LinearTrial:
+def try_linear_alpha(
+    problem: BlendProblem, constant: FairSolution, *, always: bool = False, wider: float = WIDER
+) -> LinearTrial:
     """Try a linear alpha^2 where the gap varies along the contact, and take it where it is worth its control points.
 
     Parameters
@@ -105,13 +108,15 @@ def try_linear_alpha(problem: BlendProblem, constant: FairSolution, *, always: b
     constant : FairSolution
     always : bool
         Try and take it wherever the contacts are open.
+    wider : float
+        How much wider the windows of its ends are than that of a constant.
     """
     if problem.seam_order >= 0:
         return LinearTrial(None, None, False, "contacts are closed: alpha has to be constant along them")
     ratio = gap_ratio(problem)
     if ratio < TRIED_RATIO and not always:
         return LinearTrial(None, None, False, f"gap over speed varies by {ratio:.3g} along the contact, not tried")
-    linear = with_linear_alpha(problem)
+    linear = with_linear_alpha(problem, wider)
     solution = solve_fair(linear, constant)
     share = solution.value / constant.value if constant.value > 0 else 1.0
     if len(solution.condoned) > len(constant.condoned):

@@ -56,7 +56,9 @@ class SecondParameter:
     @overload
     def at(self, a: LinearInV) -> LinearInV: ...
     def at(self, a: LinearInV) -> LinearInV:
-        """Return p2 for alpha^2, where it is not searched; linear in v with it."""
+        """Return p2 for alpha^2, where it is not searched; linear in v where it goes with one that is."""
+        if not self.per_a:
+            return self.value
         if isinstance(a, tuple):
             return self.at(a[0]), self.at(a[1])
         return self.value + self.per_a * a

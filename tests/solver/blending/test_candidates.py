@@ -5,7 +5,8 @@ import pytest
 
 from helpers.facing import random_facing
 from semispline import Base, BSplineSurface, OptionError, blend
-from semispline.solver.blending import candidates
+from semispline.papers.reproduction.families.suite import shape_problem
+from semispline.solver.blending import candidates, fair_search
 from semispline.solver.blending.linear_problem import gap_ratio
 from semispline.solver.blending.pipeline import state_problem
 
@@ -57,6 +58,42 @@ def test_a_middle_curve_is_tried_where_linear_alpha_is_not_allowed_and_the_gap_v
     assert result.options.middle_curves == best.middle_curves
     # Said to be without, it is without.
     assert tried(blend(*pair, alpha_v="constant", middle_curves=0)) == [(5, 0, "constant")]
+
+
+def facing(seed):
+    problem = shape_problem("facing", seed)
+    return problem.a, problem.b
+
+
+def test_where_alpha_and_p2_are_traded_until_the_window_ends_p2_is_left_out():
+    a, b = facing(57)
+    result, without = blend(a, b), blend(a, b, p2="zero")
+    assert result.p2 == (0.0, 0.0)
+    assert result.active_bounds == without.active_bounds == ()
+    assert result.objective.value == pytest.approx(without.objective.value, rel=1e-6)
+    # With p2 alone it would have ended there.
+    assert solve_fair_with_p2(a, b).at_end == (False, True)
+
+
+def solve_fair_with_p2(a, b):
+    return fair_search._searched(state_problem(a, b).problem, None)
+
+
+def test_where_the_lower_end_stops_the_search_the_window_begins_lower():
+    a, b = facing(96)
+    result = blend(a, b)
+    window = state_problem(a, b).problem.bounds
+    assert result.active_bounds == ()
+    for found, (low, high) in zip((result.alpha2_bounds, result.beta2_bounds), window, strict=True):
+        assert found == pytest.approx((low / 2, high), rel=1e-12)
+    assert result.alpha2 < window[0][0]
+    assert tried(result) == [(5, 0, "constant")] * 2
+    # A box that was asked for stays.
+    natural = state_problem(a, b).problem.natural
+    arc = state_problem(a, b).problem.exits.arc
+    boxed = blend(a, b, box=(1 / 4, 4))
+    assert boxed.alpha2_bounds == pytest.approx((natural[0] * arc / 4, natural[0] * arc * 4))
+    assert "alpha2 lower" in boxed.active_bounds
 
 
 def test_where_nothing_is_searched_there_are_no_candidates():

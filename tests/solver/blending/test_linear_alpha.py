@@ -14,7 +14,9 @@ from helpers.facing import random_facing
 from semispline import (
     Base,
     BSplineCurve,
+    OptionError,
     SemiStructuredSurface,
+    blend,
     measure_contact,
     measure_fairness,
     measure_turn,
@@ -242,21 +244,86 @@ def test_it_is_taken_where_it_pays():
     assert not all(taken)
 
 
-def test_closed_contacts_keep_a_constant():
+def pipes():
+    """Two coaxial pipes of one radius."""
     line = BSplineCurve(3, [0] * 4 + [1] * 4, [[5, 0, z] for z in (0, 1, 2, 3)])
     pipe = revolve_polynomial(line, [0, 0, 0], [0, 0, 1], 360, 1e-6).surface
     far = transform(pipe, np.eye(3), [0, 0, 13])
     edges = [(Base(pipe, edge), Base(far, other)) for edge, other in (("u1", "u0"), ("v1", "v0"))]
-    pair = next(pair for pair in edges if np.ptp(pair[0].derivative(np.array([0.1, 0.6]), 0, 0)[:, 2]) < 1e-9)
-    problem = state_problem(*pair, **QUINTIC).problem
+    return next(pair for pair in edges if np.ptp(pair[0].derivative(np.array([0.1, 0.6]), 0, 0)[:, 2]) < 1e-9)
+
+
+def test_closed_contacts_keep_a_constant():
+    problem = state_problem(*pipes(), **QUINTIC).problem
     assert gap_ratio(problem) == 1.0
     trial = try_linear_alpha(problem, solve_fair(problem), always=True)
     assert not trial.taken
     assert "closed" in trial.verdict
 
 
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"alpha_v": "linear"}, "alpha_v: found linear on closed contacts, expected auto or constant"),
+        ({"alpha": ((1.0, 2.0), 1.0)}, "alpha: found two values for the ends of v on closed contacts"),
+    ],
+)
+def test_what_closed_contacts_cannot_have_is_refused(options, message):
+    with pytest.raises(OptionError, match=message):
+        blend(*pipes(), **options)
+
+
+def widening(seed=2):
+    """Two bases whose gap grows along the contact."""
+    return random_facing(np.random.default_rng([23, seed]), most_angle=50, most_yaw=50)
+
+
+def test_a_blend_states_what_it_took_and_why():
+    linear = blend(*widening(), alpha_v="linear")
+    assert linear.options.alpha_v == "linear"
+    assert [candidate.alpha_v for candidate in linear.candidates] == ["constant", "linear"]
+    assert linear.candidates[1].verdict == "chosen"
+    assert "is more" in linear.candidates[0].verdict
+    for values, (low, high) in (
+        (linear.alpha2, linear.alpha2_bounds),
+        (linear.beta2, linear.beta2_bounds),
+    ):
+        assert all(a < x < b for a, x, b in zip(low, values, high, strict=True))
+    constant = blend(*widening(), alpha_v="constant")
+    assert [candidate.verdict for candidate in constant.candidates] == ["chosen"]
+    assert constant.objective.value > linear.objective.value
+    assert constant.rows_stored < linear.rows_stored
+    assert constant.rows_converted < linear.rows_converted
+    assert [row.degree for row in linear.surface.control_curves] == [3, 4, 5, 5, 4, 3]
+    u, v = np.linspace(0, 1, 9), np.linspace(*linear.surface.domain[1], 9)
+    ordinary = linear.surface.to_bspline()
+    np.testing.assert_allclose(ordinary.evaluate_grid(u, v), linear.surface.evaluate_grid(u, v), atol=1e-12)
+
+
+def test_given_ends_are_taken_as_they_are():
+    found = blend(*widening(), alpha=((0.8, 1.2), 0.9))
+    assert found.alpha2 == pytest.approx((0.64, 1.44))
+    assert found.beta2 == pytest.approx(0.81)
+    assert found.alpha2_bounds is None
+    assert found.method == "linear"
+    assert found.p2 == (0.0, 0.0)
+    # A bulge multiplies both ends.
+    assert blend(*widening(), alpha=((0.8, 1.2), 0.9), bulge=(1.5, 1)).alpha2 == pytest.approx((0.96, 2.16))
+
+
+def test_an_end_at_its_bound_is_named():
+    found = blend(*widening(), alpha_v="linear", box=(2.0, 2.2))
+    assert set(found.active_bounds) <= {
+        f"{name}[{k}] {end}" for name in ("alpha2", "beta2") for k in (0, 1) for end in ("lower", "upper")
+    }
+    assert found.active_bounds
+    # Each end in the box as it is, around a shape of its own.
+    assert all(high / low == pytest.approx(1.1) for low, high in zip(*found.alpha2_bounds, strict=True))
+    assert any("at its" in text for text in found.warnings)
+
+
 def test_units_and_order_do_not_matter():
-    pair = random_facing(np.random.default_rng([23, 2]), most_angle=50, most_yaw=50)
+    pair = widening()
 
     def found(bases):
         problem = state_problem(*bases, **QUINTIC).problem

@@ -16,6 +16,7 @@ from semispline import (
     ComputationError,
     FoldError,
     SemiStructuredSurface,
+    measure_exits,
     measure_regularity,
     measure_shape,
     read_surface,
@@ -172,10 +173,29 @@ def test_sixty_degrees_beyond_the_exits_are_a_loop(degrees, loops):
         assert f"turns by {4 * degrees:.0f} degrees, and its exits need 0" in text
 
 
-@pytest.mark.parametrize(("degrees", "is_u_turn"), [(170, False), (179, False), (181, True), (250, True)])
-def test_exits_that_lead_away_from_each_other_are_a_u_turn(degrees, is_u_turn):
-    found = warnings_of(extruded(arc((0, 0), 1.0, 0, degrees), 1.0))
-    assert kinds(found) == ["the blend is a U-turn"] * is_u_turn
+def hairpin(degrees, radius):
+    """Two legs of length 1, joined by an arc that turns by `degrees`."""
+    ends = [np.radians(90 - degrees / 2), np.radians(90 + degrees / 2)]
+    first, last = (radius * np.array([np.cos(t), np.sin(t)]) for t in ends)
+    leave, arrive = (np.array([np.sin(ends[0]), -np.cos(ends[0])]), np.array([-np.sin(ends[1]), np.cos(ends[1])]))
+    way = [*line(first + leave, first), *arc((0, 0), radius, *np.degrees(ends)), *line(last, last + arrive)]
+    return extruded(way, 1.0)
+
+
+@pytest.mark.parametrize(
+    ("degrees", "radius", "is_named"),
+    [(185, 0.1, False), (185, 0.08, True), (175, 0.08, False)],
+)
+def test_a_u_turn_with_a_sharp_tip_is_named(degrees, radius, is_named):
+    # A fiftieth of the length, 0.046, turns by 26 and by 33 degrees.
+    assert kinds(warnings_of(hairpin(degrees, radius))) == ["the blend is a U-turn"] * is_named
+
+
+@pytest.mark.parametrize("degrees", [181, 250])
+def test_a_u_turn_of_even_bend_is_what_was_asked_for(degrees):
+    surface = extruded(arc((0, 0), 1.0, 0, degrees), 1.0)
+    assert measure_exits(surface).is_u_turn
+    assert warnings_of(surface) == ()
 
 
 @pytest.mark.parametrize(("degrees", "said"), [(100, []), (179, []), (270, ["the blend is a U-turn that has to loop"])])
