@@ -99,16 +99,18 @@ def test_known_fairness():
     np.testing.assert_allclose(settled_fairness(half), 3 * np.pi * integral, rtol=1e-6)
 
 
-def test_fairness_of_a_fold_is_not_measured():
-    task = planes_task()
-    zigzag = plane([0, 0, 0], [1, 0, 0], [0, 1, 0], 3, 3).control_points.copy()
-    flat = BSplineSurface(3, 3, [0] * 4 + [1] * 4, [0] * 4 + [1] * 4, zigzag)
-    assert measure(task, outcome(flat)).fairness == pytest.approx(0, abs=1e-12)
-    # It runs to 1, back to 0 with its normal turned over, and on to 1 again.
-    zigzag[1, :, 0], zigzag[2, :, 0], zigzag[1, :, 2] = 2.0, -1.0, 1e-3
-    folded = measure(task, outcome(BSplineSurface(3, 3, flat.knots_u, flat.knots_v, zigzag)))
-    assert folded.turn_degrees > 90
-    assert folded.fairness is None
+def test_fairness_of_a_fold_is_not_told():
+    # A strip that runs to x = 1 and back: a hairpin turns by more than 90 degrees within its window.
+    def strip(height):
+        net = [[[x, y, z] for y in (0, 1)] for x, z in ((0, 0), (1, 0), (1, height), (0, height))]
+        return BSplineSurface(3, 1, [0] * 4 + [1] * 4, [0, 0, 1, 1], net)
+
+    for height, folds in ((0.1, True), (0.3, False)):
+        found = measure(planes_task(), outcome(strip(height)))
+        assert (found.turn_degrees > 90) == folds
+        # It could be told.
+        assert settled_fairness(strip(height)) > 1e3
+        assert (found.fairness is None) == folds
 
 
 def test_known_energy():
