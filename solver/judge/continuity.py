@@ -17,7 +17,7 @@ from semispline.solver.judge.curvature_rates import curvature_rates
 from semispline.solver.judge.de_boor import EdgeCurves, edge_curves
 from semispline.solver.judge.edge_normals import places_without_normal
 from semispline.solver.judge.limits import allowed_measures
-from semispline.solver.judge.rounding import derivative_noises
+from semispline.solver.judge.rounding import EdgeNoises, edge_noises
 from semispline.solver.judge.square_section import section_noises, square_section
 from semispline.solver.options import Flip
 from semispline.solver.scalars import whole_number
@@ -83,7 +83,7 @@ def measure_contact(
         np.max([getattr(part, name) for part in parts], 0).tolist() for name in ("differences", "derivatives")
     )
     angle_noise, curvature_noise = np.max([part.noises for part in parts], axis=0).tolist()
-    noises = [noise[:, 0].tolist() for noise in edges.noises]
+    noises = [noise.derivatives[:, 0].tolist() for noise in edges.noises]
     # Flat: what bends by the size of the model is the measure; and nearly so, as of curvatures.
     bent = first * first / size
     second = bent if second <= noises[0][2] + noises[1][2] else max(second, _STRAIGHT * bent)
@@ -171,7 +171,7 @@ class _Edges:
     def __init__(self, a: Base, b: Base, flipped: bool, origin: FloatArray, order: int) -> None:
         self.a, self.b, self.flipped, self.origin, self.order = a, b, flipped, origin, order
         self.curves_a, self.curves_b = (edge_curves(base.surface, base.edge, order, origin) for base in (a, b))
-        self.noises = [derivative_noises(base, origin, order) for base in (a, b)]
+        self.noises = [edge_noises(base, origin, order) for base in (a, b)]
 
     def measured(self, s_a: FloatArray, s_b: FloatArray) -> _Part:
         """Measure at parameters along a and along b that correspond."""
@@ -207,7 +207,7 @@ class _Edges:
         if self.order == 2:
             return ()
         rates_a, rates_b = (
-            curvature_rates(side.at, side.normal, noises, self.order)
+            curvature_rates(side.at, side.normal, noises.derivatives, self.order)
             for side, noises in zip((side_a, side_b), self.noises, strict=True)
         )
         found = []
@@ -264,7 +264,7 @@ class _Side:
         """Return normal curvature in the direction of the edge, shape (K,)."""
         return np.asarray(np.sum(self.x_ss * self.normal, axis=1) / np.sum(self.x_s**2, axis=1))
 
-    def noises(self, noises: FloatArray) -> tuple[FloatArray, FloatArray]:
+    def noises(self, noises: EdgeNoises) -> tuple[FloatArray, FloatArray]:
         """Return what rounding may do to the normal (radians) and to the curvature across, from that of derivatives."""
         return section_noises(self.at, self.normal, self.section, noises)
 

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from semispline.solver.arrays import FloatArray
+from semispline.solver.judge.rounding import EdgeNoises
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,40 +52,37 @@ def square_section(at: Mapping[tuple[int, int], FloatArray], normal: FloatArray)
 
 
 def section_noises(
-    at: Mapping[tuple[int, int], FloatArray], normal: FloatArray, section: SquareSection, noises: FloatArray
+    at: Mapping[tuple[int, int], FloatArray], normal: FloatArray, section: SquareSection, noises: EdgeNoises
 ) -> tuple[FloatArray, FloatArray]:
-    """Bound what errors of the derivatives may do to the normal (radians) and to the curvature, each of shape (K,).
-
-    Parameters
-    ----------
-    noises : ndarray, shape (3, 3) or more
-        What rounding may do to each derivative: orders across in rows, along in columns.
+    """Bound what rounding may do to the normal (radians) and to the curvature, each of shape (K,).
 
     Source: the gradients of n = X_w x X_s / |X_w x X_s| and of the second fundamental form along t, by each derivative.
     """
-    a, g = section.a, section.g
-    w, s, r = 1 / a, section.y / a, 1 / g
-    steep = np.abs(s)
-    of_w, of_s = noises[1, 0] * w, noises[0, 1]
+    w, s, r = 1 / section.a, section.y / section.a, 1 / section.g
+    ws, ww, steep = w * s, w * w, np.abs(s)
+    of, rows, along = noises.derivatives, noises.rows, noises.along
+    of_w, of_s = of[1, 0] * w, of[0, 1]
     angle = np.hypot(of_w + of_s * steep, of_s * r)
     # Second derivatives along t, and along t and T: their tangential parts, and k_tT.
-    turn = (at[1, 1] + section.y[:, None] * at[0, 2]) * (w * r)[:, None]
-    c_t, c_along = _dot(section.second, section.direction) * w**3, _dot(section.second, at[0, 1]) * w**2 * r
-    k, twist = section.curvature, _dot(turn, normal)
-    # An error of X_w or X_s along the normal tilts that; one in the tangent plane turns and stretches the step along t.
-    slopes = of_w * _length(c_t, 2 * k, 2 * twist)
-    slopes = slopes + of_s * _length(s * c_t + r * c_along, 2 * (s * k + r * twist), 2 * s * twist)
-    direct = noises[2, 0] * w**2 + 2 * noises[1, 1] * w * steep + noises[0, 2] * s**2
+    both = (at[1, 1] + section.y[:, None] * at[0, 2]) * (w * r)[:, None]
+    c_t, c_along = _dot(section.second, section.direction) * ww * w, _dot(section.second, at[0, 1]) * ww * r
+    k, twist = section.curvature, _dot(both, normal)
+    # Errors along the normal: of second derivatives, and of first ones, which tilt it. One row of control points may
+    # enter several, with either sign.
+    height = np.abs(np.multiply.outer(rows[2], ww) - np.multiply.outer(rows[1], w * c_t)).sum(axis=0)
+    slope = np.abs(np.multiply.outer(rows[1], 2 * ws) - np.multiply.outer(rows[0], s * c_t + r * c_along)).sum(axis=0)
+    tilted = height + along[1] * slope + of[0, 2] * s * s
+    # Those in the tangent plane turn and stretch the step along t.
+    turned = 2 * (of_w * np.hypot(k, twist) + of_s * np.hypot(s * k + r * twist, s * twist))
     # Where nothing bends or shears all of this may vanish; then errors of errors count, beside curvatures that are none.
     frame = of_w + of_s * (steep + r)
-    bends = np.linalg.norm(section.second, axis=1) * w**2 + 2 * np.linalg.norm(turn, axis=1)
-    bends = bends + np.linalg.norm(at[0, 2], axis=1) * r**2
-    twice = frame * (2 * r * (noises[1, 1] * w + noises[0, 2] * steep) + frame * bends)
-    return angle, direct + slopes + twice
+    bends = _length(section.second) * ww + 2 * _length(both) + _length(at[0, 2]) * r * r
+    twice = frame * (2 * r * (of[1, 1] * w + of[0, 2] * steep) + frame * bends)
+    return angle, tilted + turned + twice
 
 
-def _length(*parts: FloatArray) -> FloatArray:
-    return np.asarray(np.sqrt(sum(part**2 for part in parts)))
+def _length(vectors: FloatArray) -> FloatArray:
+    return np.asarray(np.sqrt(_dot(vectors, vectors)))
 
 
 def _dot(a: FloatArray, b: FloatArray) -> FloatArray:
