@@ -183,6 +183,11 @@ def print_result(result: BlendResult) -> None:
         ("control points", f"{result.rows_stored}, {result.rows_converted} as an ordinary B-spline"),
         ("seconds", f"{result.seconds:.3f}"),
     ]
+    rows += [
+        ("tried, not taken", f"degree {c.degree_u}, {c.middle_curves} middle curve(s), alpha {c.alpha_v}: {c.verdict}")
+        for c in result.candidates
+        if c.verdict != "chosen"
+    ]
     if result.seam_shift:
         rows.append(("seam of B moved by", f"{result.seam_shift:.6g} in B's parameter"))
     at_a, at_b = result.continuity

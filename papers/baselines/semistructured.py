@@ -29,15 +29,10 @@ def outcome_of(result: BlendResult) -> Outcome:
         result.surface.n_control_points,
         result.iterations or None,
         result.seconds,
-        _mean(result.alpha2),
-        _mean(result.beta2),
+        result.alpha2,
+        result.beta2,
         note=note,
     )
-
-
-def _mean(value: float | tuple[float, float] | None) -> float | None:
-    """Return a shape parameter, or the mean of what is linear along the contact."""
-    return sum(value) / 2 if isinstance(value, tuple) else value
 
 
 METHODS = (

@@ -23,7 +23,7 @@ from semispline.solver.blending.fairness_grid import (
 )
 from semispline.solver.blending.fairness_table import FOLDS, LEAST_COSINE, LOOPS, FairnessTable
 from semispline.solver.blending.linear_alpha import LinearInV
-from semispline.solver.blending.problem import BlendProblem
+from semispline.solver.blending.problem import BlendProblem, SecondParameter
 from semispline.solver.blending.projected import Point, descend, unbound
 from semispline.solver.errors import ComputationError
 
@@ -68,6 +68,8 @@ class FairSolution:
         How many candidates were refused for each reason, "folds" and "loops".
     condoned : tuple of str
         What is no longer refused, because every candidate was: "folds", then "loops" too.
+    at_end : (bool, bool)
+        Whether alpha^2 and beta^2 are at an end of their window.
     """
 
     a: LinearInV
@@ -78,6 +80,7 @@ class FairSolution:
     tried: int
     refused: dict[str, int]
     condoned: tuple[str, ...] = ()
+    at_end: tuple[bool, bool] = (False, False)
 
 
 def solve_fair(problem: BlendProblem, known: FairSolution | None = None) -> FairSolution:
@@ -97,6 +100,20 @@ def solve_fair(problem: BlendProblem, known: FairSolution | None = None) -> Fair
     ComputationError
         No candidate can be measured.
     """
+    found = _searched(problem, known)
+    at_end = found.at_end
+    for dropped in (at_end, (True, True)):
+        # Alpha and p2 can be traded one for the other until the window ends: such a side, or both, goes without p2.
+        p2_a, p2_b = (SecondParameter() if d and p2.free else p2 for d, p2 in zip(dropped, problem.p2, strict=True))
+        if any(found.at_end) and (p2_a, p2_b) != problem.p2:
+            without = _searched(replace(problem, p2=(p2_a, p2_b)), known)
+            better = (len(without.condoned), sum(without.at_end)) < (len(found.condoned), sum(found.at_end))
+            found = replace(without if better else found, tried=found.tried + without.tried)
+    return found
+
+
+def _searched(problem: BlendProblem, known: FairSolution | None) -> FairSolution:
+    """Find them with folds and loops refused, or else as much of that as leaves a candidate."""
     refused: dict[str, int] = {}
     for refusable, condoned in (((FOLDS, LOOPS), ()), ((LOOPS,), ("folds",))):
         try:
@@ -228,7 +245,15 @@ def _solution(
         float(np.abs(found.gradient[free]).max(initial=0.0)),
         tried,
         refused,
+        at_end=(_is_at_end(unknowns, found.x, 0), _is_at_end(unknowns, found.x, 1)),
     )
+
+
+def _is_at_end(unknowns: Unknowns, y: FloatArray, side: int) -> bool:
+    ends = unknowns.ends[side]
+    low, high = unknowns.low[ends], unknowns.high[ends]
+    # 1e-9: what `active_bounds` takes for rounding.
+    return bool(np.any((low < high) & ((y[ends] <= low + 1e-9) | (y[ends] >= high - 1e-9))))
 
 
 def _side_values(problem: BlendProblem, unknowns: Unknowns, y: FloatArray, side: int) -> tuple[LinearInV, LinearInV]:
