@@ -128,7 +128,16 @@ def tangents(degrees, up=(0, 1, 0)):
 @pytest.mark.parametrize(
     ("first", "last", "needed"),
     # An arch by twice, an S by four times its angle; beyond 90 degrees the other way round may be less.
-    [(50, -50, 100), (50, 50, 200), (0, 0, 0), (0, 60, 120), (170, -170, 340), (135, 135, 360)],
+    [
+        (50, -50, 100),
+        (50, 50, 200),
+        (0, 0, 0),
+        (0, 60, 120),
+        (170, -170, 340),
+        (135, 135, 360),
+        (90, 150, 300),
+        (150, 90, 300),
+    ],
 )
 def test_the_biarc_between_two_exits(first, last, needed):
     ends = tangents([first, last])
