@@ -74,7 +74,7 @@ def section_noises(
     tilted = height + along[1] * slope + of[0, 2] * s * s
     # Those in the tangent plane turn and stretch the step along t.
     turned = 2 * (of_w * np.hypot(k, twist) + of_s * np.hypot(s * k + r * twist, s * twist))
-    # Where nothing bends or shears all of this may vanish: then errors of errors count, beside no curvature at all.
+    # Where nothing bends or shears all of this may vanish; then errors of errors count beside a curvature of none.
     frame = of_w + of_s * (steep + r)
     bends = _length(section.second) * ww + 2 * _length(both) + _length(at[0, 2]) * r * r
     twice = frame * (2 * r * (of[1, 1] * w + of[0, 2] * steep) + frame * bends)
