@@ -224,8 +224,8 @@ def _candidates(compared: Compared) -> str:
     text = (
         "alpha² constant unless said otherwise, by fairness with each; middle curves by thin plate with v scaled by "
         "length, on every fourth knot. In how many pairs it is the best of all; A · GH over that of the best (median, "
-        "90 %, largest); how often refused, at a bound, turning by more than 30 degrees; median of converted points. "
-        "The last line takes the fairer of two.\n\n"
+        "90 %, largest); how often refused, at a bound, and turning by more than 30 degrees; median of converted "
+        "points. The last line takes the fairer of two.\n\n"
     )
     parts = []
     for family in FAMILIES:
