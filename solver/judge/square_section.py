@@ -56,8 +56,8 @@ def section_noises(
 ) -> tuple[FloatArray, FloatArray]:
     """Bound what rounding may do to the normal (radians) and to the curvature, each of shape (K,).
 
-    To first order, at the derivatives as they were rounded: of two sides the mean of both gradients, times the distance,
-    is exact to second order, so where nothing bends or shears but by rounding no more is needed.
+    To first order, at the derivatives as they were rounded: of two sides the mean of both gradients, times their
+    distance, is exact to second order, so where nothing bends or shears but by rounding no more is needed.
 
     Source: the gradients of n = X_w x X_s / |X_w x X_s| and of the second fundamental form along t, by each derivative.
     """

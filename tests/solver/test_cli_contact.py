@@ -164,8 +164,8 @@ def strip(start, end, offset=0.0, tilt=0.0):
 
 
 # Strips 1 wide, from 0 to 1 and from 1 to 2, moved along all axes. Both control points of a cross derivative round by
-# half a spacing of floats each way: 2 sqrt(3) 2^-53 times the distance on each side. So do those of the derivative along
-# the edge, and the normal turns with both: sqrt(2) times as far.
+# half a spacing of floats each way: 2 sqrt(3) 2^-53 times the distance on each side. So do those of the derivative
+# along the edge, and the normal turns with both: sqrt(2) times as far.
 @pytest.mark.parametrize(
     ("offset", "require", "tilt", "status", "answer"),
     [
