@@ -13,7 +13,7 @@ QUICK := tests/test_documents.py tests/test_readme.py tests/test_rooms.py tests/
 	$(addprefix tests/solver/,splines generated proof judge blending io c_export) \
 	$(patsubst %,--ignore=tests/solver/%.py,$(LONG))
 
-.PHONY: report check quick test test-left-out test-kernels mutants lint types layers fresh bench clean
+.PHONY: report check quick test test-left-out test-kernels mutants lint types layers fresh bench shapes clean
 
 $(STAMP): pyproject.toml constraints.txt
 	$(PYTHON) -m venv $(VENV)
@@ -61,6 +61,11 @@ fresh: $(STAMP)
 
 bench: $(STAMP)
 	$(BIN)/python benchmarks/run.py
+
+# Every pair of the families, judged: docs/shapes.md, and pictures in build/shapes. AGAIN=--resume goes on where it stopped,
+# AGAIN=--tables makes table and pictures from what is there.
+shapes: $(STAMP)
+	$(BIN)/python benchmarks/shapes/run.py $(AGAIN)
 
 clean:
 	rm -rf $(VENV) build

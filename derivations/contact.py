@@ -88,6 +88,22 @@ def special_conditions(order: int) -> tuple[Expr, ...]:
     return tuple(condition.subs(chosen) for condition in contact_conditions(order))
 
 
+def shape_conditions(order: int) -> tuple[Expr, ...]:
+    """Return the conditions for p1 = -a and p2, all other p_k and q_k zero.
+
+    Examples
+    --------
+    >>> shape_conditions(2)
+    (R, -R_w*a, R_w*p2 + R_ww*a**2)
+    """
+    p2 = Symbol("p2")
+    values = [sympify(0)] * (order + 1)
+    for (i, j), table in chain_table(order).items():
+        for k in range(order + 1):
+            values[k] += A**i * p2**j * sum((table[k, d] * base_derivative(d, 0) for d in range(k + 1)), sympify(0))
+    return tuple(value.expand() for value in values)
+
+
 def contact_rows(
     order: int, degree: Any, spans: Sequence[Any], base_degree: Any, base_spans: Sequence[Any], a: Any = A
 ) -> Matrix:

@@ -17,7 +17,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from sympy import Expr, Symbol, sign, sqrt, sympify
+from sympy import Expr, Matrix, Symbol, factor, fraction, sign, sqrt, symbols, sympify
 
 # The derivatives of the surface that enter, by their directions.
 DERIVATIVES = ("u", "v", "uu", "uv", "vv", "uuu", "uuv", "uvv", "vvv")
@@ -128,6 +128,27 @@ def fairness_program() -> Program:
     speed = s.named("speed", sqrt(e))
     inputs = tuple(symbol for name in DERIVATIVES for symbol in p[name])
     return Program(inputs, tuple(s.steps), (rough, area, mean, speed))
+
+
+def fairness_formulas() -> tuple[tuple[Expr, Expr], ...]:
+    """Return the mean curvature H and |grad H|^2 per du dv, in both fundamental forms and the derivatives of H.
+
+    H is half the trace of the second form (L, M, N) by the first (E, F, G); the gradient of a function on the surface
+    has the square length of its derivatives by the inverse of the first form.
+
+    Examples
+    --------
+    >>> fairness_formulas()[0]
+    (H, (E*N - 2*F*M + G*L)/(2*(E*G - F**2)))
+    """
+    e, f, g = symbols("E F G")
+    inverse = Matrix([[e, f], [f, g]]).inv()
+    second = Matrix([[Symbol("L"), Symbol("M")], [Symbol("M"), Symbol("N")]])
+    slopes = Matrix([Symbol("H_u"), Symbol("H_v")])
+    mean = factor((inverse * second).trace() / 2)
+    square = factor((slopes.T * inverse * slopes)[0])
+    numerator, denominator = fraction(square)
+    return (Symbol("H"), mean), (Symbol("g_H"), numerator * sqrt(denominator) / denominator)
 
 
 def reversed_program(program: Program) -> Program:

@@ -6,9 +6,9 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
-from sympy import Add, Eq, Expr, Mul, Poly, Symbol, factor, latex, sstr, sympify
+from sympy import Add, Eq, Expr, Mul, Poly, Symbol, collect, expand, factor, latex, sstr, sympify
 
-from semispline.derivations import contact, energy, shape, splines
+from semispline.derivations import contact, energy, fairness, linear_alpha, shape, splines
 from semispline.derivations.codegen import catalogue
 from semispline.derivations.codegen.c_backend import c_function
 from semispline.derivations.codegen.expressions import expression_text
@@ -167,6 +167,11 @@ def _special_conditions(request: Request) -> Result:
     return Result(tuple((_derivative_name("P", "u", d), value) for d, value in enumerate(conditions)))
 
 
+def _shape_conditions(request: Request) -> Result:
+    conditions = plain_symbols(contact.shape_conditions(request.order))
+    return Result(tuple((_derivative_name("P", "u", d), value) for d, value in enumerate(conditions)))
+
+
 def _contact_rows(request: Request) -> Result:
     routine = catalogue.contact_routine(request.order, request.degree, request.base_degree)
     points = [Symbol(f"R_{j}") for j in range(request.order + 1)]
@@ -184,10 +189,36 @@ def _contact_rows(request: Request) -> Result:
 
 
 def _contact_jets(request: Request) -> Result:
-    routine = catalogue.jets_routine(request.order, request.degree)
-    derivatives = [_derivative_name("R", "w", d) for d in range(request.order + 1)]
+    return _in_derivatives(catalogue.jets_routine(request.order, request.degree), "R", "w")
+
+
+def _derivative_rows(request: Request) -> Result:
+    return _in_derivatives(catalogue.derivative_rows_routine(request.order, request.degree), "P", "u")
+
+
+def _in_derivatives(routine: Routine, letter: str, by: str) -> Result:
+    derivatives = [_derivative_name(letter, by, d) for d in range(len(routine.values))]
     values = (sum((e * r for e, r in zip(row, derivatives, strict=True)), sympify(0)) for row in routine.values)
     return Result(tuple((Symbol(f"P_{i}"), value) for i, value in enumerate(values)), routine)
+
+
+def _linear_power(request: Request) -> Result:
+    s = linear_alpha.S
+    terms = [row for row in linear_alpha.linear_powers(request.order) if row[0] == request.order]
+    values = (c * linear_alpha.A0**i0 * linear_alpha.A1**i1 * (1 - s) ** i0 * s**i1 for _, i0, i1, c in terms)
+    return Result(((Symbol("a") ** request.order, sum(plain_symbols(tuple(values)), sympify(0))),))
+
+
+def _linear_product(request: Request) -> Result:
+    basis = _basis(request)
+    ends = Symbol("g0"), Symbol("g1")
+    matrix = linear_alpha.linear_product(basis.degree, basis.knots, *ends)
+    points = [Symbol(f"P_{i}") for i in range(matrix.cols)]
+    equations = []
+    for j in range(matrix.rows):
+        row = (collect(expand(value), ends, factor) for value in matrix.row(j))
+        equations.append((Symbol(f"Q_{j}"), sum((e * p for e, p in zip(row, points, strict=True)), sympify(0))))
+    return Result(tuple(equations))
 
 
 def _basis(request: Request) -> energy.Basis:
@@ -235,6 +266,10 @@ def _energy_density(_: Request) -> Result:
     return Result(((Symbol("e"), energy.thin_plate_density()),), catalogue.density_routine())
 
 
+def _fairness(_: Request) -> Result:
+    return Result(fairness.fairness_formulas())
+
+
 def _gram_block(_: Request) -> Result:
     return Result(((Symbol("K"), energy.gram_block()),), catalogue.gram_routine())
 
@@ -268,11 +303,16 @@ RESULTS: dict[str, _Entry] = {
     "contact-conditions": _Entry("G^n contact for general functions p_i, q_i", _contact_conditions),
     "contact-jets": _Entry("the same rows in derivatives of any base, spline or not", _contact_jets),
     "contact-rows": _Entry("rows P_0..P_n of a blend in G^n contact with a base", _contact_rows),
+    "derivative-rows": _Entry("rows P_0..P_n of a blend with given u-derivatives at a contact", _derivative_rows),
     "end-derivatives": _Entry("derivatives at a clamped end in the first rows", _end_derivatives),
     "energy": _Entry("thin-plate energy as a quadratic form", _energy),
     "energy-density": _Entry("integrand of the thin-plate energy", _energy_density),
+    "fairness": _Entry("mean curvature, and |grad H|^2 per du dv", _fairness),
     "gram-block": _Entry("block of the quadratic form in one-dimensional integrals", _gram_block),
     "gram-entries": _Entry("integrals of products of basis derivatives, of two bases", _gram),
+    "linear-power": _Entry("a^n for a linear along the contact, from a0 to a1", _linear_power),
+    "linear-product": _Entry("a spline times a linear function, as a spline", _linear_product),
+    "shape-conditions": _Entry("G^n contact for p1 = -a and p2, the rest zero", _shape_conditions),
     "shape-polynomial": _Entry("least energy in x = a - a0 and y = b - b0, G^n at both ends", _shape_polynomial),
     "special-conditions": _Entry("G^n contact for p1 = -a, the rest zero", _special_conditions),
     "stationarity": _Entry("what vanishes for each free control point at the least energy", _stationarity),

@@ -54,7 +54,7 @@ def blend_command(
     options: BlendOptions,
     report: Annotated[str | None, typer.Option(metavar="FILE", help="JSON with energy, alpha, beta, contact.")] = None,
 ) -> None:
-    """Join an edge of A and an edge of B by a semi-structured surface of least energy."""
+    """Join an edge of A and an edge of B by a semi-structured surface of fairest shape, or as the options say."""
     from semispline.solver.io import (
         atomic_path,
         check_surface_output,

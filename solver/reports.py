@@ -8,14 +8,14 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict
 from math import isfinite
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import typer
 
 from semispline.solver.options import Continuity
 
 if TYPE_CHECKING:
-    from semispline.solver.blending import BlendResult
+    from semispline.solver.blending import BlendResult, LinearInV
     from semispline.solver.io import SurfaceEntry
     from semispline.solver.judge import Contact, Meets, ShapeReport
 
@@ -158,10 +158,15 @@ def print_contact(contact: Contact, unit: str | None) -> None:
 def print_result(result: BlendResult) -> None:
     """Print what a blend came to."""
 
-    def shape(value: float | None, bounds: tuple[float, float] | None) -> str:
+    def shape(value: LinearInV | None, bounds: tuple[LinearInV, LinearInV] | None) -> str:
         if value is None:
             return "none"
-        return f"{value:.6g}" if bounds is None else f"{value:.6g} (between {bounds[0]:.4g} and {bounds[1]:.4g})"
+        if isinstance(value, tuple):
+            # At both ends of v.
+            each = [None, None] if bounds is None else zip(*cast("tuple[Any, Any]", bounds), strict=True)
+            return " to ".join(shape(x, ends) for x, ends in zip(value, each, strict=True))
+        low_high = "" if bounds is None else f" (between {bounds[0]:.4g} and {bounds[1]:.4g})"
+        return f"{value:.6g}{low_high}"
 
     rows = [
         ("continuity", " and ".join(result.continuity)),
@@ -174,9 +179,14 @@ def print_result(result: BlendResult) -> None:
         ("beta\u00b2", shape(result.beta2, result.beta2_bounds)),
         ("active bounds", ", ".join(result.active_bounds) or "none"),
         ("edge B runs against A", "yes" if result.flipped else "no"),
-        ("p2", ", ".join(f"{x:.6g}" for x in result.p2)),
+        ("p2", ", ".join(shape(x, None) for x in result.p2)),
         ("control points", f"{result.rows_stored}, {result.rows_converted} as an ordinary B-spline"),
         ("seconds", f"{result.seconds:.3f}"),
+    ]
+    rows += [
+        ("tried, not taken", f"degree {c.degree_u}, {c.middle_curves} middle curve(s), alpha {c.alpha_v}: {c.verdict}")
+        for c in result.candidates
+        if c.verdict != "chosen"
     ]
     if result.seam_shift:
         rows.append(("seam of B moved by", f"{result.seam_shift:.6g} in B's parameter"))

@@ -101,14 +101,14 @@ def jets_routine(order: int, degree: int | None = None) -> Routine:
     )
 
 
-def derivative_rows_routine(order: int) -> Routine:
-    """Return `rows_from_derivatives_n(p, h1, .., hn)`."""
-    p, blend = _degree("p", None, "Degree of the blend in u.", order)
+def derivative_rows_routine(order: int, degree: int | None = None) -> Routine:
+    """Return `rows_from_derivatives_n(p, h1, .., hn)`, without p where given."""
+    p, blend = _degree("p", degree, "Degree of the blend in u.", order)
     return Routine(
         name=f"rows_from_derivatives_{order}",
         summary=f"Rows P_i = sum_k W[i, k] D_k of a blend with u-derivatives D_0..D_{order} at the contact.",
         source="Cox-de Boor, derivations/splines.py; derivations/contact.py",
-        arguments=(*blend, *_spans("h", order, "the blend, counted from the contact", "p")),
+        arguments=(*blend, *_spans("h", order, "the blend, counted from the contact", str(p))),
         form="matrix",
         values=_rows(rows_from_derivatives(order, p, span_symbols(order))),
         names=("W",),

@@ -98,8 +98,9 @@ class Outcome:
         Of a nonlinear search; None where there is none.
     seconds : float
         For the method alone, imports and measures aside.
-    alpha2, beta2 : float or None
-        How far the cross derivatives of the bases are scaled, where the method has such numbers.
+    alpha2, beta2 : float, (float, float) or None
+        How far the cross derivatives of the bases are scaled, where the method has such numbers: a pair at both ends of
+        v, linear between them.
     aligned : bool
         Whether (0, v) and (1, v) lie where the bases have the corresponding parameter; else measures look for the
         closest point of the edge.
@@ -111,8 +112,8 @@ class Outcome:
     control_points: int | None
     iterations: int | None
     seconds: float
-    alpha2: float | None = None
-    beta2: float | None = None
+    alpha2: float | tuple[float, float] | None = None
+    beta2: float | tuple[float, float] | None = None
     aligned: bool = True
     note: str = ""
 

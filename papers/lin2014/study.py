@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from functools import cache, partial
-from importlib.util import find_spec
 from pathlib import Path
 
 from semispline.papers.baselines import BlendTask
@@ -14,13 +13,15 @@ from semispline.papers.lin2014.figures.bezier import draw_figure_1, draw_figure_
 from semispline.papers.lin2014.findings import AS_PRINTED, CORRECTED, findings, meets_demand
 from semispline.papers.lin2014.paper_as_printed import METHODS as PRINTED_METHODS
 from semispline.papers.report import cell
-from semispline.papers.reproduction import Comparison, Comparisons, Drawing, Example, Study, Table
+from semispline.papers.reproduction import Comparison, Comparisons, Drawing, Example, Study, Table, impeller_path
 from semispline.solver.blending import blend
 from semispline.solver.io import read_surfaces
 from semispline.solver.judge import Base
 from semispline.solver.pictures import BASE_COLOR, BLEND_COLOR, render
 
 IMPELLER_FACES = (102, 131)
+# From where both blades and the whole blend are seen.
+_TOWARDS_EYE = {"impeller": (-1.0, -1.0, 0.4)}
 PREFACE = (
     "The paper prints no control points. The bases below are our own stand-ins: they match its descriptions, its knot "
     "vectors and its model sizes. Energies, times and curvatures can therefore not be compared digit by digit with "
@@ -78,15 +79,6 @@ def pair(name: str) -> Example:
     return Example(BlendTask(name, title, *_impeller()), (note,), pictures)
 
 
-def impeller_path() -> Path | None:
-    """Return the IGES model in the installed package `pyiges`, or None where it or the `cad` extra is missing."""
-    spec = find_spec("pyiges")
-    if spec is None or not spec.submodule_search_locations or find_spec("OCP") is None:
-        return None
-    path = Path(spec.submodule_search_locations[0]) / "examples" / "impeller.igs"
-    return path if path.is_file() else None
-
-
 def _impeller() -> tuple[Base, Base]:
     loaded = read_surfaces([f"{impeller_path()}#{face}" for face in IMPELLER_FACES])
     first, second = (Base(surface.surface, "u0") for surface in loaded)
@@ -119,11 +111,12 @@ def draw_pair(name: str, zebra: bool, path: Path) -> None:
     task = pair(name).task
     result = blend(task.a, task.b)
     surfaces = [task.a.surface, task.b.surface, result.surface]
+    view = _TOWARDS_EYE.get(name)
     if zebra:
-        render(surfaces, path, field="zebra")
+        render(surfaces, path, field="zebra", towards_eye=view)
     else:
         colors = [BASE_COLOR, BASE_COLOR, BLEND_COLOR]
-        render(surfaces, path, colors=colors, control_points=[False, False, True])
+        render(surfaces, path, colors=colors, control_points=[False, False, True], towards_eye=view)
 
 
 _TABLE_1_HEAD = (

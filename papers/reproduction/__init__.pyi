@@ -2,6 +2,7 @@ from .cad_judge import cad_verdict as cad_verdict
 from .comparison import Comparison as Comparison
 from .comparison import run as run
 from .contact_measures import turn_between as turn_between
+from .families.real_pairs import impeller_path as impeller_path
 from .measures import ROUNDING as ROUNDING
 from .measures import Measures as Measures
 from .measures import reached as reached

@@ -27,7 +27,7 @@ _FRACTIONS = np.array([0.002, 0.1, 0.3, 0.5, 0.7, 0.9, 0.998])
 _EDGE_SAMPLES = 2001
 _PER_SPAN = 8
 
-# A turn of the normal by more than this, across a contact or between neighbouring samples, is a fold.
+# A turn of the normal by more than this, across a contact or within 1/50 of the length, is a fold.
 FOLD = 90.0
 
 

@@ -1,4 +1,5 @@
 from .gram import thin_plate_energy as thin_plate_energy
+from .linear_alpha import LinearInV as LinearInV
 from .nlp import ConstrainedProblem as ConstrainedProblem
 from .nlp import casadi_matrix as casadi_matrix
 from .nlp import constrained_problem as constrained_problem
@@ -6,5 +7,6 @@ from .nlp import contact_rows as contact_rows
 from .pipeline import StatedProblem as StatedProblem
 from .pipeline import blend as blend
 from .pipeline import state_problem as state_problem
+from .reduced import shape_polynomial as shape_polynomial
 from .result import BlendResult as BlendResult
 from .sides import make_side as make_side

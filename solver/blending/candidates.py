@@ -9,11 +9,17 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import cast
 
+from semispline.solver.blending.linear_problem import WIDER, gap_ratio, try_linear_alpha
 from semispline.solver.blending.problem import BlendProblem, make_problem
-from semispline.solver.blending.shape_parameters import Found, active_bounds, find_shape_parameters
+from semispline.solver.blending.shape_parameters import Found, active_bounds, find_shape_parameters, found_fair
 from semispline.solver.blending.sides import Side
-from semispline.solver.errors import ComputationError
-from semispline.solver.options import BlendOptions
+from semispline.solver.errors import ComputationError, OptionError
+from semispline.solver.options import AlphaV, BlendOptions
+
+# A middle curve is tried where gap / |R_w| varies by this factor along a contact and alpha is constant all the same.
+MIDDLE_RATIO = 2.0
+# Where a window's lower end stops the search it begins at this part of it: bases that bend much want little alpha.
+LOWER = 1 / 2
 
 
 @dataclass(frozen=True)
@@ -65,8 +71,8 @@ def find_layout(a: Side, b: Side, said: BlendOptions) -> tuple[Layout, tuple[Can
     first = said.decided()
     tried: list[tuple[BlendOptions, Layout | ComputationError]] = []
 
-    def attempt(options: BlendOptions) -> Layout | None:
-        problem = make_problem(a, b, options)
+    def attempt(options: BlendOptions, low: float = 1.0) -> Layout | None:
+        problem = _with_low_window(make_problem(a, b, options), low)
         try:
             result: Layout | ComputationError = Layout(options, problem, find_shape_parameters(problem, options))
         except ComputationError as refusal:
@@ -76,15 +82,54 @@ def find_layout(a: Side, b: Side, said: BlendOptions) -> tuple[Layout, tuple[Can
         tried.append((options, result))
         return result if isinstance(result, Layout) else None
 
-    best = attempt(first)
+    best = attempt(replace(first, alpha_v="constant") if "fair" in first.alphas else first)
     if best is not None and not _is_searched(best.problem, first):
         return best, ()
+    if best is not None and first.box is None and _wants_less(best):
+        best = _fairer(best, attempt(best.options, LOWER))
     doubtful = best is None or best.found.condoned or active_bounds(best.problem, best.found)
     if doubtful and said.degree_u == "auto" and first.degree_u == 5:
-        best = _fairer(best, attempt(replace(first, degree_u=4)))
+        best = _fairer(best, attempt(replace(first, degree_u=4, alpha_v="constant")))
     if best is None:
         raise cast("ComputationError", tried[0][1])
-    return best, tuple(_candidate(options, result, best) for options, result in tried)
+    best, linear = _with_linear_alpha(best, first.alpha_v)
+    # What a linear alpha would follow, a middle curve follows less well; closed rims it would pull together.
+    varies = best.options.alpha_v == "constant" and gap_ratio(best.problem) >= MIDDLE_RATIO
+    if said.middle_curves == "auto" and varies:
+        best = cast("Layout", _fairer(best, attempt(replace(first, middle_curves=1, alpha_v="constant"))))
+    return best, (*(_candidate(options, result, best) for options, result in tried), *linear)
+
+
+def _with_linear_alpha(constant: Layout, alpha_v: AlphaV) -> tuple[Layout, tuple[Candidate, ...]]:
+    """Try alpha linear in v in the place of a constant one, and return what is taken, and the candidate if tried."""
+    fair = constant.found.fair
+    if fair is None or alpha_v == "constant":
+        return constant, ()
+    if alpha_v == "linear" and constant.problem.seam_order >= 0:
+        raise OptionError("alpha_v: found linear on closed contacts, expected auto or constant")
+    # A box that was asked for is not widened.
+    wider = WIDER if constant.options.box is None else 1.0
+    trial = try_linear_alpha(constant.problem, fair, always=alpha_v == "linear", wider=wider)
+    if trial.problem is None or trial.solution is None:
+        return constant, ()
+    options = replace(constant.options, alpha_v="linear")
+    tried = Layout(options, trial.problem, found_fair(trial.solution, constant.found.method))
+    best = tried if trial.taken else constant
+    verdict = "chosen" if trial.taken else trial.verdict
+    return best, (replace(_candidate(options, tried, tried), verdict=verdict),)
+
+
+def _wants_less(layout: Layout) -> bool:
+    """Tell whether the lower end of a window stopped the search; U-turns end there for want of a better shape."""
+    active = active_bounds(layout.problem, layout.found)
+    return not layout.problem.exits.u_turn and any("lower" in name for name in active)
+
+
+def _with_low_window(problem: BlendProblem, factor: float) -> BlendProblem:
+    """Return the problem with windows that begin lower; what is given stays."""
+    (low_a, high_a), (low_b, high_b) = problem.bounds
+    a, b = (factor if free else 1.0 for free in problem.free)
+    return problem if factor == 1 else replace(problem, bounds=((a * low_a, high_a), (b * low_b, high_b)))
 
 
 def _is_searched(problem: BlendProblem, options: BlendOptions) -> bool:

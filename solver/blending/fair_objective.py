@@ -28,6 +28,8 @@ class Unknowns:
     exponents : ndarray, shape (K, n)
         Of each monomial, 1 first, in alpha^2 and p2 of both sides.
     logarithmic : ndarray of bool, shape (n,)
+    ends : pair of slices
+        Where the end values of each side are; its p2 comes next.
     low, high : ndarray, shape (n,)
         Bounds, equal where there is nothing to choose.
     wanted : ndarray, shape (n,)
@@ -36,9 +38,14 @@ class Unknowns:
 
     exponents: FloatArray
     logarithmic: NDArray[np.bool_]
+    ends: tuple[slice, slice]
     low: FloatArray
     high: FloatArray
     wanted: FloatArray
+
+    def is_free(self, side: int) -> bool:
+        """Whether there is an alpha^2 to choose."""
+        return bool((self.low < self.high)[self.ends[side]].any())
 
     def monomials(self, y: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return the monomials of candidates y, shape (B, n), and their derivatives: shapes (B, K) and (B, n, K)."""
@@ -62,20 +69,24 @@ def make_unknowns(problem: BlendProblem, exponents: list[FloatArray]) -> Unknown
     table = np.zeros((1 + sum(len(powers) - 1 for powers in exponents), sum(widths)))
     logarithmic = np.ones(sum(widths), dtype=bool)
     low, high, wanted = (np.zeros(sum(widths)) for _ in range(3))
-    row = 1
-    for side, (powers, ends, unit) in enumerate(zip(exponents, problem.bounds, problem.natural, strict=True)):
+    row, ends_of = 1, []
+    for side, (powers, unit) in enumerate(zip(exponents, problem.natural, strict=True)):
+        linear = problem.linear[side]
+        ends, shape = ((problem.bounds[side],), (1.0,)) if linear is None else (linear.bounds, linear.shape)
         first = sum(widths[:side])
         part, p2 = slice(first, first + widths[side] - 1), first + widths[side] - 1
         table[row : row + len(powers) - 1, first : p2 + 1] = powers[1:]
         row += len(powers) - 1
-        low[part], high[part] = np.log(np.array(ends) / unit)
-        wanted[part] = np.log(problem.exits.arc)
+        ends_of.append(part)
+        if len(powers) > 1:
+            low[part], high[part] = np.log(np.array(ends) / unit).T
+            wanted[part] = np.log(problem.exits.arc * np.array(shape))
         logarithmic[p2] = False
         # Where it is tied to alpha^2, and where contact needs none, no monomial has it.
         if powers[:, -1].any():
             most = problem.exits.arc / _second_weight(problem, side)
             low[p2], high[p2] = -most, most
-    return Unknowns(table, logarithmic, low, high, wanted)
+    return Unknowns(table, logarithmic, (ends_of[0], ends_of[1]), low, high, wanted)
 
 
 def _second_weight(problem: BlendProblem, side: int) -> float:

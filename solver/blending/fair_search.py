@@ -22,7 +22,8 @@ from semispline.solver.blending.fairness_grid import (
     rough_along,
 )
 from semispline.solver.blending.fairness_table import FOLDS, LEAST_COSINE, LOOPS, FairnessTable
-from semispline.solver.blending.problem import BlendProblem
+from semispline.solver.blending.linear_alpha import LinearInV
+from semispline.solver.blending.problem import BlendProblem, SecondParameter
 from semispline.solver.blending.projected import Point, descend, unbound
 from semispline.solver.errors import ComputationError
 
@@ -52,9 +53,10 @@ class FairSolution:
 
     Attributes
     ----------
-    a, b : float
-        alpha^2 and beta^2, in the parameters of the bases.
-    p2 : (float, float)
+    a, b : float or (float, float)
+        alpha^2 and beta^2, in the parameters of the bases; where linear in v the values at its start and its end.
+    p2 : pair
+        Numbers; where tied to a linear alpha^2 pairs of end values.
     value : float
         J, on the finer grid.
     slope : float
@@ -66,38 +68,64 @@ class FairSolution:
         How many candidates were refused for each reason, "folds" and "loops".
     condoned : tuple of str
         What is no longer refused, because every candidate was: "folds", then "loops" too.
+    at_end : (bool, bool)
+        Whether alpha^2 and beta^2 are at an end of their window.
     """
 
-    a: float
-    b: float
-    p2: tuple[float, float]
+    a: LinearInV
+    b: LinearInV
+    p2: tuple[LinearInV, LinearInV]
     value: float
     slope: float
     tried: int
     refused: dict[str, int]
     condoned: tuple[str, ...] = ()
+    at_end: tuple[bool, bool] = (False, False)
 
 
-def solve_fair(problem: BlendProblem) -> FairSolution:
+def solve_fair(problem: BlendProblem, known: FairSolution | None = None) -> FairSolution:
     """Find the shape parameters of the fairest blend.
 
     Where the bases are so rough, or face each other so badly, that every candidate is refused, the fairest of them is
     taken all the same: what is wrong with it is measured on the finished surface, and said.
+
+    Parameters
+    ----------
+    problem : BlendProblem
+    known : FairSolution, optional
+        That for constant alpha, from where the search for a linear one starts, too.
 
     Raises
     ------
     ComputationError
         No candidate can be measured.
     """
+    found = _searched(problem, known)
+    if problem.exits.u_turn:
+        # Here p2 is worth more than a window that is not met.
+        return found
+    at_end = found.at_end
+    for dropped in (at_end, (True, True)):
+        # Alpha and p2 can be traded one for the other until the window ends: such a side, or both, goes without p2.
+        p2_a, p2_b = (SecondParameter() if d and p2.free else p2 for d, p2 in zip(dropped, problem.p2, strict=True))
+        if any(found.at_end) and (p2_a, p2_b) != problem.p2:
+            without = _searched(replace(problem, p2=(p2_a, p2_b)), known)
+            better = (len(without.condoned), sum(without.at_end)) < (len(found.condoned), sum(found.at_end))
+            found = replace(without if better else found, tried=found.tried + without.tried)
+    return found
+
+
+def _searched(problem: BlendProblem, known: FairSolution | None) -> FairSolution:
+    """Find them with folds and loops refused, or else as much of that as leaves a candidate."""
     refused: dict[str, int] = {}
     for refusable, condoned in (((FOLDS, LOOPS), ()), ((LOOPS,), ("folds",))):
         try:
-            found = _solved(problem, refusable)
+            found = _solved(problem, refusable, known)
         except _AllRefusedError as refusal:
             refused = refused or refusal.counts
             continue
         return replace(found, refused=refused or found.refused, condoned=condoned)
-    return replace(_solved(problem, ()), refused=refused, condoned=("folds", "loops"))
+    return replace(_solved(problem, (), known), refused=refused, condoned=("folds", "loops"))
 
 
 class _AllRefusedError(ComputationError):
@@ -110,7 +138,7 @@ class _AllRefusedError(ComputationError):
         self.counts = counts
 
 
-def _solved(problem: BlendProblem, refusable: tuple[int, ...]) -> FairSolution:
+def _solved(problem: BlendProblem, refusable: tuple[int, ...], known: FairSolution | None = None) -> FairSolution:
     """Find them with what is refused; `_AllRefusedError` where that leaves nothing."""
     # Where a large block was freed, the C library keeps what is freed after it: else half of the time goes into pages.
     np.empty(_WORKSPACE)
@@ -125,7 +153,7 @@ def _solved(problem: BlendProblem, refusable: tuple[int, ...]) -> FairSolution:
     rough = grid(across(u, NODES_U) if problem.exits.u_turn else across(u, ROUGH_U), rough_along(rows), _SCAN_COSINE)
     cells, values = _scan(rough, _WIDE_CELLS if problem.exits.u_turn else _CELLS)
     refused = dict(rough.refused)
-    starts = _starts(cells, values)
+    starts = [*_starts(cells, values), *([] if known is None else [_known_start(problem, unknowns, known)])]
     ends = [_descended(rough, rough.point(start), _NEAR) for start in starts]
     nodes = HIGH_ORDER_NODES_U if max(problem.a.order, problem.b.order) > 2 else NODES_U
     search, fine = grid(across(u, nodes), along(rows)), grid(across(u, 2 * nodes), along(rows, 2))
@@ -150,16 +178,13 @@ def _solved(problem: BlendProblem, refusable: tuple[int, ...]) -> FairSolution:
 
 
 def _scan(objective: FairObjective, cells: int) -> tuple[FloatArray, FloatArray]:
-    """Return the cells of the window, shape (B, n), and their values, one axis for each unknown that is scanned."""
+    """Return the cells of the window, shape (B, n), and their values, with one axis for both ends of each side."""
     unknowns = objective.unknowns
-    is_scanned = unknowns.logarithmic
-    axes = [
-        low + (high - low) * (np.arange(cells) + 0.5) / cells if low < high else np.array([low])
-        for low, high in zip(unknowns.low[is_scanned], unknowns.high[is_scanned], strict=True)
-    ]
-    grids = np.meshgrid(*axes, indexing="ij")
-    points = np.zeros((*grids[0].shape, len(unknowns.low)))
-    points[..., is_scanned] = np.stack(grids, axis=-1)
+    parts = [(np.arange(cells) + 0.5) / cells if unknowns.is_free(side) else np.zeros(1) for side in (0, 1)]
+    points = np.zeros((len(parts[0]), len(parts[1]), len(unknowns.low)))
+    for side, part in enumerate(np.meshgrid(*parts, indexing="ij")):
+        ends = unknowns.ends[side]
+        points[..., ends] = unknowns.low[ends] + part[..., None] * (unknowns.high - unknowns.low)[ends]
     values = objective.values(points.reshape(-1, points.shape[-1])).reshape(points.shape[:-1])
     if not np.isfinite(values).any():
         raise _AllRefusedError(dict(objective.refused))
@@ -213,14 +238,7 @@ def _descended(objective: FairObjective, start: Point, tolerance: float) -> Poin
 def _solution(
     problem: BlendProblem, unknowns: Unknowns, found: Point, fine: FairObjective, tried: int, refused: dict[str, int]
 ) -> FairSolution:
-    a, b = (
-        min(max(float(np.exp(found.x[k])) * unit, low), high)
-        for k, unit, (low, high) in zip((0, 2), problem.natural, problem.bounds, strict=True)
-    )
-    p2_a, p2_b = (
-        float(found.x[k]) * unit if second.free else second.at(alpha)
-        for k, unit, second, alpha in zip((1, 3), problem.natural, problem.p2, (a, b), strict=True)
-    )
+    (a, p2_a), (b, p2_b) = (_side_values(problem, unknowns, found.x, side) for side in (0, 1))
     free = unbound(found.x, found.gradient, unknowns.low, unknowns.high)
     return FairSolution(
         a,
@@ -230,4 +248,38 @@ def _solution(
         float(np.abs(found.gradient[free]).max(initial=0.0)),
         tried,
         refused,
+        at_end=(_is_at_end(unknowns, found.x, 0), _is_at_end(unknowns, found.x, 1)),
     )
+
+
+def _is_at_end(unknowns: Unknowns, y: FloatArray, side: int) -> bool:
+    ends = unknowns.ends[side]
+    low, high = unknowns.low[ends], unknowns.high[ends]
+    # 1e-9: what `active_bounds` takes for rounding.
+    return bool(np.any((low < high) & ((y[ends] <= low + 1e-9) | (y[ends] >= high - 1e-9))))
+
+
+def _side_values(problem: BlendProblem, unknowns: Unknowns, y: FloatArray, side: int) -> tuple[LinearInV, LinearInV]:
+    """Return alpha^2 and p2 of a side."""
+    unit, second, linear = problem.natural[side], problem.p2[side], problem.linear[side]
+    if not problem.free[side]:
+        given = problem.given[side]
+        return given, second.at(given)
+    bounds = (problem.bounds[side],) if linear is None else linear.bounds
+    ends = [
+        min(max(float(np.exp(x)) * unit, low), high)
+        for x, (low, high) in zip(y[unknowns.ends[side]], bounds, strict=True)
+    ]
+    value: LinearInV = ends[0] if linear is None else (ends[0], ends[1])
+    return value, float(y[unknowns.ends[side].stop]) * unit if second.free else second.at(value)
+
+
+def _known_start(problem: BlendProblem, unknowns: Unknowns, known: FairSolution) -> FloatArray:
+    """Return the unknowns at what was found for a constant alpha."""
+    y = np.zeros(len(unknowns.low))
+    for side, (value, second) in enumerate(zip((known.a, known.b), known.p2, strict=True)):
+        if problem.free[side]:
+            y[unknowns.ends[side]] = np.log(np.array(value) / problem.natural[side])
+            if problem.p2[side].free:
+                y[unknowns.ends[side].stop] = np.array(second).mean() / problem.natural[side]
+    return np.clip(y, unknowns.low, unknowns.high)

@@ -14,7 +14,7 @@ from semispline.solver.blending.gram import thin_plate_energy
 from semispline.solver.blending.problem import BlendProblem, make_problem
 from semispline.solver.blending.result import BlendResult, Objective
 from semispline.solver.blending.rounding import measure_energy_rounding, rounding_warning
-from semispline.solver.blending.shape_parameters import Found, active_bounds, bulged
+from semispline.solver.blending.shape_parameters import Found, active_bounds, admissible, bulged
 from semispline.solver.blending.shape_warnings import shape_warnings
 from semispline.solver.blending.sides import Side, make_side, matched_sides
 from semispline.solver.blending.warnings import (
@@ -132,8 +132,8 @@ def blend(
         energy_rounding=rounding.energy,
         alpha2=None if sides[0].order == 0 else found.a,
         beta2=None if sides[1].order == 0 else found.b,
-        alpha2_bounds=problem.bounds[0] if problem.free[0] else None,
-        beta2_bounds=problem.bounds[1] if problem.free[1] else None,
+        alpha2_bounds=admissible(problem, 0),
+        beta2_bounds=admissible(problem, 1),
         active_bounds=active_bounds(problem, layout.found),
         flipped=matched.flipped,
         seam_shift=matched.shift,
@@ -318,8 +318,8 @@ def _checked_contacts(
     contact_a = measure_contact(a, Base(surface, "u0"), correspondence=Correspondence(flipped=False), order=order)
     contact_b = measure_contact(Base(surface, "u1"), b, correspondence=matched, order=order)
     for name, base, contact, wanted, shape in (
-        ("a", a, contact_a, continuity[0], found.a),
-        ("b", b, contact_b, continuity[1], found.b),
+        ("a", a, contact_a, continuity[0], float(np.min(found.a))),
+        ("b", b, contact_b, continuity[1], float(np.min(found.b))),
     ):
         measured = required_limits(contact, wanted)
         if any(np.isnan(value) for _, value, _ in measured):

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from math import comb
-from typing import Any, cast
+from typing import Any, cast, overload
 
 import numpy as np
 
@@ -16,8 +17,9 @@ from semispline.solver.blending.facing import VANISHING, measure_facing
 from semispline.solver.blending.free_system import FreeSystem
 from semispline.solver.blending.gram import EnergyForm
 from semispline.solver.blending.layout import blend_u_basis, middle_bases
+from semispline.solver.blending.linear_alpha import LinearEnds, LinearInV, linear_rows, monomials_of_ends, raised_basis
 from semispline.solver.blending.sides import Side
-from semispline.solver.errors import EdgeError
+from semispline.solver.errors import EdgeError, OptionError
 from semispline.solver.options import Alpha, BlendOptions
 from semispline.solver.splines import (
     Basis,
@@ -49,8 +51,16 @@ class SecondParameter:
     per_a: float = 0.0
     free: bool = False
 
-    def at(self, a: float) -> float:
-        """Return p2 for alpha^2, where it is not searched."""
+    @overload
+    def at(self, a: float) -> float: ...
+    @overload
+    def at(self, a: LinearInV) -> LinearInV: ...
+    def at(self, a: LinearInV) -> LinearInV:
+        """Return p2 for alpha^2, where it is not searched; linear in v where it goes with one that is."""
+        if not self.per_a:
+            return self.value
+        if isinstance(a, tuple):
+            return self.at(a[0]), self.at(a[1])
         return self.value + self.per_a * a
 
 
@@ -74,6 +84,8 @@ class BlendProblem:
         How many derivatives both bases keep across the seam of closed contact curves; -1 where these are open.
     exits : Exits
     p2 : (SecondParameter, SecondParameter)
+    linear : pair of LinearEnds or None
+        Where alpha^2 or beta^2 is linear in v; the rows of that contact then rise in degree.
     """
 
     form: EnergyForm
@@ -85,6 +97,7 @@ class BlendProblem:
     seam_order: int
     exits: Exits
     p2: tuple[SecondParameter, SecondParameter] = (SecondParameter(), SecondParameter())
+    linear: tuple[LinearEnds | None, LinearEnds | None] = (None, None)
 
     @property
     def free(self) -> tuple[bool, bool]:
@@ -96,6 +109,15 @@ class BlendProblem:
     def start(self) -> tuple[float, float]:
         """Natural alpha^2 and beta^2, or the nearest admissible ones."""
         a, b = (min(max(n, low), high) for n, (low, high) in zip(self.natural, self.bounds, strict=True))
+        return a, b
+
+    @property
+    def given(self) -> tuple[LinearInV, LinearInV]:
+        """What alpha^2 and beta^2 are where they are no unknowns: numbers, or pairs of end values."""
+        a, b = (
+            number if ends is None else (ends.bounds[0][0], ends.bounds[1][0])
+            for number, ends in zip(self.start, self.linear, strict=True)
+        )
         return a, b
 
     @property
@@ -132,15 +154,24 @@ class BlendProblem:
         """What has to be solved for the free rows."""
         return FreeSystem(self.form, self.free_rows, [self.seam_order_of(i) for i in self.free_rows])
 
-    def control_points(self, a: float, b: float, p2: tuple[float, float] | None = None) -> FloatArray:
-        """Return p for alpha^2, beta^2 and p2, shape (N, 3): one linear solve for the free rows, of least energy."""
+    def control_points(self, a: LinearInV, b: LinearInV, p2: tuple[LinearInV, LinearInV] | None = None) -> FloatArray:
+        """Return p for alpha^2, beta^2 and p2, shape (N, 3): one linear solve for the free rows, of least energy.
+
+        Where alpha^2 is linear in v, it and p2 may be pairs of end values.
+        """
         points = np.zeros((self.form.offsets[-1], 3))
         seconds = p2 or (self.p2[0].at(a), self.p2[1].at(b))
-        for (side, rows, spans), value, second in zip(self.contacts, (a, b), seconds, strict=True):
-            prescribed_rows = side.contact_rows(value, self.form.u.degree, spans, second)
-            for row, prescribed in zip(rows, prescribed_rows, strict=False):
+        for index, (value, second) in enumerate(zip((a, b), seconds, strict=True)):
+            for row, prescribed in zip(self.contacts[index][1], self._prescribed(index, value, second), strict=False):
                 points[self.form.offsets[row] : self.form.offsets[row + 1]] = prescribed
         return self.completed(points)
+
+    def _prescribed(self, index: int, value: LinearInV, second: LinearInV) -> Sequence[FloatArray]:
+        """Return the rows that a contact prescribes."""
+        (side, _, spans), degree = self.contacts[index], self.form.u.degree
+        if self.linear[index] is not None:
+            return linear_rows(*side.monomial_rows(degree, spans), side.along, value, second)
+        return list(side.contact_rows(cast("float", value), degree, spans, cast("float", second)))
 
     def shape_layers(self) -> tuple[FloatArray, list[FloatArray]]:
         """Return Z_k of P = sum_k m_k Z_k, shape (K, N, 3), with alpha^2 and p2 in units of their natural sizes.
@@ -150,14 +181,17 @@ class BlendProblem:
         offsets, degree = self.form.offsets, self.form.u.degree
         layers = [np.zeros((offsets[-1], 3))]
         exponents = []
-        for (side, rows, spans), unit, is_free, fixed, second in zip(
-            self.contacts, self.natural, self.free, self.start, self.p2, strict=True
-        ):
-            if is_free:
+        for index, (side, rows, spans) in enumerate(self.contacts):
+            unit, linear, second = self.natural[index], self.linear[index], self.p2[index]
+            monomials: Iterable[Iterable[FloatArray]]
+            if not self.free[index]:
+                fixed = self.given[index]
+                powers, monomials = np.zeros((1, 2)), [self._prescribed(index, fixed, second.at(fixed))]
+            elif linear is None:
                 powers, monomials = _without_p2(*side.monomial_rows(degree, spans), second)
             else:
-                powers = np.zeros((1, 2))
-                monomials = side.contact_rows(fixed, degree, spans, second.at(fixed))[None]
+                constant = _without_p2(*side.monomial_rows(degree, spans), second)
+                powers, monomials = monomials_of_ends(*constant, side.along)
             exponents.append(powers)
             for k, (power, monomial) in enumerate(zip(powers, monomials, strict=True)):
                 if k:
@@ -212,7 +246,15 @@ def make_problem(a: Side, b: Side, options: BlendOptions) -> BlendProblem:
     middle = middle_bases(a.along, b.along, middle_curves, given, closed=closed >= 0)
     if closed >= 0 and isinstance(given, str):
         middle = [with_least_size(basis, 2 * basis.degree) for basis in middle]
-    rows = ((a.along,) * a.count) + tuple(middle) + ((b.along,) * b.count)
+    linear_a, linear_b = (
+        _given_ends(alpha) if side.has_shape_parameter else None
+        for side, alpha in zip((a, b), options.alphas, strict=True)
+    )
+    if closed >= 0 and (linear_a or linear_b):
+        raise OptionError(
+            "alpha: found two values for the ends of v on closed contacts, where both are one place; expected one"
+        )
+    rows = (*side_bases(a, linear_a), *middle, *side_bases(b, linear_b)[::-1])
     means = measure_facing(a, b)
     natural_a, natural_b = (
         means.gap / speed if _checked_speed(side, speed, name) else 1.0
@@ -228,7 +270,33 @@ def make_problem(a: Side, b: Side, options: BlendOptions) -> BlendProblem:
     if options.v_scale != "paper":
         length = 1.0 if options.v_scale == "unit" else sum(means.lengths) / 2 / means.gap
         form = EnergyForm(u, tuple(Basis(row.degree, affine_knots(row.knots, 0.0, length)) for row in rows))
-    return BlendProblem(form, rows, a, b, (natural_a, natural_b), (bounds_a, bounds_b), closed, exits, (p2_a, p2_b))
+    return BlendProblem(
+        form,
+        rows,
+        a,
+        b,
+        (natural_a, natural_b),
+        (bounds_a, bounds_b),
+        closed,
+        exits,
+        (p2_a, p2_b),
+        (linear_a, linear_b),
+    )
+
+
+def side_bases(side: Side, linear: LinearEnds | None) -> list[Basis]:
+    """Return the bases of the rows that are a side's own, from the contact on."""
+    return [
+        raised_basis(side.along, r) if linear is not None and r <= side.order else side.along for r in range(side.count)
+    ]
+
+
+def _given_ends(alpha: Alpha | None) -> LinearEnds | None:
+    """Return alpha^2 as given at both ends of v; none where it is not given so."""
+    if not isinstance(alpha, tuple):
+        return None
+    first, last = (float(value) ** 2 for value in alpha)
+    return LinearEnds(((first, first), (last, last)), (1.0, 1.0))
 
 
 def _bounds(
@@ -241,6 +309,9 @@ def _bounds(
     if alpha == "fair":
         low, high = box or (LOW_WINDOW if order > 2 else WIDE_WINDOW if exits.u_turn else WINDOW)
         return natural * exits.arc * low, natural * exits.arc * high
+    if isinstance(alpha, tuple):
+        # `LinearEnds` has them.
+        return 1.0, 1.0
     fixed = natural if alpha == "natural" else float(cast("float", alpha)) ** 2
     return fixed, fixed
 

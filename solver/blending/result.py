@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from semispline.solver.blending.candidates import Candidate
+from semispline.solver.blending.linear_alpha import LinearInV
 from semispline.solver.judge import Contact, Crease, Regularity, ShapeReport
 from semispline.solver.options import BlendOptions, Continuity
 from semispline.solver.proof import Certificate
@@ -57,10 +58,12 @@ class BlendResult:
     energy_rounding : float
         By how much rounding of the control points may change it, at most; above 0.001 of the energy `warnings` say so
         and nothing is proved.
-    alpha2, beta2 : float or None
+    alpha2, beta2 : float, (float, float) or None
         Of (2.1) and (2.2), the bases in their own parameters, the bulge included; 1 for C1 and C2, None for C0 and G0.
+        Where linear in v the pair of values at its start and its end.
     alpha2_bounds, beta2_bounds : (float, float) or None
-        The admissible box; None where there is no such unknown. Method bfgs does not know it: see `warnings`.
+        The admissible box; None where there is no such unknown. Method bfgs does not know it: see `warnings`. Pairs of
+        end values where linear in v.
     active_bounds : tuple of str
         Which bounds stopped the search, such as "alpha2 lower", or were passed by it (method bfgs).
     flipped : bool
@@ -95,8 +98,9 @@ class BlendResult:
         None where the energy is rounding.
     proven_gap : float or None
         What the proof leaves open, as a fraction of the energy.
-    p2 : (float, float)
-        The second shape parameter of each side, P_uu = alpha^4 R_ww + p2 R_w; 0 where nobody asked for it.
+    p2 : pair of float or (float, float)
+        The second shape parameter of each side, P_uu = alpha^4 R_ww + p2 R_w; 0 where nobody asked for it. A pair of
+        end values where it goes with an alpha^2 that is linear in v.
     constraint_rank : (int, int) or None
         Rank of the constraint Jacobian at the solution, and its number of rows; only for method casadi.
     seconds : float
@@ -111,10 +115,10 @@ class BlendResult:
     method: str
     energy: float
     energy_rounding: float
-    alpha2: float | None
-    beta2: float | None
-    alpha2_bounds: tuple[float, float] | None
-    beta2_bounds: tuple[float, float] | None
+    alpha2: LinearInV | None
+    beta2: LinearInV | None
+    alpha2_bounds: tuple[LinearInV, LinearInV] | None
+    beta2_bounds: tuple[LinearInV, LinearInV] | None
     active_bounds: tuple[str, ...]
     flipped: bool
     seam_shift: float
@@ -131,7 +135,7 @@ class BlendResult:
     kkt_residual: float | None
     certificate: Certificate | None
     proven_gap: float | None
-    p2: tuple[float, float]
+    p2: tuple[LinearInV, LinearInV]
     constraint_rank: tuple[int, int] | None
     seconds: float
 

@@ -91,7 +91,9 @@ def _error_factors(problem: BlendProblem, found: Found) -> FloatArray:
     for (side, rows, spans), a, p2 in zip(problem.contacts, (found.a, found.b), found.p2, strict=True):
         # The combinations themselves: of rows (1, 0, ..), (0, 1, ..) and so on.
         weights = replace(side, rows=np.eye(side.count)[:, None])
-        sums = np.abs(weights.contact_rows(a, problem.form.u.degree, spans, p2)).sum(axis=(1, 2))
+        # Where linear in v the weights are largest at an end.
+        largest, second = float(np.max(a)), float(np.max(np.abs(p2)))
+        sums = np.abs(weights.contact_rows(largest, problem.form.u.degree, spans, second)).sum(axis=(1, 2))
         factors[rows[: side.order + 1]] = np.maximum(sums, 1.0)
     return factors
 

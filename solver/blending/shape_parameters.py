@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import cast
 
+from semispline.solver.blending.fair_search import FairSolution, solve_fair
+from semispline.solver.blending.linear_alpha import LinearInV, scaled
 from semispline.solver.blending.problem import BlendProblem
 from semispline.solver.options import BlendOptions
 from semispline.solver.proof import Certificate
@@ -13,8 +16,8 @@ from semispline.solver.proof import Certificate
 class Found:
     """Shape parameters, and how they were found."""
 
-    a: float
-    b: float
+    a: LinearInV
+    b: LinearInV
     method: str
     iterations: int = 0
     kkt_residual: float | None = None
@@ -23,10 +26,19 @@ class Found:
     constraint_rank: tuple[int, int] | None = None
     status: str | None = None
     search_excess: float | None = None
-    p2: tuple[float, float] = (0.0, 0.0)
-    fairness: float | None = None
+    p2: tuple[LinearInV, LinearInV] = (0.0, 0.0)
     known: str = ""
-    condoned: tuple[str, ...] = ()
+    fair: FairSolution | None = None
+
+    @property
+    def fairness(self) -> float | None:
+        """Area times integral of |grad H|^2, where that was minimised."""
+        return None if self.fair is None else self.fair.value
+
+    @property
+    def condoned(self) -> tuple[str, ...]:
+        """What was let pass because every candidate has it."""
+        return () if self.fair is None else self.fair.condoned
 
 
 def find_shape_parameters(problem: BlendProblem, options: BlendOptions) -> Found:
@@ -36,20 +48,10 @@ def find_shape_parameters(problem: BlendProblem, options: BlendOptions) -> Found
     """
     method = options.method
     if not any(problem.free):
-        a, b = problem.start
+        a, b = problem.given
         return Found(a, b, method="linear", p2=(problem.p2[0].at(a), problem.p2[1].at(b)))
     if "fair" in options.alphas:
-        from semispline.solver.blending.fair_search import solve_fair
-
-        fair = solve_fair(problem)
-        known = (
-            f"least of {fair.tried} evaluations from several starts, not proved; slope at the end {fair.slope:.1e}, "
-            f"refused: {fair.refused['folds']} candidates for folds, {fair.refused['loops']} for loops"
-            + (f"; these were all, so that {' and '.join(fair.condoned)} were let pass" if fair.condoned else "")
-        )
-        return Found(
-            fair.a, fair.b, method, fair.tried, p2=fair.p2, fairness=fair.value, known=known, condoned=fair.condoned
-        )
+        return found_fair(solve_fair(problem), method)
     if method == "reduced":
         from semispline.solver.blending.reduced import solve_reduced
 
@@ -76,15 +78,39 @@ def find_shape_parameters(problem: BlendProblem, options: BlendOptions) -> Found
     return Found(rough.a, rough.b, method, rough.iterations, status=rough.status, search_excess=rough.excess)
 
 
+def found_fair(fair: FairSolution, method: str) -> Found:
+    """Return what a fair search found, and say what is known of it."""
+    known = (
+        f"least of {fair.tried} evaluations from several starts, not proved; slope at the end {fair.slope:.1e}, "
+        f"refused: {fair.refused['folds']} candidates for folds, {fair.refused['loops']} for loops"
+        + (f"; these were all, so that {' and '.join(fair.condoned)} were let pass" if fair.condoned else "")
+    )
+    return Found(fair.a, fair.b, method, fair.tried, p2=fair.p2, known=known, fair=fair)
+
+
 def shape_unknowns(problem: BlendProblem, found: Found) -> list[tuple[str, float, float, float]]:
     """Return name, value found and admissible ends of each shape parameter that was searched."""
-    return [
-        (name, value, *ends)
-        for name, is_free, value, ends in zip(
-            ("alpha2", "beta2"), problem.free, (found.a, found.b), problem.bounds, strict=True
-        )
-        if is_free
-    ]
+    unknowns = []
+    for index, (name, value) in enumerate((("alpha2", found.a), ("beta2", found.b))):
+        linear = problem.linear[index]
+        if not problem.free[index]:
+            continue
+        if linear is None or not isinstance(value, tuple):
+            unknowns.append((name, cast("float", value), *problem.bounds[index]))
+        else:
+            unknowns += [(f"{name}[{k}]", value[k], *linear.bounds[k]) for k in (0, 1)]
+    return unknowns
+
+
+def admissible(problem: BlendProblem, index: int) -> tuple[LinearInV, LinearInV] | None:
+    """Return least and largest alpha^2 or beta^2, pairs of end values where it is linear in v; none where given."""
+    if not problem.free[index]:
+        return None
+    linear = problem.linear[index]
+    if linear is None:
+        return problem.bounds[index]
+    (low_0, high_0), (low_1, high_1) = linear.bounds
+    return (low_0, low_1), (high_0, high_1)
 
 
 def active_bounds(problem: BlendProblem, found: Found) -> tuple[str, ...]:
@@ -99,4 +125,4 @@ def active_bounds(problem: BlendProblem, found: Found) -> tuple[str, ...]:
 def bulged(found: Found, bulges: tuple[float, float]) -> Found:
     """Return what was found with the u-lines run through faster: alpha^2 times the bulge, and p2 times its square."""
     (a, b), (p2_a, p2_b) = bulges, found.p2
-    return replace(found, a=found.a * a, b=found.b * b, p2=(p2_a * a**2, p2_b * b**2))
+    return replace(found, a=scaled(found.a, a), b=scaled(found.b, b), p2=(scaled(p2_a, a**2), scaled(p2_b, b**2)))

@@ -8,6 +8,8 @@ from semispline.solver.judge import FOLD_DEGREES, LOOP_DEGREES, Crease, Regulari
 
 # A normal that turns this far within one window is well on its way to a fold.
 STEEP_DEGREES = 60.0
+# A U-turn whose normal turns this far within one window has a tip to be looked at.
+SHARP_TIP_DEGREES = 30.0
 # An area element this far below its mean is as good as none.
 PINCH = 1e-3
 # A blend between closed rims is pinched below this part of the waist of straight rulings.
@@ -73,10 +75,12 @@ def _exits(shape: ShapeReport, fair: str) -> Iterator[str]:
             "another edge, or blend in two steps"
         )
         return
-    if exits.is_u_turn:
+    # A U-turn of even bend is what was asked for.
+    if exits.is_u_turn and shape.turn.degrees > SHARP_TIP_DEGREES:
         yield (
             f"the blend is a U-turn: it leaves its bases {exits.theta_0:.0f} and {exits.theta_1:.0f} degrees away from "
-            "the straight way between the contacts; look at its tip, or name edges that face each other"
+            f"the straight way between the contacts, and turns by {shape.turn.degrees:.0f} degrees at its tip; look at "
+            "it, or name edges that face each other"
         )
     if loop.degrees > LOOP_DEGREES:
         yield (

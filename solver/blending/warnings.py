@@ -96,9 +96,10 @@ def contact_warnings(
         ("a", "b"), bases, contacts, continuity, (found.a, found.b), strict=True
     ):
         bare = bare_places(contact, name)
+        least = float(np.min(shape))
         geometric = wanted[0] == "G" and wanted != "G0"
         for text in doubtful(contact, wanted):
-            warnings.append(f"contact {name}: {text}; {remedy(base, surface, bare, shape if geometric else None)}")
+            warnings.append(f"contact {name}: {text}; {remedy(base, surface, bare, least if geometric else None)}")
         if geometric:
             warnings += [f"base {name}: {place}; {wanted} says nothing there" for place in bare[:_NAMED]]
     return tuple(warnings)

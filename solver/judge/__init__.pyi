@@ -1,4 +1,5 @@
 from .base import Base as Base
+from .base import Edge as Edge
 from .base import local_origin as local_origin
 from .confirmed_meetings import Meeting as Meeting
 from .contact import Contact as Contact
@@ -7,6 +8,7 @@ from .continuity import measure_contact as measure_contact
 from .continuity import model_size as model_size
 from .correspondence import Correspondence as Correspondence
 from .correspondence import correspond as correspond
+from .correspondence import corresponding as corresponding
 from .correspondence import is_closed as is_closed
 from .correspondence import snapped_seam as snapped_seam
 from .correspondence import tied_directions as tied_directions

@@ -69,16 +69,18 @@ def bezier_matrix(degree: int, knots: FloatArray, breaks: FloatArray) -> SparseM
     return blossom_matrix(degree, knots, np.repeat(_middles(breaks), degree + 1), arguments.reshape(-1, degree))
 
 
-def bernstein(degree: int, t: FloatArray) -> FloatArray:
-    """Return the Bernstein polynomials at t, shape (len(t), degree + 1)."""
-    values = np.zeros((len(t), degree + 1))
-    values[:, 0] = 1.0
+def bernstein_by_degree(degree: int, t: FloatArray) -> list[FloatArray]:
+    """Return the Bernstein polynomials at t of the degrees 0 to `degree`, each of shape (len(t), its degree + 1)."""
+    found = [np.ones((len(t), 1))]
     t = t[:, None]
-    for k in range(1, degree + 1):
-        raised = t * values[:, :k]
-        values[:, :k] -= raised
-        values[:, 1 : k + 1] += raised
-    return values
+    for k in range(degree):
+        values = np.empty((len(t), k + 2))
+        raised = t * found[k]
+        values[:, :-1] = found[k] - raised
+        values[:, -1] = 0.0
+        values[:, 1:] += raised
+        found.append(values)
+    return found
 
 
 @dataclass(frozen=True, eq=False)
@@ -121,21 +123,21 @@ def in_pieces(surface: ParametricSurface) -> ParametricSurface:
 
 @dataclass(frozen=True, eq=False)
 class _Pieces:
-    """A surface by the Bezier points of its rows, shape (S, q + 1, (m + 1) x 3), and by the matrix that cuts u."""
+    """A surface by its Bezier points, shape (S, q + 1, U (p + 1) 3): those of all spans of u for each of v."""
 
     breakpoints: tuple[FloatArray, FloatArray]
     degree_u: int
-    rows: FloatArray
-    cut_u: SparseMatrix
+    points: FloatArray
     # Grids share their parameters.
-    known: dict[tuple[int, int, bytes], tuple[NDArray[np.intp], FloatArray]] = field(default_factory=dict)
+    known: dict[tuple[int, bytes], _Places] = field(default_factory=dict)
 
     @staticmethod
     def of(surface: Surface) -> _Pieces:
-        rows = np.concatenate([part.rows for part in parts_of(surface)], axis=2)
-        rows = np.ascontiguousarray(rows.transpose(2, 3, 0, 1)).reshape(*rows.shape[2:], -1)
         breaks = surface.breakpoints
-        return _Pieces(breaks, surface.degree_u, rows, bezier_matrix(surface.degree_u, surface.knots_u, breaks[0]))
+        cut = bezier_matrix(surface.degree_u, surface.knots_u, breaks[0])
+        rows = np.concatenate([part.rows for part in parts_of(surface)], axis=2)
+        points = (cut @ rows.reshape(len(rows), -1)).reshape(-1, *rows.shape[1:]).transpose(2, 3, 0, 1)
+        return _Pieces(breaks, surface.degree_u, np.ascontiguousarray(points).reshape(*points.shape[:2], -1))
 
     @property
     def domain(self) -> tuple[tuple[float, float], tuple[float, float]]:
@@ -145,46 +147,58 @@ class _Pieces:
 
     def evaluate(self, u: ArrayLike, v: ArrayLike, du: int = 0, dv: int = 0) -> FloatArray:
         """Return the point or a derivative at (u[k], v[k]), shape (K, 3)."""
-        (at_u, of_u), (at_v, of_v) = self._basis(0, u, du), self._basis(1, v, dv)
-        cut = np.asarray(self.cut_u.toarray()).reshape(-1, self.degree_u + 1, self.cut_u.shape[1])
-        rows = np.einsum("kj,kjx->kx", of_v, self.rows[at_v]).reshape(len(at_v), self.cut_u.shape[1], 3)
-        return np.asarray(np.einsum("ki,kim,kmd->kd", of_u, cut[at_u], rows))
+        at_u, at_v = self._places(0, u), self._places(1, v)
+        points = self.points.reshape(*self.points.shape[:2], -1, self.degree_u + 1, 3)[at_v.pieces, :, at_u.pieces]
+        return np.asarray(np.einsum("ki,kj,kjid->kd", at_u.basis(du), at_v.basis(dv), points))
 
     def evaluate_grid(self, u: ArrayLike, v: ArrayLike, du: int = 0, dv: int = 0) -> FloatArray:
         """Return the same on the grid u x v, shape (len(u), len(v), 3)."""
-        (at_u, of_u), (at_v, of_v) = self._basis(0, u, du), self._basis(1, v, dv)
-        rows = np.einsum("vj,vjx->vx", of_v, self.rows[at_v])
+        at_u, at_v = self._places(0, u), self._places(1, v)
+        n_v, of_u = len(at_v.pieces), at_u.basis(du)
+        along = np.einsum("vj,vjx->vx", at_v.basis(dv), self.points[at_v.pieces])
         # Components apart, and each in one piece: what is done with them is then done fast.
-        turned = rows.reshape(len(at_v), -1, 3).transpose(1, 2, 0).reshape(-1, 3 * len(at_v))
-        pieces = (self.cut_u @ turned).reshape(-1, self.degree_u + 1, turned.shape[1])
-        found = np.empty((len(at_u), turned.shape[1]))
-        ends = [0, *(np.flatnonzero(at_u[1:] != at_u[:-1]) + 1).tolist(), len(at_u)]
-        for start, end in pairwise(ends):
-            found[start:end] = of_u[start:end] @ pieces[at_u[start]]
-        return found.reshape(len(at_u), 3, len(at_v)).transpose(0, 2, 1)
+        pieces = along.reshape(n_v, -1, 3).transpose(1, 2, 0).reshape(-1, self.degree_u + 1, 3 * n_v)
+        found = np.empty((len(of_u), 3 * n_v))
+        for start, end in pairwise(at_u.ends):
+            found[start:end] = of_u[start:end] @ pieces[at_u.pieces[start]]
+        return found.reshape(len(of_u), 3, n_v).transpose(0, 2, 1)
 
-    def _basis(self, axis: int, x: ArrayLike, order: int) -> tuple[NDArray[np.intp], FloatArray]:
-        """Return the piece of each parameter, and what each Bezier point of the piece has to do with the derivative."""
+    def _places(self, axis: int, x: ArrayLike) -> _Places:
         x = np.asarray(x, dtype=np.float64)
-        key = axis, order, x.tobytes()
+        key = axis, x.tobytes()
         if key not in self.known:
-            breaks = self.breakpoints[axis]
-            at = np.searchsorted(breaks[1:-1], x, side="right")
-            self.known[key] = at, _derivatives(self._degree(axis), x, breaks, at, order)
+            degree = self.degree_u if axis == 0 else self.points.shape[1] - 1
+            self.known[key] = _Places.of(x, self.breakpoints[axis], degree)
         return self.known[key]
 
-    def _degree(self, axis: int) -> int:
-        return self.degree_u if axis == 0 else self.rows.shape[1] - 1
 
+@dataclass(frozen=True, eq=False)
+class _Places:
+    """Parameters: their pieces, where another piece begins, how wide each is, and Bernstein polynomials by degree."""
 
-def _derivatives(degree: int, x: FloatArray, breaks: FloatArray, at: NDArray[np.intp], order: int) -> FloatArray:
-    """Return the derivatives of the Bernstein polynomials of each parameter's own span, shape (len(x), degree + 1)."""
-    if order > degree:
-        return np.zeros((len(x), degree + 1))
-    start = breaks[at]
-    width = breaks[at + 1] - start
-    values = bernstein(degree - order, (x - start) / width)
-    return np.asarray(values @ _differences(degree, order) / width[:, None] ** order) if order else values
+    pieces: NDArray[np.intp]
+    ends: list[int]
+    widths: FloatArray
+    values: list[FloatArray]
+    known: dict[int, FloatArray] = field(default_factory=dict)
+
+    @staticmethod
+    def of(x: FloatArray, breaks: FloatArray, degree: int) -> _Places:
+        at = np.searchsorted(breaks[1:-1], x, side="right")
+        ends = [0, *(np.flatnonzero(at[1:] != at[:-1]) + 1).tolist(), len(x)]
+        start = breaks[at]
+        widths = (breaks[at + 1] - start)[:, None]
+        return _Places(at, ends, widths, bernstein_by_degree(degree, (x - start) / widths[:, 0]))
+
+    def basis(self, order: int) -> FloatArray:
+        """Return what each Bezier point of the own piece has to do with a derivative, shape (len(x), degree + 1)."""
+        if order not in self.known:
+            degree = len(self.values) - 1
+            if order > degree:
+                self.known[order] = np.zeros_like(self.values[degree])
+            else:
+                self.known[order] = self.values[degree - order] @ _differences(degree, order) / self.widths**order
+        return self.known[order]
 
 
 @cache

@@ -38,6 +38,7 @@ from .quadrature import sample as sample
 from .refinement import blossom_matrix as blossom_matrix
 from .refinement import clamp_knots as clamp_knots
 from .refinement import elevation_matrix as elevation_matrix
+from .refinement import linear_product_matrices as linear_product_matrices
 from .refinement import refinement_matrix as refinement_matrix
 from .surfaces import BSplineCurve as BSplineCurve
 from .surfaces import BSplineSurface as BSplineSurface

@@ -173,6 +173,36 @@ def elevation_matrix(degree: int, knots: FloatArray, new_degree: int) -> SparseM
     return matrix
 
 
+def linear_product_matrices(degree: int, knots: FloatArray) -> tuple[SparseMatrix, SparseMatrix, FloatArray]:
+    """Return the matrices of the products with 1 - s and with s, and their knots; s goes from 0 to 1 over the domain.
+
+    A product has one degree more, and `elevated_knots`. Control point j is the mean over r of s(W[j + r]) times the
+    blossom at the other knots of W[j + 1] .. W[j + degree + 1]; all steps are convex combinations.
+
+    Source: `semispline.derivations.linear_alpha`.
+
+    Examples
+    --------
+    >>> falling, rising, raised = linear_product_matrices(1, np.array([0, 0, 1, 1.0]))
+    >>> rising.toarray(), raised
+    (array([[0. , 0. ],
+           [0.5, 0. ],
+           [0. , 1. ]]), array([0., 0., 0., 1., 1., 1.]))
+    """
+    raised = elevated_knots(knots)
+    n = len(raised) - degree - 2
+    window = _windows(raised, degree + 1, n)
+    span = _spans(degree, knots, raised[:n])
+    s = (window - knots[0]) / (knots[-1] - knots[0])
+    falling, rising = np.zeros((n, degree + 1)), np.zeros((n, degree + 1))
+    for i in range(degree + 1):
+        blossom = _blossom_values(degree, knots, span, np.delete(window, i, axis=1)) / (degree + 1)
+        falling += (1.0 - s[:, i : i + 1]) * blossom
+        rising += s[:, i : i + 1] * blossom
+    count = len(knots) - degree - 1
+    return _banded(falling, span - degree, count), _banded(rising, span - degree, count), raised
+
+
 def restriction_matrix(degree: int, knots: FloatArray, start: float, end: float) -> tuple[SparseMatrix, FloatArray]:
     """Return the matrix that restricts a spline to [start, end], and the clamped knots of the piece.
 

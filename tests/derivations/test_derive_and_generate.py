@@ -20,7 +20,9 @@ from semispline.derivations.results import FORMS, RESULTS, Request, show
 from semispline.derivations.splines import end_derivatives
 
 ROOT = Path(__file__).parents[2]
-FORMULAS = ("energy", "special-conditions", "stationarity")
+FORMULAS = (
+    "energy", "fairness", "linear-power", "linear-product", "shape-conditions", "special-conditions", "stationarity",
+)  # fmt: skip
 
 
 def run(arguments, folder=ROOT):
@@ -79,6 +81,59 @@ def test_derived_rows_are_what_they_say():
     found = [eval(rows[f"P_{i}"], {}, names) for i in range(3)]
     # By hand: P_0 = 1; P_1 = 1 - 0.375; P_2 = 1 - 1.125 + 0.28125 * ((4 - 2)/2 - (2 - 1)/1).
     assert found == pytest.approx([1.0, 0.625, -0.125], rel=1e-15)
+
+
+def equations(call, names):
+    """The right sides that `derive` prints for a call, with numbers put in."""
+    lines = (line.split(" = ") for line in derived(call).splitlines())
+    return {left: eval(right, {"sqrt": np.sqrt}, names) for left, right in lines}
+
+
+def test_conditions_with_p2_are_those_of_a_base_run_through_unevenly():
+    # P(u) = R(w), w = -a u + p2 u^2 / 2: of R = w^2 and R = w^4, by hand.
+    a, p2 = 1.5, 0.4
+    names = {"a": a, "p2": p2, "R": 0.0, "R_w": 0.0, "R_www": 0.0, "R_wwww": 0.0, "R_ww": 2.0}
+    found = equations("shape-conditions --order 4", names)
+    # w^2 = a^2 u^2 - a p2 u^3 + p2^2 u^4 / 4.
+    assert list(found.values()) == pytest.approx([0.0, 0.0, 2 * a**2, -6 * a * p2, 6 * p2**2], rel=1e-15)
+    found = equations("shape-conditions --order 4", names | {"R_ww": 0.0, "R_wwww": 24.0})
+    assert list(found.values()) == pytest.approx([0.0, 0.0, 0.0, 0.0, 24 * a**4], rel=1e-15)
+    found = equations("shape-conditions --order 2", names | {"R_w": 3.0, "R_ww": 0.0})
+    assert list(found.values()) == pytest.approx([0.0, -3 * a, 3 * p2], rel=1e-15)
+
+
+def test_rows_from_derivatives_are_those_of_a_power():
+    # u^3 of degree 3 over knots 0 (four times), 1/4, 1/2, 1: its control points are products of three knots.
+    names = {"h1": 0.25, "h2": 0.5, "h3": 1.0, "p": 3, "P": 0.0, "P_u": 0.0, "P_uu": 0.0, "P_uuu": 6.0}
+    found = equations("derivative-rows --order 3 --degree 3", names)
+    assert list(found.values()) == pytest.approx([0.0, 0.0, 0.0, 0.25 * 0.5 * 1.0], rel=1e-15)
+    # u itself: the means of three knots.
+    found = equations("derivative-rows --order 3 --degree 3", names | {"P_u": 1.0, "P_uuu": 0.0})
+    assert list(found.values()) == pytest.approx([0.0, 0.25 / 3, 0.25, 1.75 / 3], rel=1e-15)
+
+
+def test_a_linear_alpha_is_a_mean_of_its_ends_and_multiplies_splines():
+    a0, a1, s = 2.0, 5.0, 0.25
+    (power,) = equations("linear-power --order 3", {"a0": a0, "a1": a1, "s": s}).values()
+    assert power == pytest.approx((0.75 * a0 + 0.25 * a1) ** 3, rel=1e-15)
+    # v times v over two spans: knots 0, t, 1; products of two knots of the raised vector.
+    t = 0.4
+    names = {"g0": 0.0, "g1": 1.0, "t": t, "P_0": 0.0, "P_1": t, "P_2": 1.0}
+    found = equations("linear-product --degree 1 --knots 0,0,t,1,1", names)
+    assert list(found.values()) == pytest.approx([0.0, 0.0, t * t, t, 1.0], rel=1e-15)
+
+
+def test_the_fairness_of_a_sphere_and_of_a_slope():
+    # At a point of a sphere of radius 2 in an orthonormal frame, and with E = 4, G = 9 and H rising by 3 along v.
+    flat = {"E": 1.0, "F": 0.0, "G": 1.0, "L": 0.5, "M": 0.0, "N": 0.5, "H_u": 0.0, "H_v": 0.0}
+    found = equations("fairness", flat)
+    assert (found["H"], found["g_H"]) == (0.5, 0.0)
+    found = equations("fairness", flat | {"E": 4.0, "G": 9.0, "H_v": 3.0})
+    # |grad H|^2 = (3 / 3)^2, dA = 6 du dv.
+    assert found["g_H"] == pytest.approx(6.0)
+    # Skew coordinates: x = u + v, y = v, H = x: |grad H| = 1, dA = du dv.
+    skew = {"E": 1.0, "F": 1.0, "G": 2.0, "H_u": 1.0, "H_v": 1.0}
+    assert equations("fairness", flat | skew)["g_H"] == pytest.approx(1.0)
 
 
 @pytest.mark.parametrize("order", range(4))

@@ -3,7 +3,13 @@
 import pytest
 from sympy import Matrix, Rational, Symbol, diff, expand, sqrt, symbols
 
-from semispline.derivations.fairness import DERIVATIVES, Program, fairness_program, reversed_program
+from semispline.derivations.fairness import (
+    DERIVATIVES,
+    Program,
+    fairness_formulas,
+    fairness_program,
+    reversed_program,
+)
 
 X, Y = symbols("x y")
 
@@ -92,3 +98,24 @@ def test_steps_that_no_output_needs_are_left_out():
     x, y, z = symbols("x y z")
     gradient = reversed_program(Program((x,), ((y, expand(3 * x)), (z, x**2)), (z,)))
     assert [name.name for name, _ in gradient.steps] == ["d_x"]
+
+
+def test_formulas_are_what_the_program_computes():
+    program = fairness_program()
+    surface = Matrix([X + X * Y / 2, Y - X**2 / 3, X**3 / 3 - X * Y**2 + Y])
+    at = {X: Rational(1, 3), Y: Rational(-2, 5)}
+    p = {"u": surface.diff(X), "v": surface.diff(Y)}
+    p |= {"uu": p["u"].diff(X), "uv": p["u"].diff(Y), "vv": p["v"].diff(Y)}
+    m = p["u"].cross(p["v"])
+    area = sqrt(m.dot(m))
+    forms = {"E": p["u"].dot(p["u"]), "F": p["u"].dot(p["v"]), "G": p["v"].dot(p["v"])}
+    forms |= {letter: p[name].dot(m) / area for letter, name in zip("LMN", ("uu", "uv", "vv"), strict=True)}
+    (_, mean), (_, square) = fairness_formulas()
+    curvature = mean.subs({Symbol(name): value for name, value in forms.items()})
+    values = {name: value.subs(at) for name, value in forms.items()}
+    values |= {"H_u": curvature.diff(X).subs(at), "H_v": curvature.diff(Y).subs(at)}
+    rough, element, h, _ = run(program, derivative_values(program, surface, at))
+    known = [formula.subs({Symbol(name): value for name, value in values.items()}) for formula in (mean, square)]
+    assert (known[0] - h).simplify() == 0
+    assert abs((known[1] - rough).evalf(30)) < 1e-25
+    assert (area.subs(at) - element).simplify() == 0

@@ -6,15 +6,20 @@ from helpers.bases import random_knots
 from semispline import Base, BSplineSurface
 
 
-def random_facing(rng, *, least_angle=0.0, most_angle=80.0, wave=0.05):
+def random_facing(rng, *, least_angle=0.0, most_angle=80.0, wave=0.05, most_yaw=0.0):
     """Return two bases whose contacts, about 1 long, face each other; exits leave by angles of either sign, in degrees.
 
-    The gap is .2 to 2 contact lengths; the parameter across runs over decades.
+    The gap is .2 to 2 contact lengths; the parameter across runs over decades. A yaw, in degrees, turns the second base
+    so that the gap grows along the contact.
     """
     gap = np.exp(rng.uniform(np.log(0.2), np.log(2.0)))
     offset = np.array([gap, rng.uniform(-0.2, 0.2), rng.uniform(-0.3, 0.3) * gap])
     twist = np.radians(rng.uniform(-20, 20))
     turn = np.array([[1, 0, 0], [0, np.cos(twist), -np.sin(twist)], [0, np.sin(twist), np.cos(twist)]])
+    yaw = np.radians(rng.uniform(-most_yaw, most_yaw))
+    turn = np.array([[np.cos(yaw), -np.sin(yaw), 0], [np.sin(yaw), np.cos(yaw), 0], [0, 0, 1]]) @ turn
+    # About the middle of the contact, as far as the gap allows.
+    offset = offset + (np.eye(3) - turn) @ [0, 0.5, 0] + [abs(np.sin(yaw)) / 2, 0, 0]
     bases = []
     for side in range(2):
         angle = np.radians(rng.uniform(least_angle, most_angle)) * rng.choice([-1, 1])

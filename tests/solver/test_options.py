@@ -29,6 +29,7 @@ OTHER = {
     "u_knots": ((0.25, 0.5), ["--u-knots", "0.25,0.5"]),
     "middle_knots": (((0.5,), ()), ["--middle-knots", "0.5", "--middle-knots", ","]),
     "strict": (True, ["--strict"]),
+    "search_meets": (True, ["--search-meets"]),
 }
 
 

@@ -76,7 +76,7 @@ def _numbers(result: BlendResult, side: Side, base_degree: int, spans: tuple[flo
     # The paper counts the inner knots of U as u_1 .. u_(m-k+1); past them come the ones of the clamped end.
     u = {i: float(surface.knots_u[k - 1 + i]) for i in range(-k + 1, m + 2)}
     a, b = result.alpha2, result.beta2
-    if a is None or b is None:
+    if not isinstance(a, float) or not isinstance(b, float):
         raise ValueError("result: no shape parameters, expected a blend with C or G contact of order 1 or more")
     common = {pr.k: k, pr.u_1: u[1], pr.u_2: u[2], pr.u_m3: u[m - 3], u_last: u[m - k + 1], u_before: u[m - k]}
     if side == "start":

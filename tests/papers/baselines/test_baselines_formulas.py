@@ -16,7 +16,7 @@ from semispline.papers.baselines.splines import as_spline
 from semispline.papers.lin2014.examples.section5 import example
 from semispline.solver.judge.de_boor import surface_points
 
-ORDERS = [(du, dv) for du in range(3) for dv in range(3 - du)]
+ORDERS = [(du, dv) for du in range(4) for dv in range(4 - du)]
 
 
 # ---------------------------------------------------------------- Hartmann

@@ -114,8 +114,9 @@ PROGRAMS = ("open-cascade-filling", "smlibpy")
 # On folded surfaces curvature has no bound, and samples of it no meaning.
 FOLDED = ("hartmann-inside",)
 G2 = (
-    "semistructured-reduced", "semistructured-casadi", "semistructured-bfgs", "same-knots-g2", "quintic-hermite",
-    "quintic-hermite-least", "hartmann-extended", "bloor-wilson-6", "triharmonic", "thin-plate-refined",
+    "semistructured-fair", "semistructured-reduced", "semistructured-casadi", "semistructured-bfgs", "same-knots-g2",
+    "quintic-hermite", "quintic-hermite-least", "hartmann-extended", "bloor-wilson-6", "triharmonic",
+    "thin-plate-refined",
 )  # fmt: skip
 G1 = ("same-knots-g1", "bloor-wilson-4")
 
@@ -206,6 +207,17 @@ def test_least_energy_is_least(figure, compared):
     assert energy["same-knots-g1"] < rival
     assert energy["thin-plate-refined"] < energy["triharmonic"]
     assert energy["quintic-hermite-least"] <= energy["quintic-hermite"]
+
+
+@pytest.mark.parametrize("figure", FIGURES)
+def test_the_fairest_blend_is_fairer_than_each_of_the_papers_with_fewer_points(figure, compared):
+    rows = {name: row.measures for name, row in compared(figure).items() if row.measures is not None}
+    fair = rows["semistructured-fair"]
+    for name in ("paper-corrected", "semistructured-c2", "semistructured-reduced"):
+        assert fair.fairness < 0.75 * rows[name].fairness, name
+        assert fair.control_points <= rows[name].control_points, name
+    assert fair.turn_degrees < 7
+    assert fair.energy >= rows["semistructured-reduced"].energy * 0.98
 
 
 def test_where_rivals_are_better(compared):

@@ -102,6 +102,11 @@ def test_the_first_words_say_what_was_found(results, parsed):
     assert "A note with <angle> brackets & more." in words
 
 
+def test_each_view_opens_with_the_fairest_blend(results, html):
+    first = re.findall(r"<select><option value='0'>([^<]+)</option>", html)
+    assert first == ["G2, fairest shape (the default)"] * len(results.comparisons)
+
+
 def test_every_method_has_its_line_or_its_reason(results):
     for name, comparisons in results.comparisons.items():
         table = methods_table(comparisons)
@@ -109,6 +114,8 @@ def test_every_method_has_its_line_or_its_reason(results):
         assert all(len(row) == len(table.head) for row in table.rows)
         energies = [row[table.head.index("energy (11)")] for row in table.rows]
         assert energies == [cell(c.measures.energy) for c in comparisons if c.measures]
+        fairness = [row[table.head.index("fairness")] for row in table.rows]
+        assert fairness == [cell(c.measures.fairness) for c in comparisons if c.measures]
         assert ("Bloor-Wilson" in table.note) is (name != "figure-10")
     closed = methods_table(results.comparisons["figure-10"])
     assert all("seam" in row[-1] for row in closed.rows)
@@ -129,7 +136,7 @@ def test_the_chart_has_every_usable_method_once(results):
     labels = re.findall(r"class='mark'>([\d, ]+)<", chart)
     numbers = sorted(int(n) for label in labels for n in label.split(","))
     assert numbers == [i for i, c in enumerate(comparisons, 1) if c.outcome and c.outcome.control_points]
-    assert [METHODS[n - 1] for n in numbers] == list(METHODS[:4])
+    assert [METHODS[n - 1] for n in numbers] == list(METHODS[:5])
     assert energy_chart(comparisons[:1]) == ""
 
 

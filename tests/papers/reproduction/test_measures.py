@@ -18,7 +18,13 @@ from semispline.papers.reproduction.contact_measures import (
     seam_measure,
     turn_between,
 )
-from semispline.papers.reproduction.measures import bending_and_area, mean_curvature_range, measure, plate_energy
+from semispline.papers.reproduction.measures import (
+    bending_and_area,
+    mean_curvature_range,
+    measure,
+    plate_energy,
+    settled_fairness,
+)
 from semispline.solver.splines.construction import plane, revolve
 from semispline.solver.splines.operations import reverse_u
 
@@ -67,6 +73,44 @@ def test_a_strip_that_goes_on_turns_off_or_runs_back(end, turn, flipped):
 def test_energy_of_formulas_is_that_of_splines(curved):
     surface = curved[2]
     np.testing.assert_allclose(plate_energy(as_formula(surface)), plate_energy(surface), rtol=1e-12)
+
+
+def test_fairness_of_formulas_is_that_of_splines(curved):
+    surface = curved[2]
+    np.testing.assert_allclose(settled_fairness(as_formula(surface)), settled_fairness(surface), rtol=1e-9)
+
+
+def test_known_fairness():
+    def torus(u, v, du, dv):
+        def wave(x, order):
+            return np.cos(x + order * np.pi / 2)
+
+        # A tube of radius 1 round a circle of radius 3, u along the circle and v round the tube.
+        tube = wave(v, dv) + (3 if dv == 0 else 0)
+        return np.stack(
+            [wave(u, du) * tube, wave(u - np.pi / 2, du) * tube, (du == 0) * wave(v - np.pi / 2, dv) + 0 * u], 1
+        )
+
+    half = FormulaSurface(torus, np.array([0.0, 1.0]), np.array([0.0, np.pi]))
+    # H = (3 + 2 cos v) / (2 (3 + cos v)), dH/dv = -3 sin v / (2 (3 + cos v)^2), dA = (3 + cos v) du dv.
+    x, w = np.polynomial.legendre.leggauss(60)
+    v = np.pi / 2 * (1 + x)
+    integral = np.pi / 2 * float(w @ (9 * np.sin(v) ** 2 / (4 * (3 + np.cos(v)) ** 3)))
+    np.testing.assert_allclose(settled_fairness(half), 3 * np.pi * integral, rtol=1e-6)
+
+
+def test_fairness_of_a_fold_is_not_told():
+    # A strip that runs to x = 1 and back: a hairpin turns by more than 90 degrees within its window.
+    def strip(height):
+        net = [[[x, y, z] for y in (0, 1)] for x, z in ((0, 0), (1, 0), (1, height), (0, height))]
+        return BSplineSurface(3, 1, [0] * 4 + [1] * 4, [0, 0, 1, 1], net)
+
+    for height, folds in ((0.1, True), (0.3, False)):
+        found = measure(planes_task(), outcome(strip(height)))
+        assert (found.turn_degrees > 90) == folds
+        # It could be told.
+        assert settled_fairness(strip(height)) > 1e3
+        assert (found.fairness is None) == folds
 
 
 def test_known_energy():

@@ -13,6 +13,7 @@ from semispline.papers.lin2014.findings import findings, meets_demand
 from semispline.papers.lin2014.study import study
 from semispline.papers.report.documents import markdown, numbers, write_report
 from semispline.papers.report.ledger_as_markdown import STUDY_HEADING, ledger_markdown, with_study_kept
+from semispline.papers.report.table_text import cell
 from semispline.papers.report.versions import environment
 from semispline.papers.reproduction.study import Drawing
 from semispline.solver.io.json_text import load_json
@@ -118,6 +119,65 @@ def test_findings_follow_the_measures(results):
     assert f"up to {max(jumps):.2g} " in found["Run"].detail
 
 
+def test_the_fairest_blend_is_the_first_column_of_the_pairs(results):
+    by_name = {c.method.name: c for c in results.comparisons["made"]}
+    rows = {row[0]: row[1:] for row in results.blends.rows}
+    assert rows["blend"] == ("G2, fairest", "G2, least energy", "C2, least energy")
+    shown = [by_name[f"semistructured-{name}"].measures for name in ("fair", "reduced", "c2")]
+    assert rows["fairness"] == tuple(cell(m.fairness) for m in shown)
+    assert rows["largest turn inside [°]"] == tuple(cell(m.turn_degrees) for m in shown)
+    assert shown[0].fairness < min(m.fairness for m in shown[1:])
+
+
+def test_findings_say_what_fairness_wins_and_whom_it_loses_to(results):
+    short = "The fairest blend, which is the default, beats that of least energy in"
+    found = next(f for f in findings(results.comparisons) if f.short.startswith(short))
+    assert found.short.endswith("3 of 3 examples")
+    quotients = [
+        rows["semistructured-reduced"].measures.fairness / rows["semistructured-fair"].measures.fairness
+        for rows in ({c.method.name: c for c in found} for found in results.comparisons.values())
+    ]
+    assert f"is {min(quotients):.3g} to {max(quotients):.3g} times as much" in found.detail
+    assert "folds in none" in found.detail
+    assert "fairer somewhere: none." in found.detail
+    # A rival that becomes fairer is named, one that folds is not; a blend that becomes unfair loses.
+    changed = {
+        name: [
+            altered(c, fairness=1e-3, turn_degrees=5.0 if name == "made" else 100.0)
+            if c.method.name == "paper-corrected"
+            else altered(c, fairness=1e9)
+            if c.method.name == "semistructured-fair" and name == "figure-6"
+            else c
+            for c in rows
+        ]
+        for name, rows in results.comparisons.items()
+    }
+    lost = next(f for f in findings(changed) if f.short.startswith(short))
+    assert lost.short.endswith("2 of 3 examples")
+    assert "the paper corrected (the made pair)" in lost.detail
+
+
+def altered(comparison, **measures):
+    return replace(comparison, measures=replace(comparison.measures, **measures))
+
+
+def test_the_finding_on_a_real_pair_says_which_blends_fold(results):
+    real = {"blades": results.comparisons["made"]}
+    (none,) = (f for f in findings(real) if f.short.startswith("On the real pair (blades)"))
+    assert none.short.endswith("0 of 3 blends fold, and the fairest does not")
+    assert none.detail.startswith("Each of them meets both bases exactly.")
+    for name in ("semistructured-c2", "semistructured-fair"):
+        turned = [altered(c, turn_degrees=171.0) if c.method.name == name else c for c in real["blades"]]
+        (found,) = (f for f in findings({"blades": turned}) if f.short.startswith("On the real pair"))
+        assert found.short.endswith(
+            "1 of 3 blends fold, and the fairest does " + ("so too" if name == "semistructured-fair" else "not")
+        )
+        assert "turns by up to 171 degrees" in found.detail
+    # Nothing to compare with: nothing is said.
+    alone = {"blades": [c for c in real["blades"] if c.method.name == "semistructured-fair"]}
+    assert not [f for f in findings(alone) if "real pair" in f.short]
+
+
 def test_findings_change_when_a_result_does(results):
     """Rows as printed under the name of the corrected ones: no promise is kept where they miss."""
     swapped = {}
@@ -143,6 +203,8 @@ def test_the_study_names_every_figure_once_and_only_its_own_pictures():
     assert len(names) == len(set(names))
     assert {f"figure-{i}" for i in range(1, 12)} <= set(names)
     assert {name for example in whole.examples for name in example.pictures} <= set(names)
+    # Pictures of the pairs are of one blend, the fairest.
+    assert {name for name in names if "made" in name} == {"made-shaded", "made-zebra"}
     tasks = [example.task.name for example in whole.examples]
     assert tasks[:7] == [*(f"figure-{i}" for i in (5, 6, 8, 9, 10, 11)), "made"]
 

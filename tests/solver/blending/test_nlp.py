@@ -1,5 +1,6 @@
 """The constrained problem: its derivatives against SymPy's, a Taylor test, and its solution against a plain search."""
 
+from dataclasses import replace
 from fractions import Fraction
 
 import casadi as ca
@@ -10,12 +11,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.optimize import minimize
 
-from helpers.bases import FACING, facing_pair, moved, patch
-from helpers.papers_set import blend, make_problem
+from helpers.bases import FACING, facing_pair, moved, patch, tube
+from helpers.papers_set import blend, make_problem, state_problem
 from semispline import Base, BSplineSurface, ComputationError
 from semispline.derivations.energy import Basis as ExactBasis
 from semispline.derivations.energy import ExactSurface
 from semispline.derivations.problem import ExactBase, blend_problem, derivatives_at, lagrangian
+from semispline.solver.blending import nlp
 from semispline.solver.blending.nlp import constrained_problem, solve_constrained, sparse_rank
 from semispline.solver.blending.sides import make_side, matched_sides
 from semispline.solver.judge.correspondence import Correspondence
@@ -195,6 +197,88 @@ def test_what_ipopt_did_not_solve_is_an_error(monkeypatch):
     monkeypatch.setattr("semispline.solver.blending.nlp.KKT_LIMIT", 1e-30)
     with pytest.raises(ComputationError, match=r"IPOPT ended with .* KKT residual .* try"):
         solve_constrained(small_problem(0))
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+@pytest.mark.parametrize(
+    ("name", "said"), [("lam_x", r"KKT residual 1\.0e-03"), ("g", r"constraints missed by 1\.0e-03")]
+)
+def test_what_is_off_in_one_place_counts_with_either_sign(monkeypatch, name, said, sign):
+    def slightly_off(*words, **start):
+        result, stats = optimum(*words, **start)
+        # A multiplier of the bounds that a control point does not have; a condition that is not met.
+        wrong = np.asarray(result[name]).ravel().copy()
+        wrong[0] += sign * 1e-3
+        return {**result, name: ca.DM(wrong)}, stats
+
+    optimum = nlp._optimum
+    solve_constrained(small_problem(0))
+    monkeypatch.setattr(nlp, "_optimum", slightly_off)
+    with pytest.raises(ComputationError, match=said):
+        solve_constrained(small_problem(0))
+
+
+@pytest.mark.parametrize("times", [0.5, 2.0])
+def test_a_multiplier_of_a_bound_that_is_not_met_counts(monkeypatch, times):
+    # Least energy for shape parameters off the best: stationary but for them, where multipliers pretend a bound.
+    problem = small_problem(0)
+    best = solve_constrained(problem)
+    stated = constrained_problem(problem)
+    points = problem.control_points(times * best.a, times * best.b)
+    shape = np.sqrt(times * np.array([best.a, best.b]) / problem.natural)
+    x = np.concatenate([points.T.ravel(), shape])
+    slope, jacobian = (
+        np.asarray(ca.Function("f", [stated.x], [of])(x).full())
+        for of in (ca.gradient(stated.f, stated.x), ca.jacobian(stated.g, stated.x))
+    )
+    lam_g = np.linalg.lstsq(jacobian[:, :-2].T, -slope[:-2], rcond=None)[0]
+    lam_x = np.zeros((len(x), 1))
+    lam_x[-2:] = -(slope + jacobian.T @ lam_g)[-2:]
+    assert (lam_x[-2:] > 0).all() == (times < 1)
+    assert (lam_x[-2:] < 0).all() == (times > 1)
+    result = {
+        "x": ca.DM(x),
+        "f": 1.0,
+        "g": ca.DM.zeros(stated.g.shape[0]),
+        "lam_g": ca.DM(lam_g),
+        "lam_x": ca.DM(lam_x),
+    }
+    monkeypatch.setattr(nlp, "_optimum", lambda *_, **__: (result, {"iter_count": 1, "return_status": "Made_Up"}))
+    with pytest.raises(ComputationError, match="IPOPT ended with Made_Up after 1 steps, KKT residual") as error:
+        solve_constrained(problem)
+    assert "constraints missed by 0.0e+00" in str(error.value)
+
+
+@pytest.mark.parametrize(("low", "high", "start"), [(0.25, 4.0, 1.0), (1.44, 4.0, 1.2), (0.25, 0.81, 0.9)])
+def test_the_search_starts_at_the_natural_size_or_the_nearest_bound(low, high, start):
+    problem = small_problem(0)
+    bounds = tuple((n * low, n * high) for n in problem.natural)
+    stated = constrained_problem(replace(problem, bounds=bounds))
+    assert stated.start[-2:] == pytest.approx([start] * 2, rel=1e-12)
+    assert stated.lower[-2:] == pytest.approx([np.sqrt(low)] * 2, rel=1e-12)
+    assert stated.upper[-2:] == pytest.approx([np.sqrt(high)] * 2, rel=1e-12)
+    assert np.isinf([*stated.lower[:-2], *stated.upper[:-2]]).all()
+
+
+@pytest.mark.parametrize("degree", [1, 2, 3])
+def test_closed_rows_have_a_condition_for_each_derivative_at_the_seam(degree):
+    rng = np.random.default_rng(degree)
+    pair = tube(rng, 6, degree=degree), tube(rng, 7, degree=degree, heights=(4.0, 3.0), phase=0.7)
+    bases = [Base(s, "u1") for s in pair]
+    for continuity, prescribed in (("C0", 1), ("G1", 2)):
+        problem = state_problem(*bases, continuity=continuity, middle_curves=1).problem
+        orders = [problem.seam_order_of(i) for i in problem.free_rows]
+        assert min(orders) == degree - 1
+        stated = constrained_problem(problem)
+        rows = [*range(prescribed), *range(len(problem.rows) - prescribed, len(problem.rows))]
+        owned = 3 * sum(problem.rows[i].size for i in rows)
+        assert stated.g.shape[0] == owned + 3 * sum(order + 1 for order in orders)
+        # They hold for the blend, and not where the last point of a free row is moved.
+        missed = ca.Function("g", [stated.x], [stated.g])
+        assert np.abs(np.asarray(missed(stated.start))).max() < 1e-11
+        moved_one = stated.start.copy()
+        moved_one[problem.form.offsets[problem.free_rows[0] + 1] - 1] += 0.1
+        assert np.abs(np.asarray(missed(moved_one))).max() > 0.01
 
 
 @pytest.mark.parametrize("pair", [("G2", "G2"), ("G1", "C1"), ("G2", "G0")])

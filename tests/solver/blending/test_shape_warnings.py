@@ -16,6 +16,7 @@ from semispline import (
     ComputationError,
     FoldError,
     SemiStructuredSurface,
+    measure_exits,
     measure_regularity,
     measure_shape,
     read_surface,
@@ -172,10 +173,29 @@ def test_sixty_degrees_beyond_the_exits_are_a_loop(degrees, loops):
         assert f"turns by {4 * degrees:.0f} degrees, and its exits need 0" in text
 
 
-@pytest.mark.parametrize(("degrees", "is_u_turn"), [(170, False), (179, False), (181, True), (250, True)])
-def test_exits_that_lead_away_from_each_other_are_a_u_turn(degrees, is_u_turn):
-    found = warnings_of(extruded(arc((0, 0), 1.0, 0, degrees), 1.0))
-    assert kinds(found) == ["the blend is a U-turn"] * is_u_turn
+def hairpin(degrees, radius):
+    """Two legs of length 1, joined by an arc that turns by `degrees`."""
+    ends = [np.radians(90 - degrees / 2), np.radians(90 + degrees / 2)]
+    first, last = (radius * np.array([np.cos(t), np.sin(t)]) for t in ends)
+    leave, arrive = (np.array([np.sin(ends[0]), -np.cos(ends[0])]), np.array([-np.sin(ends[1]), np.cos(ends[1])]))
+    way = [*line(first + leave, first), *arc((0, 0), radius, *np.degrees(ends)), *line(last, last + arrive)]
+    return extruded(way, 1.0)
+
+
+@pytest.mark.parametrize(
+    ("degrees", "radius", "is_named"),
+    [(185, 0.1, False), (185, 0.08, True), (175, 0.08, False)],
+)
+def test_a_u_turn_with_a_sharp_tip_is_named(degrees, radius, is_named):
+    # A fiftieth of the length, 0.046, turns by 26 and by 33 degrees.
+    assert kinds(warnings_of(hairpin(degrees, radius))) == ["the blend is a U-turn"] * is_named
+
+
+@pytest.mark.parametrize("degrees", [181, 250])
+def test_a_u_turn_of_even_bend_is_what_was_asked_for(degrees):
+    surface = extruded(arc((0, 0), 1.0, 0, degrees), 1.0)
+    assert measure_exits(surface).is_u_turn
+    assert warnings_of(surface) == ()
 
 
 @pytest.mark.parametrize(("degrees", "said"), [(100, []), (179, []), (270, ["the blend is a U-turn that has to loop"])])
@@ -253,3 +273,35 @@ def test_a_blend_that_is_no_surface_is_refused():
     ]
     with pytest.raises(ComputationError, match="the blend is no surface: surface: has no tangent plane anywhere"):
         blend(Base(strips[0], "u0"), Base(strips[1], "u0"), continuity="G0")
+
+
+@pytest.mark.parametrize("section", ["u", "v"])
+def test_where_a_surface_folds_is_told_by_both_parameters(section):
+    report = measure_shape(sheets(1, 1)[0])
+    turn = replace(report.turn, degrees=95.0, section=section, at=0.25, between=(0.5, 0.75))
+    regular = measure_regularity(sheets(1, 1)[0])
+    (said,) = shape_warnings(replace(report, turn=turn), regular, ())
+    assert {"u": "at u = 0.25, v = 0.5,", "v": "at v = 0.25, u = 0.5,"}[section] in said
+    # The sharpest crease may explain it, and a slight one beside it takes nothing away.
+    for angles, kind in (((40.0, 10.0), []), ((10.0, 40.0), []), ((10.0, 20.0), ["the blend turns steeply"])):
+        creases = tuple(Crease("v", 0.5, angle) for angle in angles)
+        found = kinds(shape_warnings(replace(report, turn=turn), regular, creases))
+        assert [one for one in found if "creased" not in one] == kind
+
+
+@pytest.mark.parametrize(("places", "more"), [(4, None), (5, None), (6, 1), (9, 4)])
+def test_five_places_where_it_meets_something_are_named(places, more):
+    report, regular = measure_shape(sheets(1, 1)[0]), measure_regularity(sheets(1, 1)[0])
+    found = tuple(f"meets itself at place {i}" for i in range(places))
+    said = shape_warnings(replace(report, meets=replace(report.meets, found=found)), regular, ())
+    named = [f"the blend {place}; try" for place in found[:5]]
+    assert [text.startswith(start) for text, start in zip(said, named, strict=False)] == [True] * len(named)
+    assert list(said[len(named) :]) == (
+        [f"the blend meets itself or its bases in {more} more place(s)"] if more else []
+    )
+
+
+def test_the_sharpest_crease_is_told():
+    report, regular = measure_shape(sheets(1, 1)[0]), measure_regularity(sheets(1, 1)[0])
+    (said,) = shape_warnings(report, regular, tuple(Crease("v", 0.1, angle) for angle in (2.0, 30.0, 4.0)))
+    assert "by up to 30 degrees" in said

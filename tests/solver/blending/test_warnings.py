@@ -9,7 +9,8 @@ import pytest
 from helpers.bases import turned
 from helpers.papers_set import blend
 from semispline import Base, BSplineSurface, ContactError, FoldError
-from semispline.solver.blending.warnings import remedy
+from semispline.solver.blending.shape_parameters import Found
+from semispline.solver.blending.warnings import contact_warnings, remedy
 from semispline.solver.judge import NoNormal
 from semispline.solver.splines import greville
 from semispline.solver.splines.operations import all_control_points
@@ -104,3 +105,14 @@ def test_a_thousand_sizes_from_the_origin_is_far(times, side, far):
     )
     said = remedy(FLOOR, away, [], None)
     assert ("1e+03 times the size of the blend away: work in coordinates nearer to it" in said) is far
+
+
+@pytest.mark.parametrize(("places", "named"), [(4, 4), (5, 5), (7, 5)])
+def test_five_places_without_a_normal_are_named(places, named):
+    result = blend(FLOOR, WALL, continuity="G1", alpha=1.3)
+    bare = tuple(NoNormal("b", i / 8, (2.0, i / 8, 1.0), "the derivative vanishes", 1e-9) for i in range(places))
+    contacts = result.contact_a, replace(result.contact_b, no_normal=bare)
+    found = Found(1.69, 1.69, "linear")
+    said = contact_warnings((FLOOR, WALL), result.surface, contacts, ("G1", "G1"), found)
+    assert ["base b: " in text and "G1 says nothing there" in text for text in said] == [True] * named
+    assert not contact_warnings((FLOOR, WALL), result.surface, contacts, ("G1", "C1"), found)

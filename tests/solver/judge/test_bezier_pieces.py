@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from helpers.shapes import torus
 from helpers.splines import surfaces
 from semispline import BSplineCurve, BSplineSurface, SemiStructuredSurface
-from semispline.solver.judge.bezier_pieces import bernstein, in_pieces
+from semispline.solver.judge.bezier_pieces import bernstein_by_degree, in_pieces
 from semispline.solver.judge.de_boor import surface_points
 
 ORDERS = [(0, 0), (1, 0), (0, 1), (2, 0), (1, 1), (0, 2)]
@@ -57,7 +57,7 @@ def test_rational_surfaces_stay_as_they_are():
 @pytest.mark.parametrize("degree", [0, 1, 3, 9])
 def test_bernstein_polynomials(degree):
     t = np.linspace(0, 1, 11)
-    values = bernstein(degree, t)
+    values = bernstein_by_degree(degree, t)[degree]
     assert values.shape == (11, degree + 1)
     np.testing.assert_allclose(values.sum(axis=1), 1, rtol=1e-15)
     # They reproduce t, and at the ends the first and the last is one.

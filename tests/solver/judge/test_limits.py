@@ -196,6 +196,10 @@ def test_ceilings_of_rounding(name, size):
             assert bool(doubtful(contact, continuity)) is (warned and needed)
             assert bool(untold(contact, continuity)) is (refused and needed)
         assert (name in " ".join(doubtful(contact, MEASURES[name]))) is warned
+        # What is said is the ceiling that was passed.
+        low, high = (ceiling * (size if name == "gap" else 1.0) for ceiling in CEILINGS[name])
+        for text in (*doubtful(contact, MEASURES[name]), *untold(contact, MEASURES[name])):
+            assert f"by {rounding:.2g}, expected at most {high if refused else low:.2g}" in text
 
 
 @pytest.mark.parametrize("factor", [2.0**-20, 2.0**20])

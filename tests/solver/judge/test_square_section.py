@@ -21,7 +21,7 @@ seeds = st.integers(0, 2**32 - 1)
 
 
 def fundamental_forms(at):
-    """Normal, and normal curvature square to X_s: (L G^2 - 2 M F G + N F^2) / (G (E G - F^2)); complex too."""
+    """Normal, and normal curvature square to X_s: (L G^2 - 2 M F G + N F^2) / (G (E G - F^2)), complex too."""
     x, y, xx, xy, yy = (at[key] for key in KEYS)
     e, f, g = x @ x, x @ y, y @ y
     normal = np.cross(x, y)

@@ -1,0 +1,112 @@
+"""Which layouts a fair blend tries, and which it takes."""
+
+import numpy as np
+import pytest
+
+from helpers.facing import random_facing
+from semispline import Base, BSplineSurface, OptionError, blend
+from semispline.papers.reproduction.families.suite import shape_problem
+from semispline.solver.blending import candidates, fair_search
+from semispline.solver.blending.linear_problem import gap_ratio
+from semispline.solver.blending.pipeline import state_problem
+
+CUBIC = [0, 0, 0, 0, 1, 1, 1, 1]
+
+
+def wedge(ratio, *, gap=1.0):
+    """Two bent sheets whose gap grows by a factor along v."""
+    v, w = np.linspace(0, 1, 4), np.linspace(0, 1, 4)
+    lower = [[[-0.8 * x, y, 0.1 * x * x - 0.3 * x] for y in v] for x in w]
+    upper = [[[gap * (1 + (ratio - 1) * y) + 0.8 * x, y, 0.1 * x * x - 0.4 * x] for y in v] for x in w]
+    return tuple(Base(BSplineSurface(3, 3, CUBIC, CUBIC, net), "u0") for net in (lower, upper))
+
+
+def tried(result):
+    return [(c.degree_u, c.middle_curves, c.alpha_v) for c in result.candidates]
+
+
+def test_the_quintic_without_middle_curve_is_the_only_candidate_of_an_even_gap():
+    result = blend(*wedge(1.1))
+    assert tried(result) == [(5, 0, "constant")]
+    assert result.candidates[0].verdict == "chosen"
+    assert result.candidates[0].fairness == result.objective.value
+
+
+@pytest.mark.parametrize(("ratio", "is_tried"), [(1.5 - 1e-6, False), (1.5 + 1e-6, True)])
+def test_a_linear_alpha_is_tried_from_a_ratio_on(ratio, is_tried):
+    assert ((5, 0, "linear") in tried(blend(*wedge(ratio)))) == is_tried
+
+
+def test_a_wide_wedge_takes_a_linear_alpha_and_says_what_it_costs():
+    result, constant = blend(*wedge(5.0)), blend(*wedge(5.0), alpha_v="constant")
+    assert tried(result) == [(5, 0, "constant"), (5, 0, "linear")]
+    assert [c.verdict == "chosen" for c in result.candidates] == [False, True]
+    assert result.objective.value < 0.7 * constant.objective.value
+    assert result.rows_converted > constant.rows_converted
+    low, high = result.alpha2
+    assert high > 1.5 * low > 0
+
+
+@pytest.mark.parametrize("ratio", [2 - 1e-6, 2 + 1e-6])
+def test_a_middle_curve_is_tried_where_linear_alpha_is_not_allowed_and_the_gap_varies(ratio):
+    pair = wedge(ratio)
+    assert (gap_ratio(state_problem(*pair).problem) >= candidates.MIDDLE_RATIO) == (ratio > 2)
+    result = blend(*pair, alpha_v="constant")
+    assert tried(result) == [(5, 0, "constant")] + [(5, 1, "constant")] * (ratio > 2)
+    best = min(result.candidates, key=lambda c: c.fairness)
+    assert best.verdict == "chosen"
+    assert result.options.middle_curves == best.middle_curves
+    # Said to be without, it is without.
+    assert tried(blend(*pair, alpha_v="constant", middle_curves=0)) == [(5, 0, "constant")]
+
+
+def facing(seed):
+    problem = shape_problem("facing", seed)
+    return problem.a, problem.b
+
+
+def test_where_alpha_and_p2_are_traded_until_the_window_ends_p2_is_left_out():
+    a, b = facing(57)
+    result, without = blend(a, b), blend(a, b, p2="zero")
+    assert result.p2 == (0.0, 0.0)
+    assert result.active_bounds == without.active_bounds == ()
+    assert result.objective.value == pytest.approx(without.objective.value, rel=1e-6)
+    # With p2 alone it would have ended there.
+    assert solve_fair_with_p2(a, b).at_end == (False, True)
+
+
+def solve_fair_with_p2(a, b):
+    return fair_search._searched(state_problem(a, b).problem, None)
+
+
+def test_where_the_lower_end_stops_the_search_the_window_begins_lower():
+    a, b = facing(96)
+    result = blend(a, b)
+    window = state_problem(a, b).problem.bounds
+    assert result.active_bounds == ()
+    for found, (low, high) in zip((result.alpha2_bounds, result.beta2_bounds), window, strict=True):
+        assert found == pytest.approx((low / 2, high), rel=1e-12)
+    assert result.alpha2 < window[0][0]
+    assert tried(result) == [(5, 0, "constant")] * 2
+    # A box that was asked for stays.
+    natural = state_problem(a, b).problem.natural
+    arc = state_problem(a, b).problem.exits.arc
+    boxed = blend(a, b, box=(1 / 4, 4))
+    assert boxed.alpha2_bounds == pytest.approx((natural[0] * arc / 4, natural[0] * arc * 4))
+    assert "alpha2 lower" in boxed.active_bounds
+
+
+def test_where_nothing_is_searched_there_are_no_candidates():
+    a, b = random_facing(np.random.default_rng(0))
+    for options in ({"alpha": "energy"}, {"alpha": 0.7}, {"continuity": "C2"}, {"method": "casadi"}):
+        assert blend(a, b, **options).candidates == ()
+
+
+def test_closed_rims_refuse_a_linear_alpha():
+    ring = np.array([[1.0, 0], [1, 1], [-1, 1], [-1, 0], [-1, -1], [1, -1], [1, 0]])
+    knots = [0, 0, 0, 0.2, 0.4, 0.6, 0.8, 1, 1, 1]
+    rows = [[[*(r * p), z] for p in ring] for r, z in ((1.0, 0.0), (1.2, -0.5), (1.3, -1.0))]
+    tube = BSplineSurface(2, 2, [0, 0, 0, 1, 1, 1], knots, rows)
+    above = BSplineSurface(2, 2, [0, 0, 0, 1, 1, 1], knots, np.array(rows) * [1.5, 1.5, -1] + [0, 0, 1.5])
+    with pytest.raises(OptionError, match="alpha_v: found linear on closed contacts, expected auto or constant"):
+        blend(Base(tube, "u0"), Base(above, "u0"), alpha_v="linear")
