@@ -56,6 +56,9 @@ def section_noises(
 ) -> tuple[FloatArray, FloatArray]:
     """Bound what rounding may do to the normal (radians) and to the curvature, each of shape (K,).
 
+    To first order, at the derivatives as they were rounded: of two sides the mean of both gradients, times their
+    distance, is exact to second order, so where nothing bends or shears but by rounding no more is needed.
+
     Source: the gradients of n = X_w x X_s / |X_w x X_s| and of the second fundamental form along t, by each derivative.
     """
     w, s, r = 1 / section.a, section.y / section.a, 1 / section.g
@@ -63,10 +66,9 @@ def section_noises(
     of, rows, along = noises.derivatives, noises.rows, noises.along
     of_w, of_s = of[1, 0] * w, of[0, 1]
     angle = np.hypot(of_w + of_s * steep, of_s * r)
-    # Second derivatives along t, and along t and T: their tangential parts, and k_tT.
-    both = (at[1, 1] + section.y[:, None] * at[0, 2]) * (w * r)[:, None]
+    # The tangential part of the second derivative along t; k_tt and k_tT.
     c_t, c_along = _dot(section.second, section.direction) * ww * w, _dot(section.second, at[0, 1]) * ww * r
-    k, twist = section.curvature, _dot(both, normal)
+    k, twist = section.curvature, (_dot(at[1, 1], normal) + section.y * _dot(at[0, 2], normal)) * (w * r)
     # Errors along the normal: of second derivatives, and of first ones, which tilt it. One row of control points may
     # enter several, with either sign.
     height = np.abs(np.multiply.outer(rows[2], ww) - np.multiply.outer(rows[1], w * c_t)).sum(axis=0)
@@ -74,15 +76,7 @@ def section_noises(
     tilted = height + along[1] * slope + of[0, 2] * s * s
     # Those in the tangent plane turn and stretch the step along t.
     turned = 2 * (of_w * np.hypot(k, twist) + of_s * np.hypot(s * k + r * twist, s * twist))
-    # Where nothing bends or shears all of this may vanish; then errors of errors count beside a curvature of none.
-    frame = of_w + of_s * (steep + r)
-    bends = _length(section.second) * ww + 2 * _length(both) + _length(at[0, 2]) * r * r
-    twice = frame * (2 * r * (of[1, 1] * w + of[0, 2] * steep) + frame * bends)
-    return angle, tilted + turned + twice
-
-
-def _length(vectors: FloatArray) -> FloatArray:
-    return np.asarray(np.sqrt(_dot(vectors, vectors)))
+    return angle, tilted + turned
 
 
 def _dot(a: FloatArray, b: FloatArray) -> FloatArray:

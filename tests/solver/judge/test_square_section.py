@@ -212,7 +212,7 @@ def test_no_smooth_surface_cut_in_two_has_a_seam(seed, direction, fraction):
 @pytest.mark.parametrize("distance", [1e3, 1e5, 1e7])
 @pytest.mark.parametrize("seed", range(5))
 def test_a_thin_pipe_of_straight_lines_far_away(seed, distance):
-    # Across its rim nothing bends and nothing shears: to first order rounding does nothing, to second it does.
+    # Across its rim nothing bends and nothing shears: at the exact surface rounding would do nothing to first order.
     rng = np.random.default_rng(seed)
     arc = np.array([[1.0, 0], [1, 1], [0, 1]])
     net = [[[200.0 * u, y, z] for y, z in arc] for u in (0, 1)]
