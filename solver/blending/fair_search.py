@@ -23,7 +23,7 @@ from semispline.solver.blending.fairness_grid import (
     along,
     rough_along,
 )
-from semispline.solver.blending.fairness_table import FOLDS, LEAST_COSINE, LOOPS, FairnessTable
+from semispline.solver.blending.fairness_table import FOLDS, LEAST_COSINE, LOOPS, FairnessTable, narrow_width
 from semispline.solver.blending.linear_alpha import LinearInV
 from semispline.solver.blending.problem import BlendProblem, SecondParameter
 from semispline.solver.blending.projected import Point, descend, unbound
@@ -152,7 +152,7 @@ def _solved(problem: BlendProblem, refusable: tuple[int, ...], known: FairSoluti
     np.empty(_WORKSPACE)
     layers, exponents = problem.shape_layers()
     unknowns = make_unknowns(problem, exponents)
-    u, rows = problem.form.u, problem.rows
+    u, rows, narrow = problem.form.u, problem.rows, narrow_width(problem)
 
     grids: list[FairObjective] = []
 
@@ -161,19 +161,20 @@ def _solved(problem: BlendProblem, refusable: tuple[int, ...], known: FairSoluti
         return grids[-1]
 
     # The tips of U-turns are sharp.
-    rough = grid(across(u, NODES_U) if problem.exits.u_turn else across(u, ROUGH_U), rough_along(rows), _SCAN_COSINE)
+    rough_u = across(u, NODES_U) if problem.exits.u_turn else across(u, ROUGH_U)
+    rough = grid(rough_u, rough_along(rows, narrow), _SCAN_COSINE)
     cells, values = _scan(rough, _WIDE_CELLS if problem.exits.u_turn else _CELLS)
     refused = dict(rough.refused)
     starts = [*_starts(cells, values), *([] if known is None else [_known_start(problem, unknowns, known)])]
     ends = [_descended(rough, rough.point(start), _NEAR) for start in starts]
     nodes = HIGH_ORDER_NODES_U if max(problem.a.order, problem.b.order) > 2 else NODES_U
-    search = grid(across(u, nodes), along(rows))
+    search = grid(across(u, nodes), along(rows, 1, narrow))
 
     @cache
     def finer(times: int) -> FairObjective:
-        return grid(across(u, 2 * nodes), along(rows, times))
+        return grid(across(u, 2 * nodes), along(rows, times, narrow))
 
-    between = grid(across(u, ROUGH_U), along(rows)) if search.table.size > _LARGE else None
+    between = grid(across(u, ROUGH_U), along(rows, 1, narrow)) if search.table.size > _LARGE else None
     levels = [(level, tolerance) for level, tolerance in ((between, _NEAR), (search, _END)) if level is not None]
     found = None
     # A rough grid may be blind to what makes a candidate worse than another: the finer one says which is best.

@@ -336,5 +336,25 @@ def test_curvature_that_jumps_across_is_not_searched(options, name):
         assert blend(*sheets(), alpha=alpha, **options).surface is not None
 
 
+def near_double(apart):
+    """A sheet with two knots so far apart in the middle of its edge, and a smooth one."""
+    knots = [0, 0, 0, 0, 1, 1, 1, 1]
+    x, y = np.mgrid[0:1:4j, 0:1:6j]
+    first = BSplineSurface(
+        3, 3, knots, [0, 0, 0, 0, 0.5, 0.5 + apart, 1, 1, 1, 1], np.dstack([x, y, 0.1 * np.sin(5 * y) * x])
+    )
+    x, y = np.mgrid[0:1:4j, 0:1:4j]
+    return Base(first, "u1"), Base(BSplineSurface(3, 3, knots, knots, np.dstack([x + 1.5, y, 0.3 + 0.1 * x**2])), "u0")
+
+
+@pytest.mark.parametrize("exponent", [3, 4, 5, 6, 7, 8, 9, 10, 11, 12])
+def test_nearly_double_knots_choose_what_double_ones_do(exponent):
+    double, near = blend(*near_double(0.0), **FAIR), blend(*near_double(10.0**-exponent), **FAIR)
+    assert double.shape.fairness.jumps > 0.01 * double.shape.fairness.value
+    assert (near.alpha2, near.beta2) == pytest.approx((double.alpha2, double.beta2), rel=0.02)
+    for value in (near.shape.fairness.value, near.objective.value):
+        assert value == pytest.approx(double.shape.fairness.value, rel=0.05)
+
+
 def test_double_knots_of_degree_four_are_searched():
     assert blend(*sheets(), alpha="fair", degree_u=4, middle_curves=1, u_knots=(0.5, 0.5)).objective.value > 0
