@@ -1,6 +1,8 @@
 """The fairest shape: J and its gradient against other ways to them, and blends whose right shape is known."""
 
+from dataclasses import dataclass
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pyiges
@@ -29,7 +31,7 @@ from semispline.solver.blending.fair_search import FairSolution, solve_fair
 from semispline.solver.blending.fairness_grid import NODES_U, across, along
 from semispline.solver.blending.fairness_table import FOLDS, LOOPS, FairnessTable
 from semispline.solver.blending.pipeline import state_problem
-from semispline.solver.blending.projected import descend
+from semispline.solver.blending.projected import Point, descend
 from semispline.solver.blending.shape_parameters import Found
 from semispline.solver.blending.warnings import fairness_warning
 
@@ -311,6 +313,64 @@ def test_what_does_not_settle_is_said(narrow_pair, monkeypatch):
     (said,) = [w for w in result.warnings if "was minimised" in w]
     assert f"{result.objective.value:.3g}" in said
     assert f"{result.shape.fairness.value:.3g}" in said
+
+
+@dataclass
+class Wells:
+    """A stand-in for a grid: two wells, at -1 and 1, of given depths."""
+
+    left: float
+    right: float
+    table = SimpleNamespace(size=100)
+    unknowns = SimpleNamespace(logarithmic=np.array([True]), low=np.array([-3.0]), high=np.array([3.0]))
+
+    def __call__(self, x):
+        side = np.sign(x[0])
+        return float((self.right if side > 0 else self.left) + (x[0] - side) ** 2), 2 * (x - side)
+
+    def values(self, x):
+        return np.array([self(y)[0] for y in x])
+
+    def point(self, x):
+        return Point(x, *self(x), 2 * np.eye(1))
+
+    def at(self, point):
+        return self.point(point.x)
+
+
+@pytest.mark.parametrize(
+    ("right", "end"),
+    # Within a fifth the search goes on where it is; past that the other well is looked at, which is lower.
+    [(0.005, 1.0), (0.19, 1.0), (0.21, -1.0)],
+)
+def test_a_coarse_grid_that_was_blind_is_ranked_anew(right, end):
+    found = Wells(0.1, 0.0).point(np.array([1.0]))
+    made = []
+
+    def finer(times):
+        made.append(times)
+        return Wells(0.1, right)
+
+    at, settled = fair_search._settled(found, np.array([1.1]), finer, np.array([[-1.1], [1.1]]))
+    assert at.x == pytest.approx([end], abs=1e-3)
+    assert at.value == pytest.approx(min(right, 0.1 if end < 0 else right), abs=1e-6)
+    assert settled
+    assert made == ([2] if right == 0.005 else [2, 4])
+
+
+def test_grids_that_never_agree_do_not_settle():
+    made = []
+
+    def finer(times):
+        made.append(times)
+        return Wells(9.0, float(times))
+
+    at, settled = fair_search._settled(
+        Wells(9.0, 0.0).point(np.array([1.0])), np.array([1.1]), finer, np.array([[1.1]])
+    )
+    assert not settled
+    assert made == [2, 4, 8, 16]
+    assert at.value == pytest.approx(16.0)
 
 
 @pytest.mark.parametrize(

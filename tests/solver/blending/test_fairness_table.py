@@ -195,6 +195,13 @@ def test_clusters_of_knots_are_one_line(inner, lines):
     assert rough_along(rows, 0.01).lines.size == 0
 
 
+def test_what_is_short_altogether_is_no_cluster():
+    # Contacts far apart: all of v is below the limit.
+    found = along((basis(0.25, 0.5, 0.75), basis()), 1, 5.0)
+    assert found.lines.size == 0
+    assert found.weights.sum() == pytest.approx(1, rel=1e-12)
+
+
 def test_a_rough_look_reads_no_polynomial_of_a_cluster():
     # Middles of a sixth of the domain, 1/4 and 3/4, are knots that are all but double.
     inner = [x + y for x in np.arange(1, 8) / 8 for y in (0, 1e-9)]
