@@ -5,7 +5,9 @@ The least of all candidates and starts that were tried, never a proof: the measu
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import cache
 
 import numpy as np
 
@@ -43,8 +45,11 @@ _LARGE = 2000
 _WORKSPACE = 2**21
 # Longest steps of log alpha^2 and of p2 in its natural size.
 _STEP, _STEP_P2 = 0.35, 2.0
-# J on twice as many nodes agrees to this fraction, or the search goes on there.
-_SETTLED = 0.01
+# J on a finer grid agrees to this fraction, or the search goes on there; where it is off by more than the second,
+# the coarser grid was blind, and so was what led to that place.
+_SETTLED, _BLIND = 0.01, 0.2
+# Finer grids have twice the nodes in u, and so many times those in v; from the second one on at most so many in all.
+_FINER, _MOST = (2, 4, 8, 16), 60_000
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,7 +63,7 @@ class FairSolution:
     p2 : pair
         Numbers; where tied to a linear alpha^2 pairs of end values.
     value : float
-        J, on the finer grid.
+        J, on the finest grid that was needed.
     slope : float
         Largest entry of the gradient of log J at the end, by logarithms of alpha^2 and by p2 in natural sizes, where no
         end of the window is met.
@@ -70,6 +75,8 @@ class FairSolution:
         What is no longer refused, because every candidate was: "folds", then "loops" too.
     at_end : (bool, bool)
         Whether alpha^2 and beta^2 are at an end of their window.
+    settled : bool
+        A finer grid changed J at the end by at most 1 %.
     """
 
     a: LinearInV
@@ -81,6 +88,7 @@ class FairSolution:
     refused: dict[str, int]
     condoned: tuple[str, ...] = ()
     at_end: tuple[bool, bool] = (False, False)
+    settled: bool = True
 
 
 def solve_fair(problem: BlendProblem, known: FairSolution | None = None) -> FairSolution:
@@ -146,8 +154,11 @@ def _solved(problem: BlendProblem, refusable: tuple[int, ...], known: FairSoluti
     unknowns = make_unknowns(problem, exponents)
     u, rows = problem.form.u, problem.rows
 
+    grids: list[FairObjective] = []
+
     def grid(in_u: Across, in_v: Along, least_cosine: float = LEAST_COSINE) -> FairObjective:
-        return FairObjective(unknowns, FairnessTable(problem, layers, in_u, in_v, least_cosine, refusable))
+        grids.append(FairObjective(unknowns, FairnessTable(problem, layers, in_u, in_v, least_cosine, refusable)))
+        return grids[-1]
 
     # The tips of U-turns are sharp.
     rough = grid(across(u, NODES_U) if problem.exits.u_turn else across(u, ROUGH_U), rough_along(rows), _SCAN_COSINE)
@@ -156,25 +167,31 @@ def _solved(problem: BlendProblem, refusable: tuple[int, ...], known: FairSoluti
     starts = [*_starts(cells, values), *([] if known is None else [_known_start(problem, unknowns, known)])]
     ends = [_descended(rough, rough.point(start), _NEAR) for start in starts]
     nodes = HIGH_ORDER_NODES_U if max(problem.a.order, problem.b.order) > 2 else NODES_U
-    search, fine = grid(across(u, nodes), along(rows)), grid(across(u, 2 * nodes), along(rows, 2))
+    search = grid(across(u, nodes), along(rows))
+
+    @cache
+    def finer(times: int) -> FairObjective:
+        return grid(across(u, 2 * nodes), along(rows, times))
+
     between = grid(across(u, ROUGH_U), along(rows)) if search.table.size > _LARGE else None
     levels = [(level, tolerance) for level, tolerance in ((between, _NEAR), (search, _END)) if level is not None]
     found = None
     # A rough grid may be blind to what makes a candidate worse than another: the finer one says which is best.
     order = np.argsort(search.values(np.stack([end.x for end in ends])), kind="stable") if len(ends) > 1 else [0]
+    kept = cells[np.isfinite(values.ravel())]
+    others = np.concatenate([kept, starts, [end.x for end in ends]])
     for k in order:
-        found = _settled(_refined(ends[k], starts[k], levels), starts[k], fine)
+        found = _settled(_refined(ends[k], starts[k], levels), starts[k], finer, others)
         if found is not None:
             break
     else:
         # What the rough grid let pass is refused: what else does the finer one let pass?
-        kept = cells[np.isfinite(values.ravel())]
         start = kept[np.argmin(search.values(kept))]
-        found = _settled(_refined(search.point(start), start, levels[-1:]), start, fine)
+        found = _settled(_refined(search.point(start), start, levels[-1:]), start, finer, others)
     if found is None:
-        raise _AllRefusedError({name: refused[name] + fine.refused[name] for name in refused})
-    tried = sum(objective.tried for objective in (rough, between, search, fine) if objective is not None)
-    return _solution(problem, unknowns, found, fine, tried, refused)
+        raise _AllRefusedError({name: refused[name] + finer(_FINER[0]).refused[name] for name in refused})
+    solution = _solution(problem, unknowns, found[0], search, sum(objective.tried for objective in grids), refused)
+    return replace(solution, settled=found[1])
 
 
 def _scan(objective: FairObjective, cells: int) -> tuple[FloatArray, FloatArray]:
@@ -209,15 +226,32 @@ def _refined(end: Point, start: FloatArray, levels: list[tuple[FairObjective, fl
     return at
 
 
-def _settled(found: Point | None, start: FloatArray, fine: FairObjective) -> Point | None:
-    """Return what was found with its value on the finer grid, on which the search goes on where the values differ."""
-    if found is None:
-        return None
-    value = float(fine.values(found.x[None])[0])
-    if abs(value - found.value) <= _SETTLED:
-        return replace(found, value=value)
-    at = _admitted(fine, found, start)
-    return None if at is None else _descended(fine, at, _END)
+def _settled(
+    found: Point | None, start: FloatArray, finer: Callable[[int], FairObjective], others: FloatArray
+) -> tuple[Point, bool] | None:
+    """Return what was found with its value on a finer grid, and whether that settled it.
+
+    Where the values differ, the search goes on on the finer grid, until the next one agrees. Where they differ by much,
+    it goes on from the best there of all places that were looked at, `others`.
+    """
+    at = found
+    for times in _FINER:
+        if at is None:
+            return None
+        fine = finer(times)
+        value = float(fine.values(at.x[None])[0])
+        if abs(value - at.value) <= _SETTLED:
+            return replace(at, value=value), True
+        if np.isfinite(value) and abs(value - at.value) > _BLIND:
+            ranked = fine.values(others)
+            best = int(np.argmin(ranked))
+            if ranked[best] < value:
+                at, start = fine.point(others[best]), others[best]
+        at = _admitted(fine, at, start)
+        at = None if at is None else _descended(fine, at, _END)
+        if 2 * fine.table.size > _MOST:
+            break
+    return None if at is None else (at, False)
 
 
 def _admitted(objective: FairObjective, point: Point, start: FloatArray) -> Point | None:

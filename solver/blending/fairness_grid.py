@@ -83,11 +83,11 @@ def rough_along(rows: tuple[Basis, ...]) -> Along:
 
 
 def _lines(rows: tuple[Basis, ...]) -> FloatArray:
-    """Return the inner knots where some row is only C1."""
+    """Return the inner knots where some row is C1 or less."""
     found = []
     for row in rows:
         values, counts = np.unique(row.knots[row.degree + 1 : -row.degree - 1], return_counts=True)
-        found.append(values[row.degree - counts == 1])
+        found.append(values[row.degree - counts <= 1])
     return np.unique(np.concatenate(found))
 
 

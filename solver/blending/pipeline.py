@@ -21,6 +21,7 @@ from semispline.solver.blending.warnings import (
     bare_places,
     bound_warnings,
     contact_warnings,
+    fairness_warning,
     remedy,
     seam_warning,
 )
@@ -117,6 +118,7 @@ def blend(
     warnings = (
         shape_warnings(shape, regularity, creases, is_fair=found.fairness is not None)
         + bound_warnings(problem, layout.found)
+        + (fairness_warning(found.fairness, shape.fairness.value) if chosen.bulges == (1.0, 1.0) else ())
         + rounding_warning(rounding, surface, energy)
         + seam_warning(a, b)
         + contact_warnings((a, b), surface, (contact_a, contact_b), chosen.continuities, found)

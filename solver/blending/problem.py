@@ -233,13 +233,16 @@ def make_problem(a: Side, b: Side, options: BlendOptions) -> BlendProblem:
     Raises
     ------
     OptionError
-        A number of middle curves or a degree out of range.
+        A number of middle curves or a degree out of range, or knots of U across which curvature jumps where the fairest
+        shape is searched.
     EdgeError
         The contact curves coincide, one of them is a point, or a cross derivative that contact needs vanishes.
     """
     options = options.decided()
     middle_curves = cast("int", options.middle_curves)
     u = blend_u_basis(cast("int", options.degree_u), middle_curves, options.u_knots, (a.order, b.order))
+    if any(side.has_shape_parameter and x == "fair" for side, x in zip((a, b), options.alphas, strict=True)):
+        _check_bends_continuously(u)
     orders = [seam_order(side.along, side.rows[: side.order + 1], side.largest) for side in (a, b)]
     closed = min(orders)
     given = cast("Any", options.middle_knots)
@@ -282,6 +285,18 @@ def make_problem(a: Side, b: Side, options: BlendOptions) -> BlendProblem:
         (p2_a, p2_b),
         (linear_a, linear_b),
     )
+
+
+def _check_bends_continuously(u: Basis) -> None:
+    """Refuse inner knots of U across which curvature jumps: the search would not see it."""
+    inner = u.knots[u.degree + 1 : -u.degree - 1]
+    most = max((int(np.sum(inner == knot)) for knot in inner), default=0)
+    if most and u.degree - most < 2:
+        name = "u_knots" if most > 1 and u.degree > 2 else "degree_u"
+        raise OptionError(
+            f"{name}: the fairest shape needs curvature that is continuous across: found degree_u {u.degree} with "
+            f"inner u_knots of multiplicity {most}, expected degree 3 or more and simple inner knots; or alpha energy"
+        )
 
 
 def side_bases(side: Side, linear: LinearEnds | None) -> list[Basis]:

@@ -84,6 +84,7 @@ def found_fair(fair: FairSolution, method: str) -> Found:
         f"least of {fair.tried} evaluations from several starts, not proved; slope at the end {fair.slope:.1e}, "
         f"refused: {fair.refused['folds']} candidates for folds, {fair.refused['loops']} for loops"
         + (f"; these were all, so that {' and '.join(fair.condoned)} were let pass" if fair.condoned else "")
+        + ("" if fair.settled else "; not settled: a finer grid still changes it by more than 1 %")
     )
     return Found(fair.a, fair.b, method, fair.tried, p2=fair.p2, known=known, fair=fair)
 

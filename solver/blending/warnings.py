@@ -15,6 +15,9 @@ _NAMED = 5
 _FAR = 1e3
 # A span beside the edge below this fraction of the base makes its second derivatives round by 1e6 times as much.
 _NARROW = 1e-3
+# Fairness that was minimised and fairness that is measured may differ by this fraction; what is below the second figure
+# is not what the search goes by.
+_UNTOLD, _FLAT = 0.1, 0.1
 
 
 def bound_warnings(problem: BlendProblem, found: Found) -> tuple[str, ...]:
@@ -34,6 +37,24 @@ def bound_warnings(problem: BlendProblem, found: Found) -> tuple[str, ...]:
                 "set alpha"
             )
     return tuple(warnings)
+
+
+def fairness_warning(minimised: float | None, measured: float) -> tuple[str, ...]:
+    """Return a warning where the fairness that was minimised is not that of the finished surface.
+
+    Examples
+    --------
+    >>> fairness_warning(100.0, 109.0)
+    ()
+    """
+    if minimised is None or min(minimised, measured) <= _FLAT:
+        return ()
+    if abs(minimised - measured) <= _UNTOLD * min(minimised, measured):
+        return ()
+    return (
+        f"the fairness that was minimised, {minimised:.3g}, is not that of the finished surface, {measured:.3g}: it "
+        "bends too sharply to be told; try alpha energy, another edge, or bases whose knots are further apart",
+    )
 
 
 def seam_warning(a: Base, b: Base) -> tuple[str, ...]:

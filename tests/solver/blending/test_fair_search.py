@@ -31,6 +31,7 @@ from semispline.solver.blending.fairness_table import FOLDS, LOOPS, FairnessTabl
 from semispline.solver.blending.pipeline import state_problem
 from semispline.solver.blending.projected import descend
 from semispline.solver.blending.shape_parameters import Found
+from semispline.solver.blending.warnings import fairness_warning
 
 CASES = Path(__file__).parents[2] / "cases"
 QUINTIC = {"degree_u": 5, "middle_curves": 0}
@@ -283,3 +284,57 @@ def test_a_given_alpha_stays_and_a_box_replaces_the_window():
     narrow = blend(a, b, **FAIR, box=(1.3, 1.4))
     assert narrow.active_bounds == ("alpha2 lower", "beta2 lower")
     assert any("at its lower bound" in text for text in narrow.warnings)
+
+
+@pytest.fixture(scope="module")
+def narrow_pair():
+    """Quartic bases with knots far from uniform: two nodes on each span see a twentieth of J."""
+    return case("narrow-spans-a", "u1"), case("narrow-spans-b", "u0")
+
+
+def test_where_spans_are_narrow_the_grid_is_refined_until_it_settles(narrow_pair):
+    found = solve_fair(state_problem(*narrow_pair, **FAIR, continuity="G1").problem)
+    assert found.settled
+    result = blend(*narrow_pair, continuity="G1")
+    # Measured by the judge. The blind search stopped at 25 000.
+    assert result.shape.fairness.value < 20_000
+    assert result.objective.value == pytest.approx(result.shape.fairness.value, rel=0.02)
+    assert "not settled" not in result.objective.known
+    assert not [w for w in result.warnings if "was minimised" in w]
+
+
+def test_what_does_not_settle_is_said(narrow_pair, monkeypatch):
+    # With the first of the finer grids alone.
+    monkeypatch.setattr(fair_search, "_MOST", 1)
+    result = blend(*narrow_pair, continuity="G1")
+    assert "not settled" in result.objective.known
+    (said,) = [w for w in result.warnings if "was minimised" in w]
+    assert f"{result.objective.value:.3g}" in said
+    assert f"{result.shape.fairness.value:.3g}" in said
+
+
+@pytest.mark.parametrize(
+    ("minimised", "measured", "warned"),
+    [(100, 109, False), (100, 111, True), (111, 100, True), (0.09, 5, False), (5, 0.09, False), (None, 5, False)],
+)
+def test_the_limits_of_the_warning(minimised, measured, warned):
+    assert bool(fairness_warning(minimised, measured)) is warned
+
+
+@pytest.mark.parametrize(
+    ("options", "name"),
+    [
+        ({"degree_u": 2, "middle_curves": 0}, "degree_u"),
+        ({"degree_u": 3, "middle_curves": 0, "u_knots": (0.5, 0.5)}, "u_knots"),
+    ],
+)
+def test_curvature_that_jumps_across_is_not_searched(options, name):
+    with pytest.raises(OptionError, match=f"^{name}: the fairest shape .* or alpha energy"):
+        blend(*sheets(), alpha="fair", **options)
+    # Only where it is searched.
+    for alpha in ("natural", 1.0, "energy"):
+        assert blend(*sheets(), alpha=alpha, **options).surface is not None
+
+
+def test_double_knots_of_degree_four_are_searched():
+    assert blend(*sheets(), alpha="fair", degree_u=4, middle_curves=1, u_knots=(0.5, 0.5)).objective.value > 0

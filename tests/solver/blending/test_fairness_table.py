@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from helpers.facing import random_facing
-from semispline import Base, BSplineSurface, transform
+from semispline import Base, BSplineSurface, blend, transform
 from semispline.solver.blending.fair_search import solve_fair
 from semispline.solver.blending.fairness_grid import NODES_U, across, along, rough_along
 from semispline.solver.blending.fairness_table import FOLDS, LOOPS, FairnessTable
@@ -149,3 +149,13 @@ def test_turning_is_the_length_on_the_sphere():
     back_and_forth = [0, 20, 40, 20, 0, -10]
     assert np.degrees(turned(tangents(back_and_forth))) == pytest.approx(90)
     assert np.degrees(turned(tangents(back_and_forth, (0, 0.6, 0.8)) * 7)) == pytest.approx(90)
+
+
+def test_a_crease_along_v_counts_as_the_judge_counts_it():
+    # Only C0 at v = 1/2.
+    pair = sheets(inner=(0.5, 0.5, 0.5))
+    table, _ = table_of(pair, times=4)
+    assert table.along.lines.tolist() == [0.5]
+    result = blend(*pair, **QUINTIC)
+    assert result.shape.fairness.jumps > 1
+    assert result.objective.value == pytest.approx(result.shape.fairness.value, rel=0.01)
