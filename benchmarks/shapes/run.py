@@ -22,6 +22,7 @@ import tables
 from rich.console import Console
 from rich.progress import track
 
+from semispline.papers.reproduction import shape_suite
 from semispline.papers.reproduction.families.problems import Family
 from semispline.papers.reproduction.families.suite import suite
 from semispline.papers.reproduction.shape_suite import Row, run_problem
@@ -80,6 +81,9 @@ def main() -> None:
     rows.sort(key=lambda row: order.index((row.family, row.seed)))
     compared = candidates.compared(BUILD / "candidates.json", shared_folder(), again=not (asked.resume or asked.tables))
     (ROOT / "docs" / "shapes.md").write_text(tables.document(rows, compared), encoding="utf-8")
+    # What the finding of the ledger quotes.
+    figures = json.dumps(shape_suite.figures(rows), indent=1)
+    (ROOT / "papers" / "lin2014" / "shapes.json").write_text(figures + "\n", encoding="utf-8")
     Console().print(*tables.worst(rows), sep="\n")
     for sheet in pictures.sheets(rows, shared_folder(), BUILD):
         Console().print(str(sheet))

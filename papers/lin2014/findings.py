@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable, Iterable, Iterator
+from pathlib import Path
 
 from semispline.papers.reproduction import ROUNDING, Comparison, Comparisons, Finding, Measures, reached
 
@@ -20,7 +22,31 @@ def findings(comparisons: Comparisons) -> tuple[Finding, ...]:
         _corrected, _as_printed, _search, _same_knots, _tangent_only, _lower, _hartmann, _bloor_wilson, _tools,
         _fair, _real_pair,
     )  # fmt: skip
-    return tuple(finding for make in makers for finding in make(comparisons))
+    found = [finding for make in makers for finding in make(comparisons)]
+    return (*found, *choice_of_alpha())
+
+
+def choice_of_alpha() -> Iterator[Finding]:
+    """Say what the choice of alpha by least energy comes to over the suite of shapes (docs/shapes.md)."""
+    told = json.loads((Path(__file__).parent / "shapes.json").read_text(encoding="utf-8"))
+    facing, turns, rims = (told[family] for family in ("facing", "u-turn", "closed rims"))
+    wants, energy, fair = facing["wants"], facing["energy"], facing["fair"]
+    median = facing["quotients"][1]
+    count = wants["told"]
+    yield Finding(
+        f"Least energy is the wrong judge of alpha: of {count} random facing pairs {wants['not positive']} want "
+        "alpha^2 <= 0",
+        "There (11) is least where the blend would leave a base backwards. "
+        f"{wants['below 1/8']} more want less than an eighth of the natural size, a crease at the seam; held within "
+        f"1/8 to 8 of it, {energy['at_bound']} end at a bound, {energy['turns_30']} turn by more than 30 degrees "
+        f"within a fiftieth of the length and {energy['folds']} fold. With the least area times integral of |grad H|^2 "
+        f"instead "
+        f"{fair['at_bound']} end at a bound, {fair['turns_30']} turn by more than 30 degrees and {fair['folds']} fold; "
+        f"that measure is {median:.2g} times as large in the median. Of {turns['energy']['problems']} U-turns "
+        f"{turns['energy']['folds']} fold with least energy, {turns['fair']['folds']} with the fairest shape; of "
+        f"{rims['energy']['problems']} pairs of closed rims {rims['energy']['narrow']} are pinched to less than half "
+        f"of the straight rulings, and {rims['fair']['narrow']}. Counted by the suite of shapes: docs/shapes.md.",
+    )
 
 
 def meets_demand(comparison: Comparison) -> bool:

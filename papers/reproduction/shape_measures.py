@@ -164,7 +164,7 @@ def wanted_by_energy(problem: ShapeProblem) -> tuple[float, float] | None:
     --------
     >>> from semispline.papers.reproduction.families.open_pairs import open_pair
     >>> [round(x, 2) for x in wanted_by_energy(open_pair("facing", 0))]
-    [0.06, 0.14]
+    [0.1, 0.51]
     """
     stated = state_problem(problem.a, problem.b, **ENERGY_SET).problem
     # The energy as a polynomial of both, in natural units.

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 import numpy as np
 
@@ -161,6 +161,22 @@ def wants(rows: Sequence[Row]) -> dict[str, int]:
         "above 8": sum(low >= CREASE and high > 1 / CREASE for low, high in zip(least, most, strict=True)),
         "folds within 1/8 to 8": sum(isinstance(row.energy, Shape) and row.energy.folds for row in told),
     }
+
+
+def figures(rows: Sequence[Row]) -> dict[str, Any]:
+    """Return what a file holds of the whole suite, by family: counts, quotients, and what least energy wants.
+
+    Times are left out: they are of one machine.
+    """
+    found: dict[str, Any] = {}
+    for family in get_args(Family):
+        of = [row for row in rows if row.family == family]
+        if of:
+            counts = {name: asdict(summary([getattr(row, name) for row in of])) for name in ("fair", "energy")}
+            for count in counts.values():
+                del count["milliseconds"]
+            found[family] = counts | {"quotients": list(quotients(of)), "wants": wants(of)}
+    return found
 
 
 def _shape(line: dict[str, Any]) -> Shape | Refused:

@@ -85,11 +85,7 @@ def find_layout(a: Side, b: Side, said: BlendOptions) -> tuple[Layout, tuple[Can
     best = attempt(replace(first, alpha_v="constant") if "fair" in first.alphas else first)
     if best is not None and not _is_searched(best.problem, first):
         return best, ()
-    if (
-        best is not None
-        and first.box is None
-        and any("lower" in name for name in active_bounds(best.problem, best.found))
-    ):
+    if best is not None and first.box is None and _wants_less(best):
         best = _fairer(best, attempt(best.options, LOWER))
     doubtful = best is None or best.found.condoned or active_bounds(best.problem, best.found)
     if doubtful and said.degree_u == "auto" and first.degree_u == 5:
@@ -121,6 +117,12 @@ def _with_linear_alpha(constant: Layout, alpha_v: AlphaV) -> tuple[Layout, tuple
     best = tried if trial.taken else constant
     verdict = "chosen" if trial.taken else trial.verdict
     return best, (replace(_candidate(options, tried, tried), verdict=verdict),)
+
+
+def _wants_less(layout: Layout) -> bool:
+    """Tell whether the lower end of a window stopped the search; U-turns end there for want of a better shape."""
+    active = active_bounds(layout.problem, layout.found)
+    return not layout.problem.exits.u_turn and any("lower" in name for name in active)
 
 
 def _with_low_window(problem: BlendProblem, factor: float) -> BlendProblem:

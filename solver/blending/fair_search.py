@@ -101,6 +101,9 @@ def solve_fair(problem: BlendProblem, known: FairSolution | None = None) -> Fair
         No candidate can be measured.
     """
     found = _searched(problem, known)
+    if problem.exits.u_turn:
+        # Here p2 is worth more than a window that is not met.
+        return found
     at_end = found.at_end
     for dropped in (at_end, (True, True)):
         # Alpha and p2 can be traded one for the other until the window ends: such a side, or both, goes without p2.

@@ -17,7 +17,8 @@ from semispline.solver.judge.curvature_rates import curvature_rates
 from semispline.solver.judge.de_boor import EdgeCurves, edge_curves
 from semispline.solver.judge.edge_normals import places_without_normal
 from semispline.solver.judge.limits import allowed_measures
-from semispline.solver.judge.rounding import derivative_noises
+from semispline.solver.judge.rounding import EdgeNoises, edge_noises
+from semispline.solver.judge.square_section import section_noises, square_section
 from semispline.solver.options import Flip
 from semispline.solver.scalars import whole_number
 from semispline.solver.splines import Surface, bounding_box
@@ -81,16 +82,15 @@ def measure_contact(
     (c1, c2), (first, second) = (
         np.max([getattr(part, name) for part in parts], 0).tolist() for name in ("differences", "derivatives")
     )
-    speeds = np.min([part.speeds for part in parts], axis=0).tolist()
-    noises = [noise[:, 0].tolist() for noise in edges.noises]
+    angle_noise, curvature_noise = np.max([part.noises for part in parts], axis=0).tolist()
+    noises = [noise.derivatives[:, 0].tolist() for noise in edges.noises]
     # Flat: what bends by the size of the model is the measure; and nearly so, as of curvatures.
     bent = first * first / size
     second = bent if second <= noises[0][2] + noises[1][2] else max(second, _STRAIGHT * bent)
-    geometric = [_geometric_noise(noise, speed, largest) for noise, speed in zip(noises, speeds, strict=True)]
     rounding = {
         "gap": noises[0][0] + noises[1][0],
-        "angle_degrees": float(np.degrees(geometric[0][0] + geometric[1][0])),
-        "curvature_jump_relative": (geometric[0][1] + geometric[1][1]) / largest,
+        "angle_degrees": float(np.degrees(angle_noise)),
+        "curvature_jump_relative": curvature_noise / largest,
         "c1_residual": _over(noises[0][1] + noises[1][1], first),
         "c2_residual": _over(noises[0][2] + noises[1][2], second),
     }
@@ -139,8 +139,8 @@ class _Part:
         Largest of either side, across the edge or along it.
     differences, derivatives : (float, float)
         Largest difference of first and second cross derivatives, and largest such derivative of either side.
-    speeds : (float, float)
-        Least speed across the edge, of a and of b.
+    noises : (float, float)
+        The most that rounding may do to the angle (radians) and to the jump.
     rates : tuple of _Rate
         Of the rate of curvature and of its second rate, as far as they are asked for.
     """
@@ -152,7 +152,7 @@ class _Part:
     bend: float
     differences: tuple[float, float]
     derivatives: tuple[float, float]
-    speeds: tuple[float, float]
+    noises: tuple[float, float]
     rates: tuple[_Rate, ...]
 
 
@@ -171,7 +171,7 @@ class _Edges:
     def __init__(self, a: Base, b: Base, flipped: bool, origin: FloatArray, order: int) -> None:
         self.a, self.b, self.flipped, self.origin, self.order = a, b, flipped, origin, order
         self.curves_a, self.curves_b = (edge_curves(base.surface, base.edge, order, origin) for base in (a, b))
-        self.noises = [derivative_noises(base, origin, order) for base in (a, b)]
+        self.noises = [edge_noises(base, origin, order) for base in (a, b)]
 
     def measured(self, s_a: FloatArray, s_b: FloatArray) -> _Part:
         """Measure at parameters along a and along b that correspond."""
@@ -185,7 +185,8 @@ class _Edges:
 
         sine = np.linalg.norm(_cross(side_a.normal, side_b.normal), axis=1)
         angle = np.degrees(np.arctan2(sine, np.sum(side_a.normal * side_b.normal, axis=1)))
-        k_a, k_b = side_a.curvature(), side_b.curvature()
+        k_a, k_b = side_a.section.curvature, side_b.section.curvature
+        of_angle, of_curvature = np.add(side_a.noises(self.noises[0]), side_b.noises(self.noises[1]))
         # One side is left backwards: odd derivatives change sign unless the edges are at opposite ends.
         sign = -1.0 if self.a.edge[1] == self.b.edge[1] else 1.0
         return _Part(
@@ -196,7 +197,7 @@ class _Edges:
             bend=float(np.max(np.abs([k_a, k_b, side_a.curvature_along(), side_b.curvature_along()]))),
             differences=(_longest(side_a.x_w - sign * side_b.x_w), _longest(side_a.x_ww - side_b.x_ww)),
             derivatives=(_longest(side_a.x_w, side_b.x_w), _longest(side_a.x_ww, side_b.x_ww)),
-            speeds=(side_a.least_cross_speed(), side_b.least_cross_speed()),
+            noises=(float(of_angle.max()), float(of_curvature.max())),
             rates=self._rates(side_a, side_b, sign, worst),
         )
 
@@ -206,7 +207,7 @@ class _Edges:
         if self.order == 2:
             return ()
         rates_a, rates_b = (
-            curvature_rates(side.at, side.normal, noises, self.order)
+            curvature_rates(side.at, side.normal, noises.derivatives, self.order)
             for side, noises in zip((side_a, side_b), self.noises, strict=True)
         )
         found = []
@@ -250,33 +251,22 @@ class _Side:
     def __init__(self, curves: EdgeCurves, edge: str, s: FloatArray, sign: float, order: int) -> None:
         self.at = at = curves.points(s, order)
         self.point, self.x_w, self.x_s = at[0, 0], at[1, 0], at[0, 1]
-        self.x_ww, self.x_ws, self.x_ss = at[2, 0], at[1, 1], at[0, 2]
+        self.x_ww, self.x_ss = at[2, 0], at[0, 2]
         cross = _cross(self.x_w, self.x_s)
         length = np.linalg.norm(cross, axis=1)
         scale = np.linalg.norm(self.x_w, axis=1) * np.linalg.norm(self.x_s, axis=1)
         inwards = -sign if edge[1] == "1" else sign
         regular = (length > 1e-12 * scale)[:, None]
         self.normal = np.divide(inwards * cross, length[:, None], out=np.full_like(cross, np.nan), where=regular)
-
-    def across(self) -> tuple[FloatArray, FloatArray]:
-        """Return y and d = x_w + y x_s, d perpendicular to the edge; not a number where there is no normal."""
-        squared = np.where(np.isnan(self.normal[:, 0]), np.nan, np.sum(self.x_s**2, axis=1))
-        y = -np.sum(self.x_w * self.x_s, axis=1) / squared
-        return y, self.x_w + y[:, None] * self.x_s
-
-    def curvature(self) -> FloatArray:
-        """Return normal curvature in the direction of the tangent plane perpendicular to the edge, shape (K,)."""
-        y, d = self.across()
-        second = self.x_ww + 2 * y[:, None] * self.x_ws + (y**2)[:, None] * self.x_ss
-        return np.asarray(np.sum(second * self.normal, axis=1) / np.sum(d**2, axis=1))
+        self.section = square_section(at, self.normal)
 
     def curvature_along(self) -> FloatArray:
         """Return normal curvature in the direction of the edge, shape (K,)."""
         return np.asarray(np.sum(self.x_ss * self.normal, axis=1) / np.sum(self.x_s**2, axis=1))
 
-    def least_cross_speed(self) -> float:
-        """Return the least speed across the edge."""
-        return float(np.linalg.norm(self.across()[1], axis=1).min())
+    def noises(self, noises: EdgeNoises) -> tuple[FloatArray, FloatArray]:
+        """Return what rounding may do to the normal (radians) and to the curvature across, from that of derivatives."""
+        return section_noises(self.at, self.normal, self.section, noises)
 
 
 def model_size(*surfaces: Surface) -> float:
@@ -300,9 +290,3 @@ def _over(value: float, largest: float) -> float:
     if largest > 0:
         return value / largest
     return 0.0 if value == 0 else np.inf
-
-
-def _geometric_noise(noises: list[float], speed: float, largest_curvature: float) -> tuple[float, float]:
-    """Bound what that rounding may do to the angle (radians) and to the curvature across the edge (1/length)."""
-    angle = noises[1] / speed
-    return angle, noises[2] / speed / speed + 2 * largest_curvature * angle

@@ -223,6 +223,24 @@ def edge_curves(
     return EdgeCurves((line,), 3, ())
 
 
+def end_differences(degree: int, knots: FloatArray, at_end: bool, order: int) -> FloatArray:
+    """Return by how much each of the points at an end enters each derivative there, shape (order + 1, order + 1).
+
+    Orders in rows; the nearest point first. Zeros above the degree.
+
+    Examples
+    --------
+    >>> end_differences(2, np.array([0.0, 0, 0, 1, 2, 2, 2]), False, 2)
+    array([[ 1.,  0.,  0.],
+           [-2.,  2.,  0.],
+           [ 2., -3.,  1.]])
+    """
+    result = np.zeros((order + 1, order + 1))
+    values = _ends(list(np.eye(order + 1)[: min(order, degree) + 1]), _steps(degree, knots, at_end, order))
+    result[: len(values)] = values
+    return result
+
+
 def _nearest(n: int, degree: int, at_end: bool, order: int) -> list[int]:
     """Return which of n points derivatives up to `order` read at an end, the nearest first."""
     return [n - 1 - i if at_end else i for i in range(min(order, degree) + 1)]

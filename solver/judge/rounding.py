@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from semispline.solver.arrays import FloatArray
 from semispline.solver.judge.base import Base
+from semispline.solver.judge.de_boor import end_differences
 from semispline.solver.splines import BSplineSurface, bounding_box
 
 # The bound on rounding counts each control point once; a few operations follow before it is measured.
@@ -29,6 +32,41 @@ def derivative_noises(base: Base, origin: FloatArray, order: int = 2) -> FloatAr
     )
     second = np.max([_factors(degree, _inner_widths(degree, knots, order), rational) for degree, knots in along], 0)
     return np.asarray((stored + worked) * np.multiply.outer(first, second))
+
+
+@dataclass(frozen=True, eq=False)
+class EdgeNoises:
+    """What rounding may do to derivatives along an edge.
+
+    Attributes
+    ----------
+    derivatives : ndarray, shape (order + 1, order + 1)
+        To each of them: `derivative_noises`.
+    rows : ndarray, shape (3, 3)
+        To cross derivatives of order 0 to 2, in rows, by each row of control points next to the edge: with signs. Where
+        these are not the same for all points of the edge, each derivative counts as a row of its own.
+    along : ndarray, shape (3,)
+        How much derivatives along the edge, of order 0 to 2, may magnify an error of such a row.
+    """
+
+    derivatives: FloatArray
+    rows: FloatArray
+    along: FloatArray
+
+
+def edge_noises(base: Base, origin: FloatArray, order: int = 2) -> EdgeNoises:
+    """Bound what rounding may do to the derivatives along an edge, counted from `origin`, up to `order`."""
+    noises = derivative_noises(base, origin, order)
+    one = noises[0, 0]
+    along = noises[0, :3] / one if one > 0 else np.ones(3)
+    surface = base.surface
+    if base.edge[0] == "u" and not (isinstance(surface, BSplineSurface) and surface.weights is not None):
+        degree, knots = surface.degree_u, surface.knots_u
+    elif isinstance(surface, BSplineSurface) and surface.weights is None:
+        degree, knots = surface.degree_v, surface.knots_v
+    else:
+        return EdgeNoises(noises, np.diag(noises[:3, 0]), along)
+    return EdgeNoises(noises, one * end_differences(degree, knots, base.edge[1] == "1", 2), along)
 
 
 def _directions(base: Base, order: int) -> tuple[list[tuple[int, FloatArray]], list[tuple[int, FloatArray]]]:

@@ -144,9 +144,10 @@ def test_the_report_holds_what_was_allowed(tmp_path):
     done = run("blend", *files, *edges("v1", "u1"), *options, "--alpha", "energy", "-o", out, "--report", report)
     assert done.exit_code == 0
     assert "warning: contact b: rounding alone" in done.stderr
-    assert "relative curvature jump 0.0017 (0.017 allowed)" in done.stdout
+    assert "relative curvature jump 0.0017 (0.013 allowed)" in done.stdout
     contact = json.loads(report.read_text())["contact_b"]
-    assert contact["allowed"]["curvature_jump_relative"] == pytest.approx(0.0165, rel=0.01)
+    # Less than what errors of first and second derivatives could do one by one, 0.017: they are of the same points.
+    assert contact["allowed"]["curvature_jump_relative"] == pytest.approx(0.0130, rel=0.01)
     assert set(contact["allowed"]) == set(contact["rounding"]) <= set(contact)
     assert contact["no_normal"] == []
     done = run("check", out, files[1], *edges("u1", "u1"), "--require", "G2", "--json", "-")
@@ -154,7 +155,7 @@ def test_the_report_holds_what_was_allowed(tmp_path):
     record = json.loads(done.stdout)
     assert record["meets"] is True
     (doubt,) = record["doubts"]
-    assert doubt.startswith("rounding alone may change curvature_jump_relative by 0.017")
+    assert doubt.startswith("rounding alone may change curvature_jump_relative by 0.013")
 
 
 def strip(start, end, offset=0.0, tilt=0.0):
@@ -163,14 +164,15 @@ def strip(start, end, offset=0.0, tilt=0.0):
 
 
 # Strips 1 wide, from 0 to 1 and from 1 to 2, moved along all axes. Both control points of a cross derivative round by
-# half a spacing of floats each way: 2 sqrt(3) 2^-53 times the distance on each side.
+# half a spacing of floats each way: 2 sqrt(3) 2^-53 times the distance on each side. So do those of the derivative
+# along the edge, and the normal turns with both: sqrt(2) times as far.
 @pytest.mark.parametrize(
     ("offset", "require", "tilt", "status", "answer"),
     [
         (0, "G1", 0, 0, "G1: yes"),
-        (2.0**30, "G1", 0, 0, "G1: yes"),  # 5e-5 degrees
-        (2.0**35, "G1", 0, 0, "; rounding alone may change angle_degrees by 0.0015"),
-        (2.0**40, "G1", 0, 3, "G1 cannot be told"),  # 0.05 degrees
+        (2.0**30, "G1", 0, 0, "G1: yes"),  # 7e-5 degrees
+        (2.0**35, "G1", 0, 0, "; rounding alone may change angle_degrees by 0.0021"),
+        (2.0**40, "G1", 0, 3, "G1 cannot be told"),  # 0.07 degrees
         (2.0**40, "G1", 2.0**-5, 1, "G1: no"),  # 1.8 degrees
         (2.0**40, "G1", 2.0**-11, 3, "G1 cannot be told"),  # 0.03 degrees
         (2.0**40, "C0", 0, 3, "C0 cannot be told"),  # a gap of 4e-4 of the size, 2

@@ -61,7 +61,7 @@ def open_pair(family: Family, seed: int) -> ShapeProblem:
     --------
     >>> pair = open_pair("u-turn", 3)
     >>> pair.name, pair.kind, round(pair.measures.gap, 2), [round(x) for x in pair.measures.exit_degrees]
-    ('u-turn-003', 'exits to the same side', 1.07, [115, 122])
+    ('u-turn-003', 'exits to the same side', 1.11, [117, 122])
     """
     for attempt in range(1000):
         rng = np.random.default_rng([_NUMBERS[family], seed, attempt])

@@ -78,6 +78,7 @@ def test_open_pairs_lie_as_they_promise(family, exits):
         # Half a percent for the places at which each side measures.
         assert 0.199 <= gap <= 2.01
         assert all(exits[0] - 0.1 <= angle <= exits[1] + 0.1 for angle in angles)
+        least = []
         for base in (problem.a, problem.b):
             n_across, n_along = base.surface.control_points.shape[:2]
             if base.edge[0] == "v":
@@ -86,7 +87,10 @@ def test_open_pairs_lie_as_they_promise(family, exits):
             assert 4 <= n_across <= 6
             assert (base.surface.degree_u, base.surface.degree_v, base.surface.weights) == (3, 3, None)
             _, inwards, along = edge(base, np.linspace(0, 1, 200))
-            assert 24.9 < degrees(inwards, along).min() <= degrees(inwards, along).max() < 155.1
+            to_edge = degrees(inwards, along)
+            least.append(np.minimum(to_edge, 180 - to_edge).min())
+        assert problem.measures.least_exit_to_edge_degrees == pytest.approx(min(least), abs=0.5)
+        assert min(least) > 24.9
 
 
 @given(st.sampled_from(["facing", "u-turn"]), st.integers(0, 10**9))
@@ -177,7 +181,7 @@ def test_known_geometry_of_rims():
         axial = (c1 - c0) @ n1
         assert 0.49 < axial < 3.01
         assert np.linalg.norm(c1 - c0 - axial * n1) < 0.05
-    for problem in rims("tilted"):
+    for problem in rims("tilted", 16):
         angle = 180 - degrees(rim(problem.a)[2], rim(problem.b)[2])
         assert 4.9 < angle < 50.1
     for problem in rims("elbow"):
@@ -213,6 +217,20 @@ def test_what_is_measured_of_known_pairs(backwards):
     assert pair.least_exit_to_edge_degrees == pytest.approx(90)
     assert pair.speeds == pytest.approx((1.5, 0.125))
     assert pair.domains == pytest.approx((1, 5))
+    assert pair.bends == pytest.approx((0, 0), abs=1e-9)
+    assert pair.edge_turn_degrees == pytest.approx((0, 0), abs=1e-9)
+
+
+def test_a_cylinder_met_along_a_straight_line_bends_by_its_radius():
+    straight = strip((0, 0, 0), (-3, 0, 0))
+    quarter = revolve_polynomial(_line((3, 0, 0), (3, 2, 0)), (3.5, 0, 0), (0, 1, 0), angle=90, tolerance=1e-9).surface
+    bases = [Base(quarter, e) for e in ("u0", "u1", "v0", "v1")]
+    # The line x = 3, z = 0 is one of its edges; its radius is 1/2.
+    met = next(base for base in bases if np.abs(edge(base, np.linspace(0, 1, 5))[0][:, 0] - 3).max() < 1e-9)
+    pair = measure_pair(Base(straight, "u0"), met)
+    assert pair.bends == pytest.approx((0, 3 / 0.5), rel=1e-4)
+    assert pair.edge_turn_degrees == pytest.approx((0, 0), abs=1e-5)
+    assert pair.exit_degrees == pytest.approx((0, 90), abs=1e-5)
 
 
 def test_a_pipe_and_a_flat_ring_around_it():
@@ -233,6 +251,8 @@ def test_a_pipe_and_a_flat_ring_around_it():
     # Circumferences 2 pi and 4 pi, one apart.
     assert pair.gap == pytest.approx(1 / (3 * np.pi), rel=1e-4)
     assert pair.exit_degrees == pytest.approx((90, 0), abs=0.05)
+    # The normal goes round with the pipe, and stays upright on the ring; 256 places leave out a little.
+    assert pair.edge_turn_degrees == pytest.approx((360, 0), abs=0.5)
 
 
 def _line(start, end):

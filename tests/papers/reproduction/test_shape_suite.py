@@ -7,6 +7,7 @@ from functools import cache
 import numpy as np
 import pytest
 
+from helpers.papers_set import PAPERS_SET
 from semispline import Base, BSplineSurface, blend, thin_plate_energy
 from semispline.papers.reproduction.families.closed_rims import KINDS, closed_rims
 from semispline.papers.reproduction.families.open_pairs import open_pair
@@ -157,7 +158,7 @@ def test_what_energy_wants_is_least_and_within_the_box_what_it_gets(seed):
 
     def energy(x, y):
         alpha = tuple(float(np.sqrt(t * n)) for t, n in zip((x, y), natural, strict=True))
-        return thin_plate_energy(blend(problem.a, problem.b, **(ENERGY_SET | {"alpha": alpha})).surface)
+        return thin_plate_energy(blend(problem.a, problem.b, **(PAPERS_SET | {"alpha": alpha})).surface)
 
     least = energy(*wanted)
     for step in (0.97, 1.03):

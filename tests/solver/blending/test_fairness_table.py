@@ -5,6 +5,7 @@ import pytest
 
 from helpers.facing import random_facing
 from semispline import Base, BSplineSurface, transform
+from semispline.solver.blending.fair_search import solve_fair
 from semispline.solver.blending.fairness_grid import NODES_U, across, along, rough_along
 from semispline.solver.blending.fairness_table import FOLDS, LOOPS, FairnessTable
 from semispline.solver.blending.pipeline import state_problem
@@ -105,16 +106,17 @@ def test_what_is_reversed_folds():
 
 
 @pytest.mark.parametrize("seed", range(6))
-def test_eight_times_the_arc_is_a_loop_for_g4(seed):
+def test_eight_times_what_is_fair_is_a_loop_for_g4(seed):
     options = {"continuity": "G4", "degree_u": 9}
     pair = random_facing(np.random.default_rng([11, seed]), most_angle=60)
     problem = state_problem(*pair, **(QUINTIC | options)).problem
+    found = solve_fair(problem)
     # Whatever folds.
-    table, exponents = table_of(pair, least_cosine=-2.0, **options)
-    powers = np.concatenate([[0.0], exponents[0][1:, 0], exponents[1][1:, 0]])
-    fair, far = (table.measure(((factor * problem.exits.arc) ** powers)[None]) for factor in (0.6, 8))
-    assert fair.refused[0] == 0
-    assert far.refused[0] == LOOPS
+    table, (powers_a, powers_b) = table_of(pair, least_cosine=-2.0, **options)
+    for factor, expected in ((1, 0), (8, LOOPS)):
+        x, y = (factor * value / unit for value, unit in zip((found.a, found.b), problem.natural, strict=True))
+        candidate = np.concatenate([[1.0], x ** powers_a[1:, 0], y ** powers_b[1:, 0]])
+        assert table.measure(candidate[None]).refused[0] == expected
 
 
 def tangents(degrees, up=(0, 1, 0)):
@@ -126,7 +128,16 @@ def tangents(degrees, up=(0, 1, 0)):
 @pytest.mark.parametrize(
     ("first", "last", "needed"),
     # An arch by twice, an S by four times its angle; beyond 90 degrees the other way round may be less.
-    [(50, -50, 100), (50, 50, 200), (0, 0, 0), (0, 60, 120), (170, -170, 340), (135, 135, 360)],
+    [
+        (50, -50, 100),
+        (50, 50, 200),
+        (0, 0, 0),
+        (0, 60, 120),
+        (170, -170, 340),
+        (135, 135, 360),
+        (90, 150, 300),
+        (150, 90, 300),
+    ],
 )
 def test_the_biarc_between_two_exits(first, last, needed):
     ends = tangents([first, last])

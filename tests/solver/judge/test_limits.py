@@ -101,10 +101,13 @@ def test_rounding_of_derivatives_by_hand(degree, h):
     first, second = 2 * degree / h, 2 * degree / h * 2 * (degree - 1) / h
     assert found["gap"] == pytest.approx(one, rel=1e-12, abs=0)
     assert found["c1_residual"] == pytest.approx(one * first, rel=1e-12, abs=0)
-    assert np.radians(found["angle_degrees"]) == pytest.approx(one * first, rel=1e-12, abs=0)
+    # The normal turns with each of its tangents; that along the edge is straight, 1 long.
+    assert np.radians(found["angle_degrees"]) == pytest.approx(one * np.hypot(first, 2), rel=1e-12, abs=0)
     # Flat: a curvature below 1e-3 over the size, 2, is none; the speed is 1.
     assert found["c2_residual"] == pytest.approx(one * second / 0.5, rel=1e-12, abs=0)
-    assert found["curvature_jump_relative"] == pytest.approx(one * second / 5e-4 + 2 * one * first, rel=1e-12, abs=0)
+    # The first of two differences is over h, the second over both spans. Where nothing bends a turn does nothing.
+    second = degree * (degree - 1) / h * 2 * (1 / h + 1)
+    assert found["curvature_jump_relative"] == pytest.approx(one * second / 5e-4, rel=1e-12, abs=1e-20)
 
 
 def test_what_rounding_does_is_allowed_and_hardly_more():

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.optimize import brentq
 
 from helpers.shapes import arc, extruded, line, sheets, torus
 from semispline import (
@@ -105,6 +106,23 @@ def test_hardly_changes_when_samples_double():
     for surface in [*sheets(7, 8), extruded(bent(0.05), 1.0), extruded(bent(0.3), 1.0, along="v")]:
         once, twice = (turn_on_samples(surface, fineness).degrees for fineness in (1, 2))
         assert once == pytest.approx(twice, rel=0.03, abs=0.1)
+
+
+def test_a_ridge_between_two_sections_is_looked_at_closely():
+    # z = 3 u (1 - u) 9 B(v), B the third Bernstein polynomial of degree 6: sharpest across the top, at v = 1/3. There
+    # the normal stays in a plane, and turns with the slope of a parabola; without a closer look 2 % are missed.
+    u, v, top = np.arange(4) / 3, 20 * np.arange(7) / 6, np.zeros(7)
+    top[2] = 9.0
+    net = np.stack(np.broadcast_arrays(u[:, None], v[None], np.outer([0, 1, 1, 0], top)), axis=2)
+    turn = measure_turn(BSplineSurface(3, 6, [0] * 4 + [1] * 4, [0] * 7 + [1] * 7, net))
+    steep = 3 * 9 * 15 * (1 / 3) ** 2 * (2 / 3) ** 4
+
+    def length(slope):
+        return (slope * np.hypot(1, slope) + np.arcsinh(slope)) / (4 * steep)
+
+    slope = brentq(lambda t: length(t) - turn.window / 2, 0, 100)
+    assert turn.degrees == pytest.approx(2 * np.degrees(np.arctan(slope)), rel=1e-3)
+    assert (turn.section, turn.at) == ("v", pytest.approx(1 / 3, abs=0.01))
 
 
 def test_rough_sheets_are_looked_at_closely():
