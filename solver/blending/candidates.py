@@ -158,10 +158,8 @@ def _loser(layout: Layout, best: Layout) -> str:
 
 def _candidate(options: BlendOptions, result: Layout | ComputationError, best: Layout) -> Candidate:
     fairness = _fairness(result) if isinstance(result, Layout) else None
-    if isinstance(result, Layout):
-        verdict = "chosen" if result is best else _loser(result, best)
-    else:
-        verdict = str(result)
+    said = _loser(result, best) if isinstance(result, Layout) else str(result)
+    verdict = "chosen" if result is best else said
     return Candidate(
         cast("int", options.degree_u), cast("int", options.middle_curves), options.alpha_v, fairness, verdict
     )
