@@ -112,7 +112,8 @@ def _number_or_word(said: str) -> Any:
 
 def _numbers(name: str, text: str, between: str) -> list[float]:
     try:
-        return [float(part) for part in text.split(between) if part.strip()]
+        # A list may be empty; a pair with an end left out is none.
+        return [float(part) for part in text.split(between) if between == ":" or part.strip()]
     except ValueError:
         word = {",": "commas", ":": "colons"}[between]
         raise OptionError(f"{name}: found {text!r}, expected numbers with {word} between them") from None

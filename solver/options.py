@@ -163,6 +163,7 @@ class BlendOptions:
             object.__setattr__(self, name, value)
         # What contradicts itself is refused here, before anything is done with it.
         self._is_papers_set()
+        self._check_sides()
 
     @property
     def continuities(self) -> tuple[Continuity, Continuity]:
@@ -184,9 +185,9 @@ class BlendOptions:
         """Bulge at a and at b."""
         return cast("tuple[float, float]", self.bulge)
 
-    def _is_papers_set(self, why: str = "") -> bool:
+    def _is_papers_set(self, minimises_energy: str = "") -> bool:
         """Tell whether (11) is minimised, and refuse what asks for something else beside it."""
-        why = why or ("alpha energy" if "energy" in self.alphas else f"method {self.method}")
+        why = minimises_energy or ("alpha energy" if "energy" in self.alphas else f"method {self.method}")
         if why == "method reduced":
             return False
         for name, found, expected in (
@@ -198,11 +199,28 @@ class BlendOptions:
             ("continuity", next((c for c in self.continuities if int(c[1]) > 2), None), "at most G2"),
         ):
             if found is not None:
+                other = {"alpha energy": "; or leave out alpha energy"}.get(why, "; or method reduced")
                 raise OptionError(
-                    f"{name}: found {found} with {why}, which minimises (11), expected {expected}; or method reduced "
-                    "without alpha energy"
+                    f"{name}: found {found} with {why}, which minimises (11), expected {expected}"
+                    + ("" if why == minimises_energy else other)
                 )
         return True
+
+    def _check_sides(self) -> None:
+        """Refuse what a contact has no use for."""
+        for i, (side, name) in enumerate(zip("ab", self.continuities, strict=True)):
+            has_alpha, order = name[0] == "G" and name != "G0", int(name[1])
+            if self.bulges[i] != 1 and not has_alpha:
+                raise OptionError(f"bulge: found {self.bulges[i]:g} at {side}, expected 1: {name} has no alpha")
+            if not isinstance(self.p2, str) and self.p2[i] != 0 and not (has_alpha and order > 1):
+                raise OptionError(f"p2: found {self.p2[i]:g} at {side}, expected 0: {name} has no p2")
+        searched = [
+            alpha is None or alpha == "fair"
+            for alpha, name in zip(self.alphas, self.continuities, strict=True)
+            if name[0] == "G" and name != "G0"
+        ]
+        if self.alpha_v == "linear" and not any(searched):
+            raise OptionError("alpha_v: found linear, but no alpha is searched; give alpha as X:Y, or leave it out")
 
     def decided(self, minimises_energy: str = "") -> BlendOptions:
         """Return the options with nothing unsaid: the set of the fairest shape, or the paper's where (11) is minimised.

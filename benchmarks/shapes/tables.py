@@ -241,7 +241,12 @@ def _candidates(compared: Compared) -> str:
         for name, column in columns.items():
             found = [shape for shape in column if shape]
             over = np.array([_seen(shape) for shape in column])[told] / best[told]
-            shown = [f"{x:.3g}" for x in np.quantile(over[np.isfinite(over)], [0.5, 0.9, 1])]
+            told_over = over[np.isfinite(over)]
+            # Nothing of a family may have it, such as closed rims a linear alpha.
+            if not len(told_over):
+                lines.append((name, *["–"] * 4, str(len(of)), *["–"] * 3))
+                continue
+            shown = [f"{x:.3g}" for x in np.quantile(told_over, [0.5, 0.9, 1])]
             counts = len(of) - len(found), sum(x["at_bound"] for x in found), sum(x["turn"] > STEEP for x in found)
             points = float(np.median([shape["points"] for shape in found]))
             lines.append((name, str(int((over <= 1).sum())), *shown, *(str(x) for x in counts), f"{points:.0f}"))

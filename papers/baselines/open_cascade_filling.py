@@ -8,9 +8,11 @@ unit square by a Coons map of its four edges, so that it is measured like the ot
 from __future__ import annotations
 
 import time
+from collections.abc import Callable
+from functools import lru_cache
 from itertools import product
 from math import comb
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -20,6 +22,9 @@ from semispline.solver.arrays import FloatArray
 from semispline.solver.errors import FileError
 from semispline.solver.io import occ_surface, require_kernel
 from semispline.solver.splines import BSplineSurface, interpolate_grid
+
+# (u, v, du, dv) -> shape (K, 3)
+Evaluation: TypeAlias = Callable[[FloatArray, FloatArray, int, int], FloatArray]
 
 _ALONG, _ACROSS = 97, 33
 _STEPS = 40
@@ -126,28 +131,39 @@ def _on_unit_square(plate: BSplineSurface, a: ContactSide, b: ContactSide) -> Fo
     flat = np.concatenate([net, np.zeros((*net.shape[:2], 1))], axis=2)
     parameters = interpolate_grid(flat, u=u, v=v)
 
-    def at(x: FloatArray, y: FloatArray, du: int, dv: int) -> FloatArray:
-        return _chain(plate, parameters, x, y, du, dv)
-
     # The plate knows nothing of the knots of the contacts: a few smooth pieces are enough.
+    at = _composed(plate, parameters)
     return FormulaSurface(at, np.linspace(0, 1, 5), np.linspace(start, end, 25))
 
 
-def _chain(
-    plate: BSplineSurface, parameters: BSplineSurface, x: FloatArray, y: FloatArray, du: int, dv: int
-) -> FloatArray:
-    """Return a derivative of plate(parameters(x, y)), by the chain rule: a term for each way to part the directions."""
-    p, q = parameters.evaluate(x, y)[:, :2].T
-    # A foot point on an edge of the plate's domain may be off by rounding.
+def _composed(plate: BSplineSurface, parameters: BSplineSurface) -> Evaluation:
+    """Return plate(parameters(x, y)) and its derivatives, by the chain rule: a term for each way to part directions."""
     (p0, p1), (q0, q1) = plate.domain
-    p, q = np.clip(p, p0, p1), np.clip(q, q0, q1)
-    total = np.zeros((len(p), 3))
-    for groups in partitions("u" * du + "v" * dv):
-        inner = [parameters.evaluate(x, y, group.count("u"), group.count("v"))[:, :2] for group in groups]
-        for axes in product((0, 1), repeat=len(groups)):
-            factor = np.prod([part[:, axis] for part, axis in zip(inner, axes, strict=True)], axis=0)
-            total += factor[..., None] * plate.evaluate(p, q, axes.count(0), axes.count(1))
-    return total
+    of_plate, inner = _remembering(plate), _remembering(parameters)
+
+    def at(x: FloatArray, y: FloatArray, du: int, dv: int) -> FloatArray:
+        p, q = inner(x, y, 0, 0)[:, :2].T
+        # A foot point on an edge of the plate's domain may be off by rounding.
+        p, q = np.clip(p, p0, p1), np.clip(q, q0, q1)
+        total = np.zeros((len(p), 3))
+        for groups in partitions("u" * du + "v" * dv):
+            parts = [inner(x, y, group.count("u"), group.count("v")) for group in groups]
+            for axes in product((0, 1), repeat=len(groups)):
+                factor = np.prod([part[:, axis] for part, axis in zip(parts, axes, strict=True)], axis=0)
+                total += factor[..., None] * of_plate(p, q, axes.count(0), axes.count(1))
+        return total
+
+    return at
+
+
+def _remembering(surface: BSplineSurface) -> Evaluation:
+    """Return the evaluation of a surface that keeps what it gave: a chain rule asks again and again for the same."""
+
+    @lru_cache(maxsize=24)
+    def kept(u: bytes, v: bytes, du: int, dv: int) -> FloatArray:
+        return surface.evaluate(np.frombuffer(u), np.frombuffer(v), du, dv)
+
+    return lambda u, v, du, dv: kept(u.tobytes(), v.tobytes(), du, dv)
 
 
 def partitions(letters: str) -> list[list[str]]:

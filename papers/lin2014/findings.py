@@ -226,7 +226,7 @@ def _fair(comparisons: Comparisons) -> Iterator[Finding]:
         f"The fairest blend, which is the default, beats that of least energy in {_of(better, both)} examples",
         f"Both have G2 contact. Area times the integral of |grad H|^2 is {_range(quotient.values(), '.3g')} times as "
         f"much where alpha, beta and a middle curve minimise (11), which folds in {_names(folded)}; the normal turns "
-        f"by up to {turns[1]} degrees there within a fiftieth of the length, and by {turns[0]} on the fairest. That "
+        f"by at most {turns[1]} degrees there within a fiftieth of the length, and by {turns[0]} on the fairest. That "
         f"changes (11) by {_range(cost, '+.2g')} % and takes {_range(points, '.2g')} times the control points. "
         f"{_fairer_rivals(comparisons, fair)}",
     )

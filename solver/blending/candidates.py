@@ -146,9 +146,20 @@ def _fairness(layout: Layout) -> float:
     return cast("float", layout.found.fairness)
 
 
+def _loser(layout: Layout, best: Layout) -> str:
+    """Say why a layout was not taken."""
+    let_pass = set(layout.found.condoned) - set(best.found.condoned)
+    if let_pass:
+        return f"every candidate {' or '.join(sorted(let_pass))}"
+    more = "is no less" if _fairness(layout) <= _fairness(best) else "is more"
+    window = "" if layout.problem.bounds == best.problem.bounds else ", in another window"
+    return f"fairness {_fairness(layout):.4g} {more}{window}"
+
+
 def _candidate(options: BlendOptions, result: Layout | ComputationError, best: Layout) -> Candidate:
     fairness = _fairness(result) if isinstance(result, Layout) else None
-    verdict = "chosen" if result is best else str(result) if fairness is None else f"fairness {fairness:.4g} is more"
+    said = _loser(result, best) if isinstance(result, Layout) else str(result)
+    verdict = "chosen" if result is best else said
     return Candidate(
         cast("int", options.degree_u), cast("int", options.middle_curves), options.alpha_v, fairness, verdict
     )

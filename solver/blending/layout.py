@@ -58,9 +58,10 @@ def blend_u_basis(
         raise OptionError(f"middle_curves: found {middle_curves}, expected at most {MOST_MIDDLE_CURVES}")
     degree_u = whole_number(degree_u, "degree_u", 1, OptionError)
     rows = sum(max(ROWS_PER_SIDE, order + 1) for order in orders) + middle_curves
+    least = max(orders) + 1 if max(orders) > 2 else _LEAST_DEGREE
     if not _LEAST_DEGREE <= degree_u < rows:
         raise OptionError(
-            f"degree_u: found {degree_u}, expected {_LEAST_DEGREE} to {rows - 1} with {middle_curves} middle curve(s)"
+            f"degree_u: found {degree_u}, expected {least} to {rows - 1} with {middle_curves} middle curve(s)"
         )
     if inner is None:
         basis = Basis(degree_u, uniform_knots(degree_u, rows - degree_u))

@@ -332,7 +332,9 @@ def _checked_contacts(
             )
         hidden = untold(contact, wanted)
         if hidden:
-            said = remedy(base, surface, bare_places(contact, name), shape if wanted[0] == "G" else None)
+            said = remedy(
+                base, surface, bare_places(contact, name), shape if wanted[0] == "G" else None, int(wanted[1])
+            )
             raise ContactError(f"contact {name}: {'; '.join(hidden)} for {wanted}; {said}")
         for measure, value, limit in measured:
             if not value <= limit:

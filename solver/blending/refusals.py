@@ -16,6 +16,8 @@ from semispline.solver.arrays import FloatArray
 LOOP = np.radians(60.0)
 # Below it a vector has no direction.
 _NOTHING = 1e-12
+# Of a unit vector, or of none.
+_HALF = 0.5
 
 
 def folds(normal: FloatArray, least_cosine: float) -> NDArray[np.bool_]:
@@ -57,7 +59,9 @@ def needed_turn(first: FloatArray, last: FloatArray, chord: FloatArray) -> Float
     chord = _unit(chord)
     (theta_0, side_0), (theta_1, side_1) = (_departure(_unit(end), chord) for end in (first, last))
     # |1.5 a + .5 b| needs but lengths and the cosine between a and b.
-    cosine = np.sum(side_0 * side_1, axis=0)
+    # Straight along the chord or away from it any side will do: the least turn is that to the other one.
+    told = np.minimum(np.sum(side_0**2, axis=0), np.sum(side_1**2, axis=0)) > _HALF
+    cosine = np.where(told, np.sum(side_0 * side_1, axis=0), -1.0)
     least = np.full(theta_0.shape, np.inf)
     for x in (theta_0, theta_0 - 2 * np.pi):
         for y in (theta_1, theta_1 - 2 * np.pi):

@@ -65,7 +65,9 @@ def seam_warning(a: Base, b: Base) -> tuple[str, ...]:
     return (f"contact curve {which} is closed, the other is open: the blend is open along the seam of {which}",)
 
 
-def remedy(base: Base, surface: SemiStructuredSurface, bare: list[NoNormal], shape: float | None) -> str:
+def remedy(
+    base: Base, surface: SemiStructuredSurface, bare: list[NoNormal], shape: float | None, order: int = 2
+) -> str:
     """Say what makes rounding too large to tell how a blend meets its base, and what to try.
 
     Parameters
@@ -77,6 +79,8 @@ def remedy(base: Base, surface: SemiStructuredSurface, bare: list[NoNormal], sha
         Where the base has no proper normal.
     shape : float or None
         The shape parameter; None where contact has none.
+    order : int
+        Of contact.
     """
     distance = float(np.abs(bounding_box(surface)).max()) / model_size(surface)
     if distance > _FAR:
@@ -91,6 +95,8 @@ def remedy(base: Base, surface: SemiStructuredSurface, bare: list[NoNormal], sha
             f"knots_{across} of the base leave a span of {width:.1e} beside the edge, across which derivatives round: "
             "remove these knots or take them further apart, or ask for a lower continuity"
         )
+    if order > 2:
+        return f"derivatives of order {order} round: ask for G2, or work in coordinates nearer to the origin"
     if shape is None:
         return "derivatives across the edge round: try bases of similar size, or a lower continuity"
     return (
@@ -120,7 +126,9 @@ def contact_warnings(
         least = float(np.min(shape))
         geometric = wanted[0] == "G" and wanted != "G0"
         for text in doubtful(contact, wanted):
-            warnings.append(f"contact {name}: {text}; {remedy(base, surface, bare, least if geometric else None)}")
+            warnings.append(
+                f"contact {name}: {text}; {remedy(base, surface, bare, least if geometric else None, int(wanted[1]))}"
+            )
         if geometric:
             warnings += [f"base {name}: {place}; {wanted} says nothing there" for place in bare[:_NAMED]]
     return tuple(warnings)

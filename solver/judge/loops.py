@@ -25,6 +25,8 @@ _POINTS, _POINTS_IN_SPAN = 32, 8
 _SECTIONS, _SECTIONS_IN_SPAN = 20, 2
 # Exits that leave the chord by less, in the mean sine, leave it to no side: a degree.
 _NO_SIDE = 0.0175
+# Of a unit vector, or of none.
+_HALF = 0.5
 # A section that is slower than this part of the fastest has no tangent there.
 _NO_SPEED = 1e-12
 
@@ -195,4 +197,16 @@ def _against_chord(
         unit: FloatArray = np.divide(square, size, out=np.zeros_like(square), where=has_chord & (size > 1e-12))
         return unit
 
-    return theta, (side(ends[0]), side(ends[1]))
+    sides = side(ends[0]), side(ends[1])
+    # Straight along the chord, or straight away from it: any side will do, and the least turn is that to the other one.
+    missing = [has_chord & (lengths(x)[..., None] < _HALF) for x in sides]
+    square = _any_square(chord)
+    first = np.where(missing[0], np.where(missing[1], square, -sides[1]), sides[0])
+    return theta, (first, np.where(missing[1], -first, sides[1]))
+
+
+def _any_square(chord: FloatArray) -> FloatArray:
+    """Return a unit vector square to each chord."""
+    axis = np.eye(3)[np.abs(chord).argmin(axis=-1)]
+    square = np.cross(chord, axis)
+    return np.asarray(square / np.maximum(np.linalg.norm(square, axis=-1, keepdims=True), np.finfo(float).tiny))

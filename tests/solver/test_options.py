@@ -126,6 +126,37 @@ def test_what_the_minimum_of_11_does_not_have_is_refused_beside_it(other, asked,
         BlendOptions(**(asked | other))
 
 
+@pytest.mark.parametrize(
+    ("asked", "message"),
+    [
+        ({"continuity": ("G2", "C2"), "bulge": (1.0, 2.0)}, "bulge: found 2 at b, expected 1: C2 has no alpha"),
+        ({"continuity": "G0", "bulge": 0.5}, "bulge: found 0.5 at a, expected 1: G0 has no alpha"),
+        ({"continuity": ("G1", "G2"), "p2": (0.1, 0.0)}, "p2: found 0.1 at a, expected 0: G1 has no p2"),
+        ({"continuity": "C2", "p2": (0.0, 1.0)}, "p2: found 1 at b, expected 0: C2 has no p2"),
+        ({"continuity": "C2", "alpha_v": "linear"}, "alpha_v: found linear, but no alpha is searched"),
+        ({"alpha": 0.9, "alpha_v": "linear"}, "alpha_v: found linear, but no alpha is searched; give alpha as X:Y"),
+    ],
+)
+def test_what_a_contact_has_no_use_for_is_refused(asked, message):
+    with pytest.raises(OptionError, match=message):
+        BlendOptions(**asked)
+
+
+def test_what_one_contact_has_use_for_is_taken():
+    BlendOptions(continuity=("G2", "C2"), bulge=(2.0, 1.0), p2=(0.1, 0.0), alpha_v="linear")
+    BlendOptions(continuity=("C2", "G1"), alpha=(0.5, None), alpha_v="linear")
+
+
+def test_c_is_not_advised_to_change_its_method():
+    with pytest.raises(OptionError, match=r"found G3 with generated C, which minimises .11., expected at most G2$"):
+        BlendOptions(continuity="G3").decided("generated C")
+
+
+def test_a_pair_with_an_end_left_out_is_none():
+    with pytest.raises(OptionError, match=r"--alpha: found '0\.3:', expected numbers with colons between them"):
+        options_of(["--alpha", "0.3:"])
+
+
 def test_what_is_unsaid_is_decided_by_what_is_minimised():
     fair, papers = BlendOptions().decided(), BlendOptions(alpha="energy").decided()
     shown = "alpha", "alpha_v", "degree_u", "middle_curves", "middle_knots", "p2", "v_scale"

@@ -7,8 +7,10 @@ from helpers.facing import random_facing
 from semispline import Base, BSplineSurface, OptionError, blend
 from semispline.papers.reproduction.families.suite import shape_problem
 from semispline.solver.blending import candidates, fair_search
+from semispline.solver.blending.fair_search import FairSolution
 from semispline.solver.blending.linear_problem import gap_ratio
 from semispline.solver.blending.pipeline import state_problem
+from semispline.solver.blending.shape_parameters import Found
 
 CUBIC = [0, 0, 0, 0, 1, 1, 1, 1]
 
@@ -58,6 +60,15 @@ def test_a_middle_curve_is_tried_where_linear_alpha_is_not_allowed_and_the_gap_v
     assert result.options.middle_curves == best.middle_curves
     # Said to be without, it is without.
     assert tried(blend(*pair, alpha_v="constant", middle_curves=0)) == [(5, 0, "constant")]
+
+
+def test_a_candidate_whose_folds_were_let_pass_is_not_called_less_fair():
+    problem = state_problem(*wedge(1.0)).problem
+    values = ((5.0, ()), (1.0, ("folds",)), (5.0, ()), (6.0, ()))
+    solutions = [FairSolution(1.0, 1.0, (0.0, 0.0), value, 0.0, 1, {}, condoned) for value, condoned in values]
+    best, *others = (candidates.Layout(None, problem, Found(1.0, 1.0, "reduced", fair=one)) for one in solutions)
+    said = [candidates._loser(layout, best) for layout in others]
+    assert said == ["every candidate folds", "fairness 5 is no less", "fairness 6 is more"]
 
 
 def facing(seed):

@@ -83,6 +83,7 @@ def test_a_span_is_narrow_below_a_thousandth_of_the_base(width, named, edge):
     domain = 400.0
     surface = flat_with(domain * np.array([0, 0, 0, 0, 1 - width, 1, 1, 1, 1])).surface
     base = Base(turned(turned(surface, "u1", False), edge, False), edge)
+    assert remedy(FLOOR, blend(FLOOR, WALL).surface, [], 1.0, 3).startswith("derivatives of order 3 round: ask for G2")
     said = remedy(base, blend(FLOOR, WALL).surface, [], None)
     assert (f"knots_{edge[0]} of the base leave a span of {width * domain:.1e} beside the edge" in said) is named
     # Nobody asks for what is narrow elsewhere.

@@ -5,6 +5,7 @@ import pytest
 
 from helpers.shapes import arc, extruded, line, sheets, torus
 from semispline import BSplineSurface, measure_exits, measure_loop, reverse_u, reverse_v, transform
+from semispline.solver.blending.refusals import needed_turn
 from semispline.solver.judge.loops import loop_on_samples
 
 
@@ -122,3 +123,16 @@ def test_laws():
     back = measure_exits(reverse_u(surface))
     assert [back.theta_0, back.theta_1] == pytest.approx([exits.theta_1, exits.theta_0])
     assert measure_loop(reverse_u(surface)).degrees == pytest.approx(loop.degrees, abs=1e-6)
+
+
+@pytest.mark.parametrize("tilt", [0.0, 1e-9, 1e-6])
+def test_exits_straight_away_from_the_chord_need_a_full_turn(tilt):
+    points = [(0, 0), (-1, tilt), (-1, 1.5), (2, 1.5), (2, tilt), (1, 0)]
+    net = [[(x, y, z) for y in (0, 1)] for x, z in points]
+    loop = measure_loop(BSplineSurface(5, 1, [0] * 6 + [1] * 6, [0, 0, 1, 1], net))
+    assert loop.needed_degrees == pytest.approx(360.0, abs=1e-3)
+    assert loop.degrees == pytest.approx(0.0, abs=1e-3)
+    # The search has a formula of its own.
+    away = np.array([[-1.0], [0.0], [tilt]]) / np.hypot(1, tilt)
+    back = away * [[1], [1], [-1]]
+    assert needed_turn(away, back, np.array([[1.0], [0], [0]])) == pytest.approx(2 * np.pi, abs=1e-5)
