@@ -170,6 +170,9 @@ def _solved(problem: BlendProblem, refusable: tuple[int, ...], known: FairSoluti
     nodes = HIGH_ORDER_NODES_U if max(problem.a.order, problem.b.order) > 2 else NODES_U
     search = grid(across(u, nodes), along(rows, 1, narrow))
 
+    # Where a surface folds J has no end: no grid would settle it.
+    times_v = _FINER if FOLDS in refusable else _FINER[:1]
+
     @cache
     def finer(times: int) -> FairObjective:
         return grid(across(u, 2 * nodes), along(rows, times, narrow))
@@ -182,13 +185,13 @@ def _solved(problem: BlendProblem, refusable: tuple[int, ...], known: FairSoluti
     kept = cells[np.isfinite(values.ravel())]
     others = np.concatenate([kept, starts, [end.x for end in ends]])
     for k in order:
-        found = _settled(_refined(ends[k], starts[k], levels), starts[k], finer, others)
+        found = _settled(_refined(ends[k], starts[k], levels), starts[k], finer, others, times_v)
         if found is not None:
             break
     else:
         # What the rough grid let pass is refused: what else does the finer one let pass?
         start = kept[np.argmin(search.values(kept))]
-        found = _settled(_refined(search.point(start), start, levels[-1:]), start, finer, others)
+        found = _settled(_refined(search.point(start), start, levels[-1:]), start, finer, others, times_v)
     if found is None:
         raise _AllRefusedError({name: refused[name] + finer(_FINER[0]).refused[name] for name in refused})
     solution = _solution(problem, unknowns, found[0], search, sum(objective.tried for objective in grids), refused)
@@ -228,7 +231,11 @@ def _refined(end: Point, start: FloatArray, levels: list[tuple[FairObjective, fl
 
 
 def _settled(
-    found: Point | None, start: FloatArray, finer: Callable[[int], FairObjective], others: FloatArray
+    found: Point | None,
+    start: FloatArray,
+    finer: Callable[[int], FairObjective],
+    others: FloatArray,
+    times_v: tuple[int, ...] = _FINER,
 ) -> tuple[Point, bool] | None:
     """Return what was found with its value on a finer grid, and whether that settled it.
 
@@ -236,7 +243,7 @@ def _settled(
     it goes on from the best there of all places that were looked at, `others`.
     """
     at = found
-    for times in _FINER:
+    for times in times_v:
         if at is None:
             return None
         fine = finer(times)
