@@ -30,7 +30,7 @@ from semispline.solver.blending.projected import Point, descend, unbound
 from semispline.solver.errors import ComputationError
 
 # Cells of the scan in each direction; more where the window is wider. It looks at half the nodes in u, where normals of
-# neighbours may turn further, and where there are many spans not at each of them.
+# neighbours may turn further.
 _CELLS, _WIDE_CELLS = 6, 8
 _SCAN_COSINE = 0.0
 _STARTS = 3
