@@ -125,6 +125,7 @@ def test_a_ridge_between_two_sections_is_looked_at_closely():
     assert (turn.section, turn.at) == ("v", pytest.approx(1 / 3, abs=0.01))
 
 
+@pytest.mark.slow
 def test_rough_sheets_are_looked_at_closely():
     """Looked at once, two of these would be off by 1.6 % and more; the narrowest bend stays 1 % short."""
     for surface in sheets(5, 10, rough=0.5):
