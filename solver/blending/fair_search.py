@@ -23,16 +23,15 @@ from semispline.solver.blending.fairness_grid import (
     along,
     rough_along,
 )
-from semispline.solver.blending.fairness_table import FOLDS, LEAST_COSINE, LOOPS, FairnessTable
+from semispline.solver.blending.fairness_table import FOLDS, LEAST_COSINE, LOOPS, FairnessTable, narrow_width
 from semispline.solver.blending.linear_alpha import LinearInV
 from semispline.solver.blending.problem import BlendProblem, SecondParameter
 from semispline.solver.blending.projected import Point, descend, unbound
 from semispline.solver.errors import ComputationError
 
 # Cells of the scan in each direction; more where the window is wider. It looks at half the nodes in u, where normals of
-# neighbours may turn further, and where there are many spans not at each of them.
+# neighbours may turn further.
 _CELLS, _WIDE_CELLS = 6, 8
-_SCAN_SPANS = 8
 _SCAN_COSINE = 0.0
 _STARTS = 3
 # Gradients of log J at the end of a start, and of the search.
@@ -152,7 +151,7 @@ def _solved(problem: BlendProblem, refusable: tuple[int, ...], known: FairSoluti
     np.empty(_WORKSPACE)
     layers, exponents = problem.shape_layers()
     unknowns = make_unknowns(problem, exponents)
-    u, rows = problem.form.u, problem.rows
+    u, rows, narrow = problem.form.u, problem.rows, narrow_width(problem)
 
     grids: list[FairObjective] = []
 
@@ -161,19 +160,23 @@ def _solved(problem: BlendProblem, refusable: tuple[int, ...], known: FairSoluti
         return grids[-1]
 
     # The tips of U-turns are sharp.
-    rough = grid(across(u, NODES_U) if problem.exits.u_turn else across(u, ROUGH_U), rough_along(rows), _SCAN_COSINE)
+    rough_u = across(u, NODES_U) if problem.exits.u_turn else across(u, ROUGH_U)
+    rough = grid(rough_u, rough_along(rows, narrow), _SCAN_COSINE)
     cells, values = _scan(rough, _WIDE_CELLS if problem.exits.u_turn else _CELLS)
     refused = dict(rough.refused)
     starts = [*_starts(cells, values), *([] if known is None else [_known_start(problem, unknowns, known)])]
     ends = [_descended(rough, rough.point(start), _NEAR) for start in starts]
     nodes = HIGH_ORDER_NODES_U if max(problem.a.order, problem.b.order) > 2 else NODES_U
-    search = grid(across(u, nodes), along(rows))
+    search = grid(across(u, nodes), along(rows, 1, narrow))
+
+    # Where a surface folds J has no end: no grid would settle it.
+    times_v = _FINER if FOLDS in refusable else _FINER[:1]
 
     @cache
     def finer(times: int) -> FairObjective:
-        return grid(across(u, 2 * nodes), along(rows, times))
+        return grid(across(u, 2 * nodes), along(rows, times, narrow))
 
-    between = grid(across(u, ROUGH_U), along(rows)) if search.table.size > _LARGE else None
+    between = grid(across(u, ROUGH_U), along(rows, 1, narrow)) if search.table.size > _LARGE else None
     levels = [(level, tolerance) for level, tolerance in ((between, _NEAR), (search, _END)) if level is not None]
     found = None
     # A rough grid may be blind to what makes a candidate worse than another: the finer one says which is best.
@@ -181,13 +184,13 @@ def _solved(problem: BlendProblem, refusable: tuple[int, ...], known: FairSoluti
     kept = cells[np.isfinite(values.ravel())]
     others = np.concatenate([kept, starts, [end.x for end in ends]])
     for k in order:
-        found = _settled(_refined(ends[k], starts[k], levels), starts[k], finer, others)
+        found = _settled(_refined(ends[k], starts[k], levels), starts[k], finer, others, times_v)
         if found is not None:
             break
     else:
         # What the rough grid let pass is refused: what else does the finer one let pass?
         start = kept[np.argmin(search.values(kept))]
-        found = _settled(_refined(search.point(start), start, levels[-1:]), start, finer, others)
+        found = _settled(_refined(search.point(start), start, levels[-1:]), start, finer, others, times_v)
     if found is None:
         raise _AllRefusedError({name: refused[name] + finer(_FINER[0]).refused[name] for name in refused})
     solution = _solution(problem, unknowns, found[0], search, sum(objective.tried for objective in grids), refused)
@@ -227,7 +230,11 @@ def _refined(end: Point, start: FloatArray, levels: list[tuple[FairObjective, fl
 
 
 def _settled(
-    found: Point | None, start: FloatArray, finer: Callable[[int], FairObjective], others: FloatArray
+    found: Point | None,
+    start: FloatArray,
+    finer: Callable[[int], FairObjective],
+    others: FloatArray,
+    times_v: tuple[int, ...] = _FINER,
 ) -> tuple[Point, bool] | None:
     """Return what was found with its value on a finer grid, and whether that settled it.
 
@@ -235,7 +242,7 @@ def _settled(
     it goes on from the best there of all places that were looked at, `others`.
     """
     at = found
-    for times in _FINER:
+    for times in times_v:
         if at is None:
             return None
         fine = finer(times)

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from semispline.solver.arrays import FloatArray
 from semispline.solver.splines import (
+    MERGE_TOLERANCE,
     Basis,
     breakpoints,
     derivative_points,
@@ -25,6 +26,10 @@ NODES_U, NODES_V, LEAST_V = 40, 2, 10
 ROUGH_U, _ROUGH_SPANS, _ROUGH_LEAST_V = NODES_U // 2, 6, 6
 # Contact of third and fourth order leaves less room between, where the surface then bends.
 HIGH_ORDER_NODES_U = 48
+# A span that belongs to a cluster of knots is below this fraction of the mean span. Within what is too wide for one
+# cluster narrower ones are looked for.
+_FRACTION = 1 / 20
+_FINER_CLUSTERS = 0.1 ** np.arange(9)
 # Orders of derivatives by u that go with each order by v, and the highest of either.
 ORDERS_U = ((1, 2, 3), (0, 1, 2), (0, 1), (0,))
 HIGHEST = 3
@@ -37,14 +42,17 @@ class Along:
     Attributes
     ----------
     nodes, weights : ndarray, shape (G, S)
-    breaks : ndarray, shape (S + 1,)
-    lines : ndarray, shape (L,)
+    places : ndarray, shape (S,)
+        In each span one that tells which polynomials are meant.
+    lines, line_places : ndarray, shape (2, L)
+        Just below and just above each line, apart where it stands for a cluster of knots; and places as above.
     """
 
     nodes: FloatArray
     weights: FloatArray
-    breaks: FloatArray
+    places: FloatArray
     lines: FloatArray
+    line_places: FloatArray
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,30 +73,60 @@ class Across:
     ends: FloatArray
 
 
-def along(rows: tuple[Basis, ...], times: int = 1) -> Along:
-    """Return the nodes in v, `times` as many."""
+def along(rows: tuple[Basis, ...], times: int = 1, narrow: float = 0.0) -> Along:
+    """Return the nodes in v, `times` as many; clusters of knots below the width `narrow` count as one line."""
     breaks = merge_breakpoints(*(breakpoints(row.knots) for row in rows))
-    each = max(NODES_V, -(-LEAST_V // (len(breaks) - 1))) * times
+    kept = _kept(breaks, narrow)
+    each = max(NODES_V, -(-LEAST_V // len(kept))) * times
     # n points are exact to degree 2 n - 1.
-    return Along(*gauss_rule(breaks, 2 * each - 1), breaks, _lines(rows))
+    nodes, weights = gauss_rule(breaks, 2 * each - 1)
+    places = (breaks[kept] + breaks[kept + 1]) / 2
+    below, above = breaks[kept[:-1] + 1], breaks[kept[1:]]
+    lines = _are_lines(rows, below, above)
+    return Along(
+        nodes[:, kept],
+        weights[:, kept],
+        places,
+        np.stack([below[lines], above[lines]]),
+        np.stack([places[:-1][lines], places[1:][lines]]),
+    )
 
 
-def rough_along(rows: tuple[Basis, ...]) -> Along:
+def rough_along(rows: tuple[Basis, ...], narrow: float = 0.0) -> Along:
     """Return few nodes in v, for a rough look: without regard to knots where these are many, and to lines."""
     breaks = merge_breakpoints(*(breakpoints(row.knots) for row in rows))
-    if len(breaks) - 1 > _ROUGH_SPANS:
+    kept = _kept(breaks, narrow)
+    places = (breaks[kept] + breaks[kept + 1]) / 2
+    if len(kept) > _ROUGH_SPANS:
+        starts = breaks[kept]
         breaks = breaks[0] + (breaks[-1] - breaks[0]) * np.arange(_ROUGH_SPANS + 1) / _ROUGH_SPANS
-    each = max(NODES_V, -(-_ROUGH_LEAST_V // (len(breaks) - 1)))
-    return Along(*gauss_rule(breaks, 2 * each - 1), breaks, np.zeros(0))
+        kept = np.arange(_ROUGH_SPANS)
+        # Of the span that holds the middle, or else of the one before.
+        places = places[np.maximum(np.searchsorted(starts, (breaks[:-1] + breaks[1:]) / 2, "right") - 1, 0)]
+    nodes, weights = gauss_rule(breaks, 2 * max(NODES_V, -(-_ROUGH_LEAST_V // len(kept))) - 1)
+    return Along(nodes[:, kept], weights[:, kept], places, np.zeros((2, 0)), np.zeros((2, 0)))
 
 
-def _lines(rows: tuple[Basis, ...]) -> FloatArray:
-    """Return the inner knots where some row is C1 or less."""
-    found = []
+def _kept(breaks: FloatArray, narrow: float) -> NDArray[np.intp]:
+    """Return the indices of the spans that are no part of a cluster of knots."""
+    widths = np.diff(breaks)
+    dropped = np.zeros(len(widths), dtype=bool)
+    # Where narrow spans follow each other too far to be one cluster, there may be clusters among them.
+    for limit in min(narrow, _FRACTION * float(widths.mean())) * _FINER_CLUSTERS:
+        runs = np.flatnonzero(np.diff(np.concatenate([[False], widths < limit, [False]]))).reshape(-1, 2)
+        for first, last in runs:
+            dropped[first:last] |= bool(breaks[last] - breaks[first] < narrow)
+    return np.flatnonzero(~dropped)
+
+
+def _are_lines(rows: tuple[Basis, ...], below: FloatArray, above: FloatArray) -> NDArray[np.bool_]:
+    """Tell which are clusters, or knots where some row is C1 or less; these may differ by rounding."""
+    off = MERGE_TOLERANCE * float(rows[0].knots[-1] - rows[0].knots[0])
+    result = above > below
     for row in rows:
-        values, counts = np.unique(row.knots[row.degree + 1 : -row.degree - 1], return_counts=True)
-        found.append(values[row.degree - counts <= 1])
-    return np.unique(np.concatenate(found))
+        count = np.searchsorted(row.knots, above + off, "right") - np.searchsorted(row.knots, below - off, "left")
+        result |= (count > 0) & (row.degree - count <= 1)
+    return np.asarray(result)
 
 
 def across(u: Basis, nodes: int) -> Across:
@@ -125,8 +163,8 @@ def derivatives_along(points: list[FloatArray], rows: tuple[Basis, ...], v: Alon
     ndarray, shape (4, C, rows, nodes + 2 lines)
         The limits from below stand before those from above.
     """
-    count = v.nodes.size
-    result = np.zeros((HIGHEST + 1, len(points[0]), len(rows), count + 2 * len(v.lines)))
+    count, lines = v.nodes.size, v.lines.shape[1]
+    result = np.zeros((HIGHEST + 1, len(points[0]), len(rows), count + 2 * lines))
     done: dict[tuple[int, bytes], list[int]] = {}
     for i, row in enumerate(rows):
         done.setdefault((row.degree, row.knots.tobytes()), []).append(i)
@@ -134,15 +172,17 @@ def derivatives_along(points: list[FloatArray], rows: tuple[Basis, ...], v: Alon
         row = rows[same[0]]
         together = np.concatenate([points[i] for i in same])
         shape = len(same), len(points[0])
-        values = _values(row, together, v.nodes, first_on_spans(row, v.breaks))
+        values = _values(row, together, v.nodes, _first(row, v.places))
         result[:, :, same, :count] = values.reshape(HIGHEST + 1, *shape, -1).swapaxes(1, 2)
-        if len(v.lines):
-            spans = np.searchsorted(row.knots, v.lines, "left"), np.searchsorted(row.knots, v.lines, "right")
-            for k, span in enumerate(spans):
-                values = _values(row, together, v.lines[None], span - 1 - row.degree)
-                part = slice(count + k * len(v.lines), count + (k + 1) * len(v.lines))
-                result[:, :, same, part] = values.reshape(HIGHEST + 1, *shape, -1).swapaxes(1, 2)
+        if lines:
+            values = _values(row, together, v.lines.reshape(1, -1), _first(row, v.line_places.ravel()))
+            result[:, :, same, count:] = values.reshape(HIGHEST + 1, *shape, -1).swapaxes(1, 2)
     return result
+
+
+def _first(basis: Basis, places: FloatArray) -> NDArray[np.intp]:
+    """Return the index of the first basis function that lives at each place."""
+    return np.searchsorted(basis.knots, places, "right") - 1 - basis.degree
 
 
 def _values(basis: Basis, points: FloatArray, x: FloatArray, first: NDArray[np.intp]) -> FloatArray:

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from semispline.solver.arrays import FloatArray
+from semispline.solver.blending.facing import measure_facing
 from semispline.solver.blending.fairness_grid import HIGHEST, ORDERS_U, Across, Along, derivatives_along
 from semispline.solver.blending.problem import BlendProblem
 from semispline.solver.blending.refusals import LOOP, folds, needed_turn, turned
@@ -21,14 +22,23 @@ from semispline.solver.generated.fairness_numpy import fairness, fairness_pullba
 
 # Orders of the nine derivatives by u and v, in the order of the generated program.
 _ORDERS = ((1, 0), (0, 1), (2, 0), (1, 1), (0, 2), (3, 0), (2, 1), (1, 2), (0, 3))
-# A jump of H counts over this fraction of the mean length across, as a ramp of that width would.
+# A jump of H counts over this fraction of the mean length across, as a ramp of that width would; and a ramp narrower
+# than the second figure, in windows, as a jump.
 WINDOW = 1 / 50
+_NARROW = 1 / 4
 # Normals of neighbouring nodes that turn by more than 60 degrees have met a fold, or a bend too sharp to measure.
 LEAST_COSINE = 0.5
 # Nodes of one batch: what a sweep holds then stays in the cache.
 _AT_ONCE = 2000
 # What may be refused.
 FOLDS, LOOPS = 1, 2
+
+
+def narrow_width(problem: BlendProblem) -> float:
+    """Return how wide, in v, a cluster of knots may be that counts as one line."""
+    means = measure_facing(problem.a, problem.b)
+    knots = problem.rows[0].knots
+    return _NARROW * WINDOW * means.gap / (sum(means.lengths) / 2) * float(knots[-1] - knots[0])
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,7 +85,7 @@ class FairnessTable:
         # Shape (K, 4, 3, rows, columns), flat but for the first.
         table = table.reshape(HIGHEST + 1, count, 3, rows, -1).swapaxes(0, 1)
         self._table = np.ascontiguousarray(table).reshape(count, -1)
-        self._nodes, self._lines = along.nodes.size, len(along.lines)
+        self._nodes, self._lines = along.nodes.size, along.lines.shape[1]
         # Weights of the nodes; what belongs to lines has none.
         v = np.concatenate([along.weights.T.ravel(), np.zeros(2 * self._lines)])
         self._weights = np.multiply.outer(across.weights, v)

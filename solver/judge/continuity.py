@@ -186,7 +186,15 @@ class _Edges:
         sine = np.linalg.norm(_cross(side_a.normal, side_b.normal), axis=1)
         angle = np.degrees(np.arctan2(sine, np.sum(side_a.normal * side_b.normal, axis=1)))
         k_a, k_b = side_a.section.curvature, side_b.section.curvature
-        of_angle, of_curvature = np.add(side_a.noises(self.noises[0]), side_b.noises(self.noises[1]))
+        (a_0, a_1), (b_0, b_1) = self.a.range_along, self.b.range_along
+        # How fast b is run through as a is.
+        pace = (b_1 - b_0) / (a_1 - a_0) * (-1.0 if self.flipped else 1.0)
+        first = np.linalg.norm(side_a.x_s - pace * side_b.x_s, axis=1)
+        second = np.linalg.norm(side_a.x_ss - pace**2 * side_b.x_ss, axis=1)
+        of_angle, of_curvature = np.add(
+            side_a.noises(self.noises[0], (first, second)),
+            side_b.noises(self.noises[1], (first / abs(pace), second / pace**2)),
+        )
         # One side is left backwards: odd derivatives change sign unless the edges are at opposite ends.
         sign = -1.0 if self.a.edge[1] == self.b.edge[1] else 1.0
         return _Part(
@@ -264,9 +272,9 @@ class _Side:
         """Return normal curvature in the direction of the edge, shape (K,)."""
         return np.asarray(np.sum(self.x_ss * self.normal, axis=1) / np.sum(self.x_s**2, axis=1))
 
-    def noises(self, noises: EdgeNoises) -> tuple[FloatArray, FloatArray]:
+    def noises(self, noises: EdgeNoises, apart: tuple[FloatArray, FloatArray]) -> tuple[FloatArray, FloatArray]:
         """Return what rounding may do to the normal (radians) and to the curvature across, from that of derivatives."""
-        return section_noises(self.at, self.normal, self.section, noises)
+        return section_noises(self.at, self.normal, self.section, noises, apart)
 
 
 def model_size(*surfaces: Surface) -> float:

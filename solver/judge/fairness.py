@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import groupby
 from typing import TypeAlias
 
 import numpy as np
+from numpy.typing import NDArray
 
 from semispline.solver.arrays import FloatArray
 from semispline.solver.judge.parametric import ParametricSurface
@@ -21,6 +23,11 @@ SETTLED, _NOTHING = 0.01, 1e-8
 _FIRST, _SECOND = ((24, 10), (6, 2)), ((36, 14), (9, 3))
 # How often every span is halved before the meter gives up; what a grid may hold in all, and what is worked on at once.
 _HALVINGS, _MOST, _AT_ONCE = 5, 2**21, 2**13
+# Spans of a cluster of knots along v are below this fraction of the mean one, and the cluster is narrower than the
+# second figure, in windows: over it H may change as much as over a jump.
+_CLUSTERED, _CLUSTER = 1 / 20, 1 / 4
+# Parts of the domain; knots closer than that are refused, or one.
+_TIGHTEST = 1e-13
 _GRIDS = ((_FIRST, 0), *((_SECOND, halvings) for halvings in range(_HALVINGS)))
 
 
@@ -50,7 +57,8 @@ def measure_fairness(surface: ParametricSurface) -> Fairness:
     """Measure how mean curvature varies over a surface, by Gauss points on every span, refined until it settles.
 
     H is the mean curvature, A the area, and h is 1/50 of the mean length of the sections v = const. H may jump across
-    lines of knots, and across the seam of a closed surface.
+    lines of knots, and across the seam of a closed surface. Knots along v closer than a quarter of h are one line:
+    what is between them counts as a jump.
 
     Parameters
     ----------
@@ -73,12 +81,13 @@ def measure_fairness(surface: ParametricSurface) -> Fairness:
     """
     scaled = _Scaled(surface, turn_window(surface))
     seams = closed_directions(surface)
+    wide = _wide_spans(surface.breakpoints[1], _length_along(scaled))
     before: Fairness | None = None
-    for rules in (_rules(surface, *grid) for grid in _GRIDS):
+    for rules in (_rules(surface, wide, *grid) for grid in _GRIDS):
         if before is not None and rules[0].points.size * rules[1].points.size > _MOST:
             return before
         gradient, area = _smooth_part(scaled, rules)
-        smooth, jumps = area * gradient, area * _jumps(scaled, rules, seams)
+        smooth, jumps = area * gradient, area * _jumps(scaled, rules, seams, wide)
         value = smooth + jumps
         if not np.isfinite(value):
             return Fairness(np.inf, np.inf, np.inf, settled=False)
@@ -92,7 +101,7 @@ def measure_fairness(surface: ParametricSurface) -> Fairness:
 
 @dataclass(frozen=True, eq=False)
 class _Rule:
-    """Gauss points of one parameter, all spans after each other, and weights whose sum is 1."""
+    """Gauss points of one parameter, all spans after each other, and weights whose sum is 1 with those of clusters."""
 
     points: FloatArray
     weights: FloatArray
@@ -118,17 +127,53 @@ class _Scaled:
         )
 
 
-def _rules(surface: ParametricSurface, points: tuple[tuple[int, int], tuple[int, int]], halvings: int) -> _Rules:
-    """Return the rules in u and in v with every span halved so many times."""
+def _length_along(surface: _Scaled) -> float:
+    """Return the mean length of the sections u = const, in windows."""
+    (u, of_u), (v, of_v) = (gauss_rule(breaks, 7) for breaks in surface.surface.breakpoints)
+    speed = np.sqrt(sum(c**2 for c in surface.derivative(u.T.ravel(), v.T.ravel(), 0, 1)))
+    return float(of_u.T.ravel() @ speed @ of_v.T.ravel()) / float(of_u.sum() * of_v.sum())
 
-    def rule(breaks: FloatArray, total: int, least: int) -> _Rule:
-        number = max(least, -(-total // (len(breaks) - 1)))
+
+def _wide_spans(breaks: FloatArray, length: float) -> NDArray[np.bool_]:
+    """Tell which spans of v belong to no cluster of knots; `length` is that of all, in windows.
+
+    Examples
+    --------
+    >>> _wide_spans(np.array([0, 0.5, 0.5001, 0.5002, 1.0]), 100.0).tolist()
+    [True, False, False, True]
+    """
+    at = (breaks - breaks[0]) / (breaks[-1] - breaks[0])
+    widths = np.diff(at)
+    most = _CLUSTER / max(length, np.finfo(float).tiny)
+    wide = np.ones(len(widths), dtype=bool)
+    limit = min(most, _CLUSTERED / len(widths))
+    # From the loosest clusters to the tightest: one that is too wide may hold others.
+    while limit > _TIGHTEST:
+        start = 0
+        for is_narrow, group in groupby(widths < limit):
+            end = start + len(list(group))
+            if is_narrow and at[end] - at[start] < most:
+                wide[start:end] = False
+            start = end
+        limit /= 10
+    return wide
+
+
+def _rules(
+    surface: ParametricSurface, wide: NDArray[np.bool_], points: tuple[tuple[int, int], tuple[int, int]], halvings: int
+) -> _Rules:
+    """Return the rules in u and in v with every span halved so many times; `wide` are the spans of v that count."""
+
+    def rule(breaks: FloatArray, counted: NDArray[np.bool_], total: int, least: int) -> _Rule:
+        number = max(least, -(-total // int(counted.sum())))
         points, weights = gauss_rule(spread(breaks, 1, 2**halvings), 2 * number - 1)
-        return _Rule(points.T.ravel(), weights.T.ravel() / (breaks[-1] - breaks[0]))
+        parts = np.repeat(counted, 2**halvings)
+        return _Rule(points.T[parts].ravel(), weights.T[parts].ravel() / (breaks[-1] - breaks[0]))
 
     u_breaks, v_breaks = surface.breakpoints
     totals, least = points
-    return rule(u_breaks, totals[0], least[0]), rule(v_breaks, totals[1], least[1])
+    everywhere = np.ones(len(u_breaks) - 1, dtype=bool)
+    return rule(u_breaks, everywhere, totals[0], least[0]), rule(v_breaks, wide, totals[1], least[1])
 
 
 def _smooth_part(surface: _Scaled, rules: _Rules) -> tuple[float, float]:
@@ -184,7 +229,7 @@ def _gradient_density(surface: _Scaled, u: FloatArray, v: FloatArray) -> tuple[F
         return np.asarray((G * h_u**2 - 2 * F * h_u * h_v + E * h_v**2) / length), length
 
 
-def _jumps(surface: _Scaled, rules: _Rules, seams: tuple[bool, bool]) -> float:
+def _jumps(surface: _Scaled, rules: _Rules, seams: tuple[bool, bool], wide: NDArray[np.bool_]) -> float:
     """Return the integral of [H]^2 ds over all lines of knots, and over seams; lengths in windows, so h is 1."""
     (u, of_u), (v, of_v) = ((rule.points, rule.weights) for rule in rules)
     total = 0.0
@@ -193,6 +238,8 @@ def _jumps(surface: _Scaled, rules: _Rules, seams: tuple[bool, bool]) -> float:
         (surface.surface.breakpoints[1], u, of_u, False, seams[1]),
     ):
         after, before = just_inside(lines)
+        if not swapped:
+            after, before = after[wide], before[wide]
         # On a closed surface the end of the last span lies before the start of the first.
         after, before = (after, np.roll(before, 1)) if seam else (after[1:], before[:-1])
         for part in _parts(len(nodes), len(after)):

@@ -52,9 +52,16 @@ def square_section(at: Mapping[tuple[int, int], FloatArray], normal: FloatArray)
 
 
 def section_noises(
-    at: Mapping[tuple[int, int], FloatArray], normal: FloatArray, section: SquareSection, noises: EdgeNoises
+    at: Mapping[tuple[int, int], FloatArray],
+    normal: FloatArray,
+    section: SquareSection,
+    noises: EdgeNoises,
+    apart: tuple[FloatArray, FloatArray] | None = None,
 ) -> tuple[FloatArray, FloatArray]:
     """Bound what rounding may do to the normal (radians) and to the curvature, each of shape (K,).
+
+    `apart` says how far first and second derivatives along the edge are from those of the other side, each of shape
+    (K,): what both sides have alike, as of a contact curve in common, makes no difference between them.
 
     To first order, at the derivatives as they were rounded: of two sides the mean of both gradients, times their
     distance, is exact to second order, so where nothing bends or shears but by rounding no more is needed.
@@ -64,7 +71,8 @@ def section_noises(
     w, s, r = 1 / section.a, section.y / section.a, 1 / section.g
     ws, ww, steep = w * s, w * w, np.abs(s)
     of, rows, along = noises.derivatives, noises.rows, noises.along
-    of_w, of_s = of[1, 0] * w, of[0, 1]
+    of_s, of_ss = (of[0, 1], of[0, 2]) if apart is None else (np.minimum(of[0, k + 1], apart[k]) for k in (0, 1))
+    of_w = of[1, 0] * w
     angle = np.hypot(of_w + of_s * steep, of_s * r)
     # The tangential part of the second derivative along t; k_tt and k_tT.
     c_t, c_along = _dot(section.second, section.direction) * ww * w, _dot(section.second, at[0, 1]) * ww * r
@@ -73,7 +81,9 @@ def section_noises(
     # enter several, with either sign.
     height = np.abs(np.multiply.outer(rows[2], ww) - np.multiply.outer(rows[1], w * c_t)).sum(axis=0)
     slope = np.abs(np.multiply.outer(rows[1], 2 * ws) - np.multiply.outer(rows[0], s * c_t + r * c_along)).sum(axis=0)
-    tilted = height + along[1] * slope + of[0, 2] * s * s
+    # Or each with what is left of it.
+    separate = along[1] * np.abs(2 * ws) * np.abs(rows[1]).sum() + of_s * np.abs(s * c_t + r * c_along)
+    tilted = height + np.minimum(along[1] * slope, separate) + of_ss * s * s
     # Those in the tangent plane turn and stretch the step along t.
     turned = 2 * (of_w * np.hypot(k, twist) + of_s * np.hypot(s * k + r * twist, s * twist))
     return angle, tilted + turned

@@ -43,8 +43,7 @@ def test_the_fairest_shape_is_the_default_and_never_called_proved(pair):
     assert report["objective"]["value"] == pytest.approx(report["fairness"], rel=0.01)
     assert report["proven_gap"] is None
     assert "not proved" in report["objective"]["known"]
-    assert report["options"]["degree_u"] == 5
-    assert report["options"]["middle_curves"] == 0
+    assert (report["candidates"][0]["degree_u"], report["candidates"][0]["middle_curves"]) == (5, 0)
     assert [c["verdict"] for c in report["candidates"]].count("chosen") == 1
     assert report["rows_converted"] >= report["rows_stored"] == report["control_points"]
 

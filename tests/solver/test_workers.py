@@ -131,6 +131,8 @@ def test_where_no_signal_comes_a_thread_ends_the_worker():
 @linux
 def test_interrupted_a_call_leaves_no_worker(tmp_path):
     pid = tmp_path / "pid"
+    # A shell that starts the tests in the background has them ignore it.
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
 
     def interrupt():
         wait_until(lambda: pid.exists() and pid.read_text(), "the worker starts")
@@ -138,8 +140,11 @@ def test_interrupted_a_call_leaves_no_worker(tmp_path):
 
     thread = threading.Thread(target=interrupt)
     thread.start()
-    with pytest.raises(KeyboardInterrupt):
-        ask("turn", pid)
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            ask("turn", pid)
+    finally:
+        signal.signal(signal.SIGINT, before)
     thread.join()
     assert is_gone(int(pid.read_text()))
 

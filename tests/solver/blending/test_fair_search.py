@@ -1,6 +1,8 @@
 """The fairest shape: J and its gradient against other ways to them, and blends whose right shape is known."""
 
+from dataclasses import dataclass
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pyiges
@@ -29,7 +31,7 @@ from semispline.solver.blending.fair_search import FairSolution, solve_fair
 from semispline.solver.blending.fairness_grid import NODES_U, across, along
 from semispline.solver.blending.fairness_table import FOLDS, LOOPS, FairnessTable
 from semispline.solver.blending.pipeline import state_problem
-from semispline.solver.blending.projected import descend
+from semispline.solver.blending.projected import Point, descend
 from semispline.solver.blending.shape_parameters import Found
 from semispline.solver.blending.warnings import fairness_warning
 
@@ -313,6 +315,64 @@ def test_what_does_not_settle_is_said(narrow_pair, monkeypatch):
     assert f"{result.shape.fairness.value:.3g}" in said
 
 
+@dataclass
+class Wells:
+    """A stand-in for a grid: two wells, at -1 and 1, of given depths."""
+
+    left: float
+    right: float
+    table = SimpleNamespace(size=100)
+    unknowns = SimpleNamespace(logarithmic=np.array([True]), low=np.array([-3.0]), high=np.array([3.0]))
+
+    def __call__(self, x):
+        side = np.sign(x[0])
+        return float((self.right if side > 0 else self.left) + (x[0] - side) ** 2), 2 * (x - side)
+
+    def values(self, x):
+        return np.array([self(y)[0] for y in x])
+
+    def point(self, x):
+        return Point(x, *self(x), 2 * np.eye(1))
+
+    def at(self, point):
+        return self.point(point.x)
+
+
+@pytest.mark.parametrize(
+    ("right", "end"),
+    # Within a fifth the search goes on where it is; past that the other well is looked at, which is lower.
+    [(0.005, 1.0), (0.19, 1.0), (0.21, -1.0)],
+)
+def test_a_coarse_grid_that_was_blind_is_ranked_anew(right, end):
+    found = Wells(0.1, 0.0).point(np.array([1.0]))
+    made = []
+
+    def finer(times):
+        made.append(times)
+        return Wells(0.1, right)
+
+    at, settled = fair_search._settled(found, np.array([1.1]), finer, np.array([[-1.1], [1.1]]))
+    assert at.x == pytest.approx([end], abs=1e-3)
+    assert at.value == pytest.approx(min(right, 0.1 if end < 0 else right), abs=1e-6)
+    assert settled
+    assert made == ([2] if right == 0.005 else [2, 4])
+
+
+def test_grids_that_never_agree_do_not_settle():
+    made = []
+
+    def finer(times):
+        made.append(times)
+        return Wells(9.0, float(times))
+
+    at, settled = fair_search._settled(
+        Wells(9.0, 0.0).point(np.array([1.0])), np.array([1.1]), finer, np.array([[1.1]])
+    )
+    assert not settled
+    assert made == [2, 4, 8, 16]
+    assert at.value == pytest.approx(16.0)
+
+
 @pytest.mark.parametrize(
     ("minimised", "measured", "warned"),
     [(100, 109, False), (100, 111, True), (111, 100, True), (0.09, 5, False), (5, 0.09, False), (None, 5, False)],
@@ -334,6 +394,26 @@ def test_curvature_that_jumps_across_is_not_searched(options, name):
     # Only where it is searched.
     for alpha in ("natural", 1.0, "energy"):
         assert blend(*sheets(), alpha=alpha, **options).surface is not None
+
+
+def near_double(apart):
+    """A sheet with two knots so far apart in the middle of its edge, and a smooth one."""
+    knots = [0, 0, 0, 0, 1, 1, 1, 1]
+    x, y = np.mgrid[0:1:4j, 0:1:6j]
+    first = BSplineSurface(
+        3, 3, knots, [0, 0, 0, 0, 0.5, 0.5 + apart, 1, 1, 1, 1], np.dstack([x, y, 0.1 * np.sin(5 * y) * x])
+    )
+    x, y = np.mgrid[0:1:4j, 0:1:4j]
+    return Base(first, "u1"), Base(BSplineSurface(3, 3, knots, knots, np.dstack([x + 1.5, y, 0.3 + 0.1 * x**2])), "u0")
+
+
+@pytest.mark.parametrize("exponent", [3, 4, 5, 6, 7, 8, 9, 10, 11, 12])
+def test_nearly_double_knots_choose_what_double_ones_do(exponent):
+    double, near = blend(*near_double(0.0), **FAIR), blend(*near_double(10.0**-exponent), **FAIR)
+    assert double.shape.fairness.jumps > 0.01 * double.shape.fairness.value
+    assert (near.alpha2, near.beta2) == pytest.approx((double.alpha2, double.beta2), rel=0.02)
+    for value in (near.shape.fairness.value, near.objective.value):
+        assert value == pytest.approx(double.shape.fairness.value, rel=0.05)
 
 
 def test_double_knots_of_degree_four_are_searched():

@@ -7,9 +7,10 @@ from helpers.facing import random_facing
 from semispline import Base, BSplineSurface, blend, transform
 from semispline.solver.blending.fair_search import solve_fair
 from semispline.solver.blending.fairness_grid import NODES_U, across, along, rough_along
-from semispline.solver.blending.fairness_table import FOLDS, LOOPS, FairnessTable
+from semispline.solver.blending.fairness_table import FOLDS, LOOPS, FairnessTable, narrow_width
 from semispline.solver.blending.pipeline import state_problem
 from semispline.solver.blending.refusals import needed_turn, turned
+from semispline.solver.splines import Basis
 
 QUINTIC = {"degree_u": 5, "middle_curves": 0, "alpha": "fair"}
 
@@ -44,7 +45,7 @@ def monomials(x, y, p2_a=0.0, p2_b=0.0):
 @pytest.mark.parametrize("options", [{}, {"degree_u": 3, "middle_curves": 1}])
 def test_the_gradient_is_that_of_the_value(inner, options):
     table, _ = table_of(sheets(inner=inner), **options)
-    assert table.along.lines.tolist() == ([0.5] if inner else [])
+    assert table.along.lines[0].tolist() == ([0.5] if inner else [])
     at = np.array([monomials(0.9, 1.1, 0.3, -0.2)])
     measured, gradient = table.with_gradient(at)
     assert measured.values == pytest.approx(table.measure(at).values, rel=1e-14)
@@ -155,7 +156,66 @@ def test_a_crease_along_v_counts_as_the_judge_counts_it():
     # Only C0 at v = 1/2.
     pair = sheets(inner=(0.5, 0.5, 0.5))
     table, _ = table_of(pair, times=4)
-    assert table.along.lines.tolist() == [0.5]
+    assert table.along.lines[0].tolist() == [0.5]
     result = blend(*pair, **QUINTIC)
     assert result.shape.fairness.jumps > 1
     assert result.objective.value == pytest.approx(result.shape.fairness.value, rel=0.01)
+
+
+def basis(*inner, degree=3):
+    return Basis(degree, np.array([0.0] * (degree + 1) + list(inner) + [1.0] * (degree + 1)))
+
+
+@pytest.mark.parametrize(
+    ("inner", "lines"),
+    [
+        # A cluster of three knots; one that is as wide as the limit allows, and not.
+        ((0.5, 0.5 + 1e-9, 0.5 + 2e-9), [(0.5, 0.5 + 2e-9)]),
+        ((0.5, 0.5099), [(0.5, 0.5099)]),
+        ((0.5, 0.5101), []),
+        # Below the limit, but not among spans that are as narrow; clusters among such.
+        (tuple(np.arange(1, 200) / 200), []),
+        (
+            (0.5, 0.5 + 1e-9, 0.506, 0.506 + 1e-9, 0.512, 0.512 + 1e-9),
+            [(x, x + 1e-9) for x in (0.5, 0.506, 0.512)],
+        ),
+        # No line at an end, and what rounding leaves of a double knot.
+        ((1e-9, 0.5), []),
+        ((0.5, 0.5 + 1e-13), [(0.5, 0.5)]),
+    ],
+)
+def test_clusters_of_knots_are_one_line(inner, lines):
+    rows = basis(*inner), basis()
+    found = along(rows, 1, 0.01)
+    assert [tuple(line) for line in found.lines.T] == lines
+    clusters = [*lines, *([(0, 1e-9)] if inner[0] == 1e-9 else [])]
+    for low, high in clusters:
+        assert not ((found.nodes > low) & (found.nodes < high)).any()
+    assert found.weights.sum() == pytest.approx(1 - sum(high - low for low, high in clusters), rel=1e-12)
+    assert rough_along(rows, 0.01).lines.size == 0
+
+
+def test_what_is_short_altogether_is_no_cluster():
+    # Contacts far apart: all of v is below the limit.
+    found = along((basis(0.25, 0.5, 0.75), basis()), 1, 5.0)
+    assert found.lines.size == 0
+    assert found.weights.sum() == pytest.approx(1, rel=1e-12)
+
+
+def test_a_rough_look_reads_no_polynomial_of_a_cluster():
+    # Middles of a sixth of the domain, 1/4 and 3/4, are knots that are all but double.
+    inner = [x + y for x in np.arange(1, 8) / 8 for y in (0, 1e-9)]
+    row = basis(*inner)
+    places = rough_along((row,), 0.01).places
+    spans = np.searchsorted(row.knots, places, "right")
+    assert np.all(row.knots[spans] - row.knots[spans - 1] > 0.1)
+
+
+def test_the_width_of_clusters_is_a_quarter_of_the_window():
+    # Edges of length 2, and a gap of 3: in v, h / 4 is 3 / 50 / 4 / 2.
+    knots = [0, 0, 1, 1]
+    left, right = (
+        BSplineSurface(1, 1, knots, knots, [[[x, 0, 0], [x, 2, 0]], [[x + 1, 0, 0], [x + 1, 2, 0]]]) for x in (0, 4)
+    )
+    problem = state_problem(Base(left, "u1"), Base(right, "u0"), **QUINTIC).problem
+    assert narrow_width(problem) == pytest.approx(3 / 400, rel=1e-9)

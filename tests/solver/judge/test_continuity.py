@@ -172,3 +172,21 @@ def test_a_part_without_a_normal_is_not_forgotten():
     assert np.isnan([contact.angle_degrees, contact.curvature_jump, contact.curvature_jump_relative]).all()
     assert contact.angle_at.parameter == 1.0
     assert np.isnan(contact.rounding["angle_degrees"])
+
+
+@pytest.mark.parametrize("width", [1e-9, 1e-6, 0.1])
+def test_close_knots_along_a_contact_in_common_make_no_angle(width):
+    # Rounding turns the tangent along the edge within a narrow span by 1e-16 / width, on both sides alike.
+    knots = [0, 0, 0, 0.5, 0.5 + width, 1, 1, 1]
+    rng = np.random.default_rng(0)
+    rows = [
+        [[x, y, 0.1 * z] for y, z in zip(np.linspace(0, 1, 5), rng.uniform(size=5), strict=True)] for x in (0, 1, 2)
+    ]
+    left = BSplineSurface(1, 2, [0, 0, 1, 1], knots, rows[:2])
+    right = BSplineSurface(1, 2, [0, 0, 1, 1], knots, rows[1:])
+    contact = measure_contact(Base(left, "u1"), Base(right, "u0"))
+    assert contact.rounding["angle_degrees"] < 1e-12
+    # Moved by a hair the edges differ, and what rounding does to their tangents counts.
+    apart = np.array(rows[1:]) + 1e-13 * rng.uniform(-1, 1, (2, 5, 3))
+    other = measure_contact(Base(left, "u1"), Base(BSplineSurface(1, 2, [0, 0, 1, 1], knots, apart), "u0"))
+    assert other.rounding["angle_degrees"] > contact.rounding["angle_degrees"]

@@ -17,7 +17,7 @@ from semispline import (
     reverse_u,
     transform,
 )
-from semispline.solver.judge.fairness import SETTLED
+from semispline.solver.judge.fairness import SETTLED, _wide_spans
 
 
 def test_torus():
@@ -187,3 +187,67 @@ def test_what_has_no_end_does_not_settle():
     found = measure_fairness(cone)
     assert not found.settled
     assert found.value > 100
+
+
+def ridged(*inner, length=1.0, along="v"):
+    """A cubic sheet of width 1 across with knots as given along `along`, bent by slopes that are small."""
+    knots = np.array([0.0] * 4 + list(inner) + [1.0] * 4)
+    at = np.array([knots[i + 1 : i + 4].mean() for i in range(len(knots) - 4)])
+    x, height = length * at, 0.01 * np.sin(9 * at)
+    net = np.stack([np.stack([np.full_like(x, side), x, height], axis=1) for side in (0.0, 1.0)])
+    if along == "u":
+        return BSplineSurface(3, 1, knots, [0, 0, 1, 1], net.swapaxes(0, 1))
+    return BSplineSurface(1, 3, [0, 0, 1, 1], knots, net)
+
+
+@pytest.mark.parametrize("apart", [1e-4, 1e-6, 1e-8, 1e-10, 1e-12, 1e-14])
+def test_knots_all_but_double_count_as_double(apart):
+    double = measure_fairness(ridged(0.3, 0.6, 0.6))
+    near = measure_fairness(ridged(0.3, 0.6, 0.6 + apart))
+    assert double.jumps > 0.1 * double.value
+    assert near.settled
+    assert near.jumps == pytest.approx(double.jumps, rel=0.02)
+    assert near.value == pytest.approx(double.value, rel=0.02)
+
+
+def test_three_knots_all_but_one_are_one_line():
+    triple = measure_fairness(ridged(0.6, 0.6, 0.6))
+    near = measure_fairness(ridged(0.6, 0.6 + 1e-8, 0.6 + 2e-8))
+    assert (near.value, near.jumps) == pytest.approx((triple.value, triple.jumps), rel=1e-4)
+
+
+def test_the_limit_of_a_cluster_is_a_quarter_of_the_window():
+    # h is 1/50 of the width across, and the length is 1.
+    assert measure_fairness(ridged(0.6, 0.6 + 0.99 / 200)).jumps > 1e-3
+    assert measure_fairness(ridged(0.6, 0.6 + 1.01 / 200)).jumps < 1e-6
+    # What is ten times as long has to be narrower by as much.
+    assert measure_fairness(ridged(0.6, 0.6 + 0.99 / 2000, length=10.0)).jumps > 1e-8
+    assert measure_fairness(ridged(0.6, 0.6 + 1.01 / 2000, length=10.0)).jumps < 1e-12
+
+
+def test_many_narrow_spans_are_no_cluster():
+    # All are below a quarter of the window, and what they hold counts as it is; even where they are no wider together.
+    found = measure_fairness(ridged(*(np.arange(1, 8) / 8), length=0.02))
+    assert found.jumps < 1e-9 * found.smooth
+    assert _wide_spans(np.arange(9) / 8, 0.1).all()
+    # Pairs that are all but one among them are.
+    pairs = np.sort(np.concatenate([np.arange(1, 8) / 8, np.arange(1, 8) / 8]))
+    near = pairs + 1e-9 * (np.arange(14) % 2)
+    double, near = measure_fairness(ridged(*pairs, length=0.02)), measure_fairness(ridged(*near, length=0.02))
+    assert (near.value, near.jumps) == pytest.approx((double.value, double.jumps), rel=1e-4)
+
+
+def test_clusters_are_found_among_spans_that_are_narrow():
+    # Each span is narrow by the limit of 0.005 and by the mean span, and all together are too wide for one cluster.
+    pairs = [x + y for x in (0.5, 0.503, 0.506, 0.509) for y in (0.0, 1e-9)]
+    breaks = np.array([0.0, 0.2, *pairs, 0.8, 1.0])
+    assert _wide_spans(breaks, 50.0).tolist() == [True, True, *[False, True] * 4, True]
+    # Without the pairs they are what they are.
+    assert _wide_spans(np.delete(breaks, [3, 5, 7, 9]), 50.0).all()
+
+
+def test_a_cluster_at_an_end_is_left_out():
+    near, without = (measure_fairness(ridged(*inner)) for inner in ((1e-9, 0.6, 0.6), (1e-5, 0.6, 0.6)))
+    assert near.settled
+    assert near.value == pytest.approx(without.value, rel=1e-3)
+    assert np.isfinite(near.value)

@@ -101,8 +101,8 @@ def test_rounding_of_derivatives_by_hand(degree, h):
     first, second = 2 * degree / h, 2 * degree / h * 2 * (degree - 1) / h
     assert found["gap"] == pytest.approx(one, rel=1e-12, abs=0)
     assert found["c1_residual"] == pytest.approx(one * first, rel=1e-12, abs=0)
-    # The normal turns with each of its tangents; that along the edge is straight, 1 long.
-    assert np.radians(found["angle_degrees"]) == pytest.approx(one * np.hypot(first, 2), rel=1e-12, abs=0)
+    # The normal turns with the tangent across; that along the edge is the same on both sides, to the last bit.
+    assert np.radians(found["angle_degrees"]) == pytest.approx(one * first, rel=1e-12, abs=0)
     # Flat: a curvature below 1e-3 over the size, 2, is none; the speed is 1.
     assert found["c2_residual"] == pytest.approx(one * second / 0.5, rel=1e-12, abs=0)
     # The first of two differences is over h, the second over both spans. Where nothing bends a turn does nothing.
