@@ -30,18 +30,17 @@ Compared: TypeAlias = list[dict[str, Any]]
 
 
 def compared(path: Path, shared: Path, *, again: bool) -> Compared:
-    """Return the comparison, from the file if it is there and not to be made again."""
-    if path.is_file() and not again:
-        return list(json.loads(path.read_text("utf-8")))
-    found: Compared = []
+    """Return the comparison; what the file holds already is kept unless it is to be made again."""
+    found: Compared = list(json.loads(path.read_text("utf-8"))) if path.is_file() and not again else []
+    there = {(one["family"], one["seed"]) for one in found}
     for family, number in SAMPLE.items():
-        for k in range(number):
-            problem = shape_problem(family, k * SIZES[family] // number, shared)
+        for seed in (k * SIZES[family] // number for k in range(number)):
+            problem = None if (family, seed) in there else shape_problem(family, seed, shared)
             if problem is None:
                 continue
             shapes = {name: shape_with(problem, options) for name, options in CANDIDATES.items()}
-            found.append({"family": family, "name": problem.name, "shapes": shapes})
-    path.write_text(json.dumps(found), encoding="utf-8")
+            found.append({"family": family, "seed": seed, "shapes": shapes})
+            path.write_text(json.dumps(found), encoding="utf-8")
     return found
 
 
