@@ -183,7 +183,7 @@ def fourth_basis(a: Basis, b: Basis) -> Basis:
     --------
     >>> a, b = Basis(1, clamped([0.5], 1, 0, 1)), Basis(1, clamped([0.1, 0.2, 0.8, 0.9], 1, 0, 1))
     >>> fourth_basis(a, b).knots[2:-2]
-    array([0.5])
+    array([0.2, 0.8])
     >>> a = Basis(1, clamped([0.3, 0.7], 1, 0, 1))
     >>> fourth_basis(a, b).knots[2:-2]
     array([0.2, 0.8])
