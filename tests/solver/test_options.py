@@ -143,8 +143,9 @@ def test_what_a_contact_has_no_use_for_is_refused(asked, message):
 
 
 def test_what_one_contact_has_use_for_is_taken():
-    BlendOptions(continuity=("G2", "C2"), bulge=(2.0, 1.0), p2=(0.1, 0.0), alpha_v="linear")
-    BlendOptions(continuity=("C2", "G1"), alpha=(0.5, None), alpha_v="linear")
+    options = BlendOptions(continuity=("G2", "C2"), bulge=(2.0, 1.0), p2=(0.1, 0.0), alpha_v="linear")
+    assert (options.bulges, options.p2, options.alpha_v) == ((2.0, 1.0), (0.1, 0.0), "linear")
+    assert BlendOptions(continuity=("C2", "G1"), alpha=(0.5, None), alpha_v="linear").alphas == (0.5, None)
 
 
 def test_c_is_not_advised_to_change_its_method():
