@@ -22,7 +22,7 @@ def methods(own: Sequence[Method] = ()) -> tuple[Method, ...]:
     Examples
     --------
     >>> [m.name for m in methods()][:2]
-    ['paper-corrected', 'semistructured-c2']
+    ['paper-corrected', 'semistructured-fair']
     """
     found = (*own, *_rivals())
     names = [method.name for method in found]
