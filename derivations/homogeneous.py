@@ -127,7 +127,7 @@ def last_rung(order: int) -> tuple[tuple[Expr, ...], tuple[Expr, ...]]:
     Examples
     --------
     >>> last_rung(1)[0]
-    (X0*om0, X1*om0 - X0*om1)
+    (X0*om0, -X0*om1 + X1*om0)
     """
     x, om = jet("X", order), jet("om", order)
     numerators: list[Expr] = []
