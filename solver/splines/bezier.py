@@ -260,7 +260,7 @@ def _divide(
 def _skin(rows: list[FloatArray], function: BezierFunction) -> SemiStructuredSurface:
     curves = tuple(
         BSplineCurve(
-            len(row) - 1, _bezier_knots(len(row) - 1, function.start, function.end), row, f"control_curves[{s}]"
+            len(row) - 1, _bezier_knots(len(row) - 1, function.start, function.end), row, name=f"control_curves[{s}]"
         )
         for s, row in enumerate(rows)
     )

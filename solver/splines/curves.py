@@ -12,6 +12,7 @@ from semispline.solver.arrays import FloatArray, SparseMatrix, finite_array, req
 from semispline.solver.errors import KnotError, OptionError
 from semispline.solver.scalars import is_whole, real_number
 from semispline.solver.splines.compatible import compatible_curves
+from semispline.solver.splines.evaluation import euclidean
 from semispline.solver.splines.knots import reversed_knots
 from semispline.solver.splines.refinement import (
     combined,
@@ -92,7 +93,7 @@ def split_curve(curve: BSplineCurve, v: float) -> tuple[BSplineCurve, BSplineCur
 
 
 def combined_curves(curves: Sequence[BSplineCurve], matrix: SparseMatrix) -> tuple[BSplineCurve, ...]:
-    """Return one curve for each row of a sparse matrix: the linear combination of the curves with its weights.
+    """Return one curve for each row of a sparse matrix: the linear combination of the (homogeneous) curves.
 
     Each result has the knots of the curves that take part in it, and no others; those of different curves within 1e-12
     of the domain are one.
@@ -101,17 +102,17 @@ def combined_curves(curves: Sequence[BSplineCurve], matrix: SparseMatrix) -> tup
     for i in range(matrix.shape[0]):
         part = slice(matrix.indptr[i], matrix.indptr[i + 1])
         used = [curves[j] for j in matrix.indices[part]]
-        weights = np.asarray(matrix.data[part])
+        factors = np.asarray(matrix.data[part])
         if not used:
             first = curves[0].knots
             result.append(BSplineCurve(1, np.repeat(first[[0, -1]], 2), np.zeros((2, 3))))
         elif len(used) == 1:
-            points = used[0].control_points * weights[0]
-            result.append(used[0] if weights[0] == 1.0 else BSplineCurve(used[0].degree, used[0].knots, points))
+            points = euclidean(used[0].homogeneous * factors[0])
+            result.append(used[0] if factors[0] == 1.0 else BSplineCurve(used[0].degree, used[0].knots, *points))
         else:
             same = compatible_curves(used)
-            points = np.einsum("i,ijd->jd", weights, same.control_points)
-            result.append(BSplineCurve(same.degree, same.knots, points))
+            points = euclidean(np.einsum("i,ijd->jd", factors, same.homogeneous))
+            result.append(BSplineCurve(same.degree, same.knots, *points))
     return tuple(result)
 
 

@@ -235,4 +235,4 @@ def _distances(a: FloatArray, b: FloatArray) -> FloatArray:
 
 def _curve_distance(a: BSplineCurve, b: BSplineCurve) -> FloatArray:
     """Bound the distance between two curves by that of their control points over common knots."""
-    return np.zeros(1) if a is b else _distances(*compatible_curves([a, b]).control_points)
+    return np.zeros(1) if a is b else _distances(*compatible_curves([a, b]).homogeneous)
