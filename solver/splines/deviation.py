@@ -29,7 +29,7 @@ def deviation_bound(degree: int, one: FloatArray, other: FloatArray) -> float:
     --------
     >>> line = np.array([[0, 0, 0, 1], [2, 0, 0, 1.0]])
     >>> deviation_bound(1, line, line + [[0, 0, 0, 0], [0.25, 0, 0, 0.125]])
-    0.125
+    0.25
     """
     f, g = same_width(one, other)
     if f.shape[1] == 3:

@@ -8,8 +8,8 @@ from math import comb
 import numpy as np
 from numpy.typing import ArrayLike
 
-from semispline.solver.arrays import FloatArray, real_array
-from semispline.solver.errors import InputError, OptionError
+from semispline.solver.arrays import FloatArray, finite_array, real_array
+from semispline.solver.errors import ControlPointError, InputError, OptionError
 from semispline.solver.scalars import is_whole
 from semispline.solver.splines.knots import MERGE_TOLERANCE, basis_matrix
 
@@ -34,6 +34,19 @@ def checked_parameters(x: ArrayLike, knots: FloatArray, name: str) -> FloatArray
         i = int(np.argmax(outside))
         raise InputError(f"{name}[{i}]: found {array[i]}, expected a parameter in [{start}, {end}]")
     return np.asarray(np.clip(array, start, end))
+
+
+def checked_weights(values: ArrayLike, points: FloatArray, name: str) -> FloatArray:
+    """Return weights as a read-only array, refused unless there is a positive one for each point, shape (..., 3)."""
+    shape = points.shape[:-1]
+    weights = finite_array(values, len(shape), name, ControlPointError)
+    if weights.shape != shape:
+        raise ControlPointError(f"{name}: shape {weights.shape}, expected {shape}")
+    if (weights <= 0).any():
+        at = tuple(np.argwhere(weights <= 0)[0].tolist())
+        where = ", ".join(map(str, at))
+        raise ControlPointError(f"{name}[{where}]: found {weights[at]}, expected a positive number")
+    return weights
 
 
 def point_parameters(

@@ -23,6 +23,7 @@ from semispline.solver.splines.compatible import compatible_curves
 from semispline.solver.splines.evaluation import (
     check_orders,
     checked_parameters,
+    checked_weights,
     domain_of,
     euclidean,
     homogeneous_points,
@@ -83,7 +84,7 @@ class BSplineCurve:
         knots = checked_knots(self.knots, self.degree, len(points), f"{self.name}.knots")
         object.__setattr__(self, "knots", knots)
         if self.weights is not None:
-            object.__setattr__(self, "weights", _checked_weights(self.weights, points, f"{self.name}.weights"))
+            object.__setattr__(self, "weights", checked_weights(self.weights, points, f"{self.name}.weights"))
 
     def __reduce__(self) -> tuple[Any, ...]:
         return rebuilt(self)
@@ -152,7 +153,7 @@ class BSplineSurface:
         object.__setattr__(self, "knots_u", checked_knots(self.knots_u, self.degree_u, points.shape[0], "knots_u"))
         object.__setattr__(self, "knots_v", checked_knots(self.knots_v, self.degree_v, points.shape[1], "knots_v"))
         if self.weights is not None:
-            object.__setattr__(self, "weights", _checked_weights(self.weights, points, "weights"))
+            object.__setattr__(self, "weights", checked_weights(self.weights, points, "weights"))
 
     def __reduce__(self) -> tuple[Any, ...]:
         return rebuilt(self)
@@ -407,16 +408,3 @@ def _same_space(a: BSplineCurve, b: BSplineCurve) -> bool:
 def _check_points(points: FloatArray, name: str) -> None:
     if points.shape[-1] != 3:
         raise ControlPointError(f"{name}: points have {points.shape[-1]} coordinate(s), expected 3")
-
-
-def _checked_weights(values: ArrayLike, points: FloatArray, name: str) -> FloatArray:
-    """Return weights as a read-only array, one for each point, shape (..., 3)."""
-    shape = points.shape[:-1]
-    weights = finite_array(values, len(shape), name, ControlPointError)
-    if weights.shape != shape:
-        raise ControlPointError(f"{name}: shape {weights.shape}, expected {shape}")
-    if (weights <= 0).any():
-        at = tuple(np.argwhere(weights <= 0)[0].tolist())
-        where = ", ".join(map(str, at))
-        raise ControlPointError(f"{name}[{where}]: found {weights[at]}, expected a positive number")
-    return weights
