@@ -1,4 +1,4 @@
-from .solver.blending.gram import thin_plate_energy as thin_plate_energy
+from .solver.blending.measured_energy import thin_plate_energy as thin_plate_energy
 from .solver.blending.pipeline import blend as blend
 from .solver.blending.result import BlendResult as BlendResult
 from .solver.errors import ComputationError as ComputationError

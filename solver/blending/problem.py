@@ -18,6 +18,7 @@ from semispline.solver.blending.free_system import FreeSystem
 from semispline.solver.blending.gram import EnergyForm
 from semispline.solver.blending.layout import blend_u_basis, middle_bases
 from semispline.solver.blending.linear_alpha import LinearEnds, LinearInV, linear_rows, monomials_of_ends, raised_basis
+from semispline.solver.blending.rational_energy import RationalForm, RationalSystem
 from semispline.solver.blending.sides import Side
 from semispline.solver.errors import EdgeError, OptionError
 from semispline.solver.options import Alpha, BlendOptions
@@ -100,6 +101,16 @@ class BlendProblem:
     linear: tuple[LinearEnds | None, LinearEnds | None] = (None, None)
 
     @property
+    def is_rational(self) -> bool:
+        """Whether control points are homogeneous: (w x, w y, w z, w)."""
+        return self.a.is_rational
+
+    @property
+    def dimension(self) -> int:
+        """Columns of control points: 3, or 4 where they are homogeneous."""
+        return self.a.rows.shape[2]
+
+    @property
     def free(self) -> tuple[bool, bool]:
         """Whether alpha^2 and beta^2 are unknowns."""
         (low_a, high_a), (low_b, high_b) = self.bounds
@@ -150,21 +161,52 @@ class BlendProblem:
         return min(basis.degree - 1 if middle else self.seam_order, basis.size // 2 - 1)
 
     @cached_property
-    def free_system(self) -> FreeSystem:
+    def free_system(self) -> FreeSystem | RationalSystem:
         """What has to be solved for the free rows."""
-        return FreeSystem(self.form, self.free_rows, [self.seam_order_of(i) for i in self.free_rows])
+        plain = self._plain_system
+        if not self.is_rational or plain.size == 0:
+            return plain
+        return RationalSystem(self.rational_form, plain, self._seam_orders)
+
+    @cached_property
+    def _plain_system(self) -> FreeSystem:
+        return FreeSystem(self.form, self.free_rows, self._seam_orders)
+
+    @property
+    def _seam_orders(self) -> list[int]:
+        return [self.seam_order_of(i) for i in self.free_rows]
+
+    @cached_property
+    def rational_form(self) -> RationalForm:
+        """The energy of rational blends; where something is free their weights do not depend on alpha."""
+        given = self.given
+        points = self._contact_rows(*given, (self.p2[0].at(given[0]), self.p2[1].at(given[1])))
+        weights = self._plain_system.completed(points[:, 3:])[:, 0]
+        return RationalForm(self.form.u, self.form.rows, weights)
+
+    def energy_products(self, points: FloatArray) -> FloatArray:
+        """Return the energy products of blends, control points of shape (K, N, 3 or 4): shape (K, K).
+
+        Of rational ones the weights are those of `rational_form`.
+        """
+        if not self.is_rational:
+            return self.form.products(points)
+        return self.rational_form.products(points[..., :3])
 
     def control_points(self, a: LinearInV, b: LinearInV, p2: tuple[LinearInV, LinearInV] | None = None) -> FloatArray:
-        """Return p for alpha^2, beta^2 and p2, shape (N, 3): one linear solve for the free rows, of least energy.
+        """Return p for alpha^2, beta^2 and p2, shape (N, 3 or 4): one linear solve for the free rows, of least energy.
 
         Where alpha^2 is linear in v, it and p2 may be pairs of end values.
         """
-        points = np.zeros((self.form.offsets[-1], 3))
-        seconds = p2 or (self.p2[0].at(a), self.p2[1].at(b))
-        for index, (value, second) in enumerate(zip((a, b), seconds, strict=True)):
+        return self.completed(self._contact_rows(a, b, p2 or (self.p2[0].at(a), self.p2[1].at(b))))
+
+    def _contact_rows(self, a: LinearInV, b: LinearInV, p2: tuple[LinearInV, LinearInV]) -> FloatArray:
+        """Return p with nothing but the prescribed rows."""
+        points = np.zeros((self.form.offsets[-1], self.dimension))
+        for index, (value, second) in enumerate(zip((a, b), p2, strict=True)):
             for row, prescribed in zip(self.contacts[index][1], self._prescribed(index, value, second), strict=False):
                 points[self.form.offsets[row] : self.form.offsets[row + 1]] = prescribed
-        return self.completed(points)
+        return points
 
     def _prescribed(self, index: int, value: LinearInV, second: LinearInV) -> Sequence[FloatArray]:
         """Return the rows that a contact prescribes."""
@@ -174,12 +216,12 @@ class BlendProblem:
         return list(side.contact_rows(cast("float", value), degree, spans, cast("float", second)))
 
     def shape_layers(self) -> tuple[FloatArray, list[FloatArray]]:
-        """Return Z_k of P = sum_k m_k Z_k, shape (K, N, 3), with alpha^2 and p2 in units of their natural sizes.
+        """Return Z_k of P = sum_k m_k Z_k, shape (K, N, 3 or 4), with alpha^2 and p2 in units of their natural sizes.
 
         The monomials are 1, then those of side a without 1, then those of side b; their exponents come with them.
         """
         offsets, degree = self.form.offsets, self.form.u.degree
-        layers = [np.zeros((offsets[-1], 3))]
+        layers = [np.zeros((offsets[-1], self.dimension))]
         exponents = []
         for index, (side, rows, spans) in enumerate(self.contacts):
             unit, linear, second = self.natural[index], self.linear[index], self.p2[index]
@@ -195,7 +237,7 @@ class BlendProblem:
             exponents.append(powers)
             for k, (power, monomial) in enumerate(zip(powers, monomials, strict=True)):
                 if k:
-                    layers.append(np.zeros((offsets[-1], 3)))
+                    layers.append(np.zeros((offsets[-1], self.dimension)))
                 for row, values in zip(rows, monomial, strict=False):
                     layers[0 if k == 0 else -1][offsets[row] : offsets[row + 1]] = values * unit ** power.sum()
         completed = self.completed(np.concatenate(layers, axis=1))

@@ -8,6 +8,7 @@ Source: C. de Boor, A Practical Guide to Splines, ch. X; Piegl and Tiller, The N
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from math import comb
@@ -16,7 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from semispline.solver.arrays import FloatArray
-from semispline.solver.splines import BSplineSurface, SemiStructuredSurface
+from semispline.solver.splines import BSplineCurve, BSplineSurface, SemiStructuredSurface
 
 
 def curve_points(
@@ -105,10 +106,17 @@ def surface_points(
     """
     u, v = np.broadcast_arrays(np.asarray(u, dtype=np.float64), np.asarray(v, dtype=np.float64))
     if isinstance(surface, SemiStructuredSurface):
-        rows = np.stack(
-            [curve_points(c.degree, c.knots, c.control_points, v, dv) for c in surface.control_curves], axis=1
-        )
-        return curve_points(surface.degree_u, surface.knots_u, rows, u, du)
+        nets = _curve_points(surface.control_curves, np.zeros(3))
+        wanted = [(a, b) for a in range(du + 1) for b in range(dv + 1)] if nets[0].shape[1] == 4 else [(du, dv)]
+        found = {}
+        for b in {b for _, b in wanted}:
+            rows = np.stack(
+                [curve_points(c.degree, c.knots, x, v, b) for c, x in zip(surface.control_curves, nets, strict=True)],
+                axis=1,
+            )
+            for a in {a for a, other in wanted if other == b}:
+                found[a, b] = curve_points(surface.degree_u, surface.knots_u, rows, u, a)
+        return _euclidean(found)[du, dv]
     orders = [(a, b) for a in range(du + 1) for b in range(dv + 1)] if surface.weights is not None else [(du, dv)]
     return _euclidean({order: _homogeneous(surface, u, v, *order) for order in orders})[du, dv]
 
@@ -211,16 +219,28 @@ def edge_curves(
     if edge[0] == "u":
         nearest = _nearest(len(surface.control_curves), surface.degree_u, at_end, order)
         curves = [surface.control_curves[i] for i in nearest]
-        rows = [_Row(c.degree, c.knots, c.control_points - centre) for c in curves]
-        return EdgeCurves(_stacked(rows), 3, _steps(surface.degree_u, surface.knots_u, at_end, order))
+        nets = _curve_points(curves, centre)
+        rows = [_Row(c.degree, c.knots, net) for c, net in zip(curves, nets, strict=True)]
+        return EdgeCurves(_stacked(rows), nets[0].shape[1], _steps(surface.degree_u, surface.knots_u, at_end, order))
     # Each curve ends with derivatives of its own; those of one order are control points of a curve in u.
-    ends = np.zeros((len(surface.control_curves), order + 1, 3))
-    for end, c in zip(ends, surface.control_curves, strict=True):
-        points = [c.control_points[i] - centre for i in _nearest(len(c.control_points), c.degree, at_end, order)]
+    nets = _curve_points(surface.control_curves, centre)
+    d = nets[0].shape[1]
+    ends = np.zeros((len(nets), order + 1, d))
+    for end, c, net in zip(ends, surface.control_curves, nets, strict=True):
+        points = [net[i] for i in _nearest(len(net), c.degree, at_end, order)]
         values = _ends(points, _steps(c.degree, c.knots, at_end, order))
         end[: len(values)] = values
     line = _Row(surface.degree_u, surface.knots_u, ends.reshape(len(ends), -1))
-    return EdgeCurves((line,), 3, ())
+    return EdgeCurves((line,), d, ())
+
+
+def _curve_points(curves: Sequence[BSplineCurve], origin: FloatArray) -> list[FloatArray]:
+    """Return control points of v-control curves counted from an origin, homogeneous ones where any has weights."""
+    points = [c.control_points - origin for c in curves]
+    if all(c.weights is None for c in curves):
+        return points
+    weights = [np.ones(len(c.control_points)) if c.weights is None else c.weights for c in curves]
+    return [np.concatenate([x * w[:, None], w[:, None]], axis=1) for x, w in zip(points, weights, strict=True)]
 
 
 def end_differences(degree: int, knots: FloatArray, at_end: bool, order: int) -> FloatArray:

@@ -7,6 +7,9 @@ from .construction import interpolate_grid as interpolate_grid
 from .curves import elevate_curve as elevate_curve
 from .curves import restrict_curve as restrict_curve
 from .curves import set_curve_continuity as set_curve_continuity
+from .evaluation import euclidean as euclidean
+from .evaluation import homogeneous_points as homogeneous_points
+from .evaluation import same_width as same_width
 from .knots import MERGE_TOLERANCE as MERGE_TOLERANCE
 from .knots import affine_knots as affine_knots
 from .knots import basis_matrix as basis_matrix
@@ -37,6 +40,8 @@ from .quadrature import local_bases as local_bases
 from .quadrature import sample as sample
 from .refinement import blossom_matrix as blossom_matrix
 from .refinement import clamp_knots as clamp_knots
+from .refinement import combined as combined
+from .refinement import elevated_knots as elevated_knots
 from .refinement import elevation_matrix as elevation_matrix
 from .refinement import linear_product_matrices as linear_product_matrices
 from .refinement import refinement_matrix as refinement_matrix
