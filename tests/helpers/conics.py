@@ -1,5 +1,7 @@
 """Circular arcs in standard rational form, apart from the code that recognises them; nets from Open CASCADE."""
 
+from itertools import pairwise
+
 import numpy as np
 
 
@@ -9,7 +11,7 @@ def standard_arcs(cuts, weights=None):
     `weights` are factors of each joint's weight, which reparametrise the arcs.
     """
     points, knots = [(np.cos(cuts[0]), np.sin(cuts[0]), 1.0)], [0.0] * 3
-    for k, (a, b) in enumerate(zip(cuts[:-1], cuts[1:], strict=True), 1):
+    for k, (a, b) in enumerate(pairwise(cuts), 1):
         half, middle = (b - a) / 2, (a + b) / 2
         w = np.cos(half)
         points += [(np.cos(middle), np.sin(middle), w), (np.cos(b), np.sin(b), 1.0)]

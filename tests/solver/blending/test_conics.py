@@ -49,9 +49,8 @@ def stacked(along, rows, v):
 
 def departure(old, new):
     """The largest angle between all rows of the new form and those of the old at the nearest place of row 0."""
-    (rows, along), (rows_new, along_new) = old, new
-    start, end = along.knots[0], along.knots[-1]
-    assert (along_new.knots[0], along_new.knots[-1]) == (start, end)
+    start, end = old[1].knots[0], old[1].knots[-1]
+    assert (new[1].knots[0], new[1].knots[-1]) == (start, end)
     grid = np.linspace(start, end, 401)
     step = grid[1] - grid[0]
 
@@ -226,7 +225,7 @@ def test_other_curves_are_refused():
     along = Basis(3, clamped([0.5] * 3, 3, 0, 1))
     frames = random_frames(rng, 2)
     assert recognised_conic(images(rng.uniform(0.5, 1, (7, 3)), frames), along) is None
-    line = np.outer(np.linspace(0, 1, 7), [1, 2, 0]) + [0, 0, 1]
+    line = np.column_stack([np.linspace(0, 1, 7), np.linspace(0, 2, 7), np.ones(7)])
     assert recognised_conic(images(line, frames), along) is None
     corner = images(np.array([[1.0, 0, 1], [0, 0, 1], [0, 1, 1]]), frames)
     assert recognised_conic(corner, Basis(1, np.array([0, 0, 0.5, 1, 1]))) is None
