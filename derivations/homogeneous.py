@@ -175,7 +175,6 @@ def quotient_program() -> Program:
     per_w = named("per_w", 1 / homogeneous_symbol("", "w"))
     # Fractions of the weight: one product each in the three coordinates.
     share = {name: named(f"share_{name}", homogeneous_symbol(name, "w") * per_w) for name in DERIVATIVES}
-    outputs = []
     known: dict[tuple[str, str], Symbol] = {}
     for c in "xyz":
         known["", c] = named(f"p_{c}", homogeneous_symbol("", c) * per_w)

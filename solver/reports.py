@@ -46,6 +46,8 @@ def report_record(result: BlendResult) -> dict[str, Any]:
         "candidates": [asdict(candidate) for candidate in result.candidates],
         "energy": result.energy,
         "energy_rounding": result.energy_rounding,
+        "quadrature_error": result.quadrature_error,
+        "weights": None if result.weights == (None, None) else [asdict(w) for w in result.weights if w is not None],
         "alpha2": result.alpha2,
         "beta2": result.beta2,
     }
@@ -174,7 +176,8 @@ def print_result(result: BlendResult) -> None:
         ("layout", f"degree {result.options.degree_u} across, {result.options.middle_curves} middle curve(s)"),
         ("minimised", _objective(result)),
         ("free rows", result.objective.rows),
-        ("energy (11)", f"{result.energy:.6g}"),
+        ("energy (11)", f"{result.energy:.6g}" + _quadrature(result)),
+        *((f"weights of {name}", str(weights)) for name, weights in zip("AB", result.weights, strict=True) if weights),
         ("alpha\u00b2", shape(result.alpha2, result.alpha2_bounds)),
         ("beta\u00b2", shape(result.beta2, result.beta2_bounds)),
         ("active bounds", ", ".join(result.active_bounds) or "none"),
@@ -231,6 +234,13 @@ def _shape_rows(shape: ShapeReport) -> Iterator[tuple[str, str]]:
     )
     for sentence in shape.meets.sentences:
         yield "meets", sentence
+
+
+def _quadrature(result: BlendResult) -> str:
+    """Say how well the energy of a rational blend is known."""
+    if result.quadrature_error is None:
+        return ""
+    return f", by quadrature, relative error {result.quadrature_error / max(result.energy, 1e-300):.1e}"
 
 
 def _objective(result: BlendResult) -> str:

@@ -17,9 +17,7 @@ from semispline.solver.arrays import FloatArray, SparseMatrix
 from semispline.solver.generated.energy_numpy import gram_block
 from semispline.solver.splines import (
     Basis,
-    BSplineSurface,
     Samples,
-    Surface,
     breakpoints,
     derivative_matrix,
     derivative_points,

@@ -47,9 +47,7 @@ def measure_energy(surface: Surface) -> MeasuredEnergy:
     # Far from the origin numerators would lose what the surface is: X - W c is the surface less c.
     centre = euclidean(net)[0].mean(axis=0)
     numerators = net[:, :3] - net[:, 3:] * centre
-    coarse, fine = (
-        float(RationalForm(u, rows, net[:, 3], finer).products(numerators[None])[0, 0]) for finer in (1, 2)
-    )
+    coarse, fine = (float(RationalForm(u, rows, net[:, 3], finer).products(numerators[None])[0, 0]) for finer in (1, 2))
     return MeasuredEnergy(fine, abs(fine - coarse))
 
 

@@ -12,12 +12,12 @@ from semispline.solver.arrays import FloatArray, require
 from semispline.solver.blending.candidates import Layout, find_layout
 from semispline.solver.blending.measured_energy import measure_energy
 from semispline.solver.blending.problem import BlendProblem, make_problem
-from semispline.solver.blending.representative import Representative, needs_constant_weights, represented
+from semispline.solver.blending.representative import Representative, represented
 from semispline.solver.blending.result import BlendResult, Objective
 from semispline.solver.blending.rounding import measure_energy_rounding, rounding_warning
 from semispline.solver.blending.shape_parameters import Found, active_bounds, admissible, bulged
 from semispline.solver.blending.shape_warnings import shape_warnings
-from semispline.solver.blending.sides import Side, make_side, matched_sides, of_one_degree
+from semispline.solver.blending.sides import Side, make_side, matched_sides
 from semispline.solver.blending.warnings import (
     bare_places,
     bound_warnings,
@@ -215,7 +215,7 @@ class PlacedSides:
     scaled: tuple[Side, Side]
     frame: tuple[FloatArray, float]
     matched: Correspondence
-    weights: tuple[Representative | None, Representative | None]
+    weights: tuple[Representative | None, ...]
 
 
 def place_sides(a: Base, b: Base, options: BlendOptions, flip: Flip) -> PlacedSides:
@@ -226,13 +226,11 @@ def place_sides(a: Base, b: Base, options: BlendOptions, flip: Flip) -> PlacedSi
     # Far from the origin each operation would round by the distance: there is but one rounding, of the result.
     origin = local_origin(a.surface, b.surface)
     local = matched_sides(sides[0].moved(origin, 1.0), sides[1].moved(origin, 1.0), matched)
-    constant = needs_constant_weights(options)
-    tame = [represented(side, constant=constant) for side in local]
-    local = of_one_degree(tame[0][0], tame[1][0])
+    local, weights = represented(*local, options)
     sides = local[0].moved(-origin, 1.0), local[1].moved(-origin, 1.0)
     centre, size = _frame(*sides)
     scaled = local[0].moved(centre - origin, size), local[1].moved(centre - origin, size)
-    return PlacedSides(sides, scaled, (centre, size), matched, (tame[0][1], tame[1][1]))
+    return PlacedSides(sides, scaled, (centre, size), matched, weights)
 
 
 def _objective(layout: Layout, energy: float, size: float) -> Objective:

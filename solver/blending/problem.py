@@ -105,10 +105,21 @@ class BlendProblem:
         """Whether control points are homogeneous: (w x, w y, w z, w)."""
         return self.a.is_rational
 
+    def check_polynomial(self, found: str) -> None:
+        """Refuse rational blends where the solver knows polynomial ones only.
+
+        Raises
+        ------
+        OptionError
+            Beginning with what was found.
+        """
+        if self.is_rational:
+            raise OptionError(f"{found} with a rational base, expected method reduced: the others are for polynomials")
+
     @property
     def dimension(self) -> int:
         """Columns of control points: 3, or 4 where they are homogeneous."""
-        return self.a.rows.shape[2]
+        return int(self.a.rows.shape[2])
 
     @property
     def free(self) -> tuple[bool, bool]:
@@ -163,13 +174,14 @@ class BlendProblem:
     @cached_property
     def free_system(self) -> FreeSystem | RationalSystem:
         """What has to be solved for the free rows."""
-        plain = self._plain_system
+        plain = self.plain_system
         if not self.is_rational or plain.size == 0:
             return plain
         return RationalSystem(self.rational_form, plain, self._seam_orders)
 
     @cached_property
-    def _plain_system(self) -> FreeSystem:
+    def plain_system(self) -> FreeSystem:
+        """The same for polynomial blends, and for the weights of rational ones."""
         return FreeSystem(self.form, self.free_rows, self._seam_orders)
 
     @property
@@ -181,7 +193,7 @@ class BlendProblem:
         """The energy of rational blends; where something is free their weights do not depend on alpha."""
         given = self.given
         points = self._contact_rows(*given, (self.p2[0].at(given[0]), self.p2[1].at(given[1])))
-        weights = self._plain_system.completed(points[:, 3:])[:, 0]
+        weights = self.plain_system.completed(points[:, 3:])[:, 0]
         return RationalForm(self.form.u, self.form.rows, weights)
 
     def energy_products(self, points: FloatArray) -> FloatArray:

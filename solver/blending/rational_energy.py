@@ -74,14 +74,11 @@ class RationalForm:
         second = self._second(points)
         parts = []
         for i in rows:
-            lines = np.zeros((self.rows[i].size, points.shape[1]))
-            for b in range(3):
-                pulled = np.zeros((points.shape[1], len(self._v)))
-                for factor, values, along in zip(_FACTORS, second, self._fields[i], strict=True):
-                    if along[b] is not None:
-                        pulled += factor * np.einsum("duv,uv,uv->dv", values, along[b], self._node_weights)
-                lines += self._along[i][b].T @ pulled.T
-            parts.append(lines)
+            pulled = [np.zeros((points.shape[1], len(self._v))) for _ in range(3)]
+            for factor, values, fields in zip(_FACTORS, second, self._fields[i], strict=True):
+                for b, field in fields.items():
+                    pulled[b] += factor * np.einsum("duv,uv,uv->dv", values, field, self._node_weights)
+            parts.append(sum(self._along[i][b].T @ pulled[b].T for b in range(3)))
         return np.concatenate(parts)
 
     def _second(self, points: FloatArray) -> list[FloatArray]:
@@ -112,30 +109,30 @@ class RationalForm:
         return f
 
     @cached_property
-    def _fields(self) -> list[list[tuple[FloatArray | None, ...]]]:
-        """What N_i M gives: for each row and second derivative the factors of M, M' and M'', over the nodes."""
+    def _fields(self) -> list[list[dict[int, FloatArray]]]:
+        """Second derivatives of N_i M f: for each row and derivative the factors of M, M' and M'', over the nodes."""
         f, fields = self._reciprocal, []
         for i in range(len(self.rows)):
             n, n1, n2 = (values[:, i : i + 1] for values in self._across)
             fields.append(
                 [
-                    (n2 * f[0, 0] + 2 * n1 * f[1, 0] + n * f[2, 0], None, None),
-                    (n1 * f[0, 1] + n * f[1, 1], n1 * f[0, 0] + n * f[1, 0], None),
-                    (n * f[0, 2], 2 * n * f[0, 1], n * f[0, 0]),
+                    {0: n2 * f[0, 0] + 2 * n1 * f[1, 0] + n * f[2, 0]},
+                    {0: n1 * f[0, 1] + n * f[1, 1], 1: n1 * f[0, 0] + n * f[1, 0]},
+                    {0: n * f[0, 2], 1: 2 * n * f[0, 1], 2: n * f[0, 0]},
                 ]
             )
         return fields
 
     def _block(self, i: int, j: int) -> SparseMatrix:
         total = sp.csr_array((self.rows[i].size, self.rows[j].size))
+        middle = np.zeros((3, 3, len(self._v)))
+        for factor, left, right in zip(_FACTORS, self._fields[i], self._fields[j], strict=True):
+            for b, one in left.items():
+                for c, other in right.items():
+                    middle[b, c] += factor * np.einsum("uv,uv,uv->v", one, other, self._node_weights)
         for b in range(3):
             for c in range(3):
-                middle = np.zeros(len(self._v))
-                for factor, left, right in zip(_FACTORS, self._fields[i], self._fields[j], strict=True):
-                    one, other = left[b], right[c]
-                    if one is not None and other is not None:
-                        middle += factor * np.einsum("uv,uv,uv->v", one, other, self._node_weights)
-                total = total + self._along[i][b].T @ (self._along[j][c] * middle[:, None])
+                total = total + self._along[i][b].T @ sp.csr_array(self._along[j][c] * middle[b, c][:, None])
         return total
 
     @cached_property

@@ -121,7 +121,7 @@ class BlendResult:
     energy: float
     energy_rounding: float
     quadrature_error: float | None
-    weights: tuple[Representative | None, Representative | None]
+    weights: tuple[Representative | None, ...]
     alpha2: LinearInV | None
     beta2: LinearInV | None
     alpha2_bounds: tuple[LinearInV, LinearInV] | None

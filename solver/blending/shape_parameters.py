@@ -8,7 +8,6 @@ from typing import cast
 from semispline.solver.blending.fair_search import FairSolution, solve_fair
 from semispline.solver.blending.linear_alpha import LinearInV, scaled
 from semispline.solver.blending.problem import BlendProblem
-from semispline.solver.errors import OptionError
 from semispline.solver.options import BlendOptions
 from semispline.solver.proof import Certificate
 
@@ -60,8 +59,7 @@ def find_shape_parameters(problem: BlendProblem, options: BlendOptions) -> Found
         objective = f"thin plate (11), v_scale {options.v_scale}, by alpha^2 and beta^2"
         certificate = replace(proved.certificate, objective=objective)
         return Found(proved.a, proved.b, method, certificate=certificate, proven_gap=proved.gap)
-    if problem.is_rational:
-        raise OptionError(f"method: found {method}, which minimises (11) of polynomial blends; expected reduced")
+    problem.check_polynomial(f"method: found {method}")
     if method == "casadi":
         from semispline.solver.blending.nlp import solve_constrained
 

@@ -62,7 +62,7 @@ class Side:
     @property
     def is_rational(self) -> bool:
         """Whether the rows are homogeneous."""
-        return self.rows.shape[2] == 4
+        return bool(self.rows.shape[2] == 4)
 
     @property
     def order(self) -> int:

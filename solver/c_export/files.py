@@ -163,7 +163,7 @@ def _points(stated: StatedProblem, nlp: ConstrainedProblem) -> Any:
 def _solve(stated: StatedProblem, a: Any, b: Any) -> Any:
     """Control points of least energy, (3, N), from the rows of both bases, each (3, rows times n)."""
     problem = stated.problem
-    form, system = problem.form, problem.free_system
+    form, system = problem.form, problem.plain_system
     # Asking for the points that Python finds refuses a system that cannot be trusted.
     points_found = problem.control_points(*problem.start)
     off = float(np.abs(system.solved_at_once(points_found) - points_found).max())
