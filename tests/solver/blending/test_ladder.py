@@ -4,6 +4,7 @@ from math import comb
 
 import numpy as np
 import pytest
+from scipy.interpolate import BPoly
 
 from helpers.bases import random_knots
 from semispline.solver.blending import ladder
@@ -126,6 +127,15 @@ def test_the_bounds_hold_over_the_window(order, per_a):
         assert (least, most) == pytest.approx(found, abs=1e-12)
     else:
         assert found[0] - least < 0.5 * (most - least)
+
+
+@pytest.mark.parametrize("degree", [1, 2, 4])
+def test_bernstein_coefficients_are_those_of_the_polynomial(degree):
+    powers = np.random.default_rng(degree).uniform(-1, 1, degree + 1)
+    coefficients = ladder._bernstein(degree, -0.5, 1.5) @ powers
+    x = np.linspace(-0.5, 1.5, 9)
+    expected = np.polynomial.polynomial.polyval(x, powers)
+    assert BPoly(coefficients[:, None], [-0.5, 1.5])(x) == pytest.approx(expected, abs=1e-14)
 
 
 @pytest.mark.parametrize("factor", [0.99, 1.01])
