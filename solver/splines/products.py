@@ -9,13 +9,15 @@ Source: K. Mørken, Some identities for products and degree raising of splines, 
 
 from __future__ import annotations
 
+from functools import lru_cache
 from itertools import product
 from math import comb, pi, prod
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from semispline.solver.arrays import FloatArray
+from semispline.solver.arrays import FloatArray, SparseMatrix
 from semispline.solver.errors import KnotError
 from semispline.solver.splines.knots import clamped
 from semispline.solver.splines.quadrature import Basis
@@ -72,29 +74,40 @@ def multiply(a: Basis, points_a: Any, b: Basis, points_b: Any) -> tuple[Basis, A
     >>> multiply(line, np.array([0, 1.0]), line, np.array([1, 0.0]))[1]
     array([0. , 0.5, 0. ])
     """
+    basis, shares, deal_a, deal_b, first = _deals(a.degree, a.knots.tobytes(), b.degree, b.knots.tobytes())
+    terms = _combined(deal_a, points_a) * _combined(deal_b, points_b)
+    terms *= shares.reshape((-1,) + (1,) * (terms.ndim - 1))
+    return basis, np.add.reduceat(terms, first, axis=0)
+
+
+@lru_cache(maxsize=32)
+def _deals(
+    degree_a: int, knots_a: bytes, degree_b: int, knots_b: bytes
+) -> tuple[Basis, FloatArray, SparseMatrix, SparseMatrix, NDArray[np.intp]]:
+    """Return the basis of a product; of each way to deal out knots its share and the blossoms of both factors.
+
+    Ways of one control point stand together; the last array says where they begin.
+    """
+    a, b = Basis(degree_a, np.frombuffer(knots_a)), Basis(degree_b, np.frombuffer(knots_b))
     basis = product_basis(a, b)
     degree, knots = basis.degree, basis.knots
+    knots.setflags(write=False)
     target, shares, start, for_a, for_b = [], [], [], [], []
     for j in range(basis.size):
         values, counts = np.unique(knots[j + 1 : j + 1 + degree], return_counts=True)
-        ways = product(*(range(count + 1) for count in counts.tolist()))
-        for way in ways:
-            if sum(way) != a.degree:
+        for way in product(*(range(count + 1) for count in counts.tolist())):
+            if sum(way) != degree_a:
                 continue
             taken = np.array(way)
             target.append(j)
-            shares.append(prod(map(comb, counts.tolist(), way)) / comb(degree, a.degree))
+            shares.append(prod(map(comb, counts.tolist(), way)) / comb(degree, degree_a))
             start.append(knots[j])
             for_a.append(np.repeat(values, taken))
             for_b.append(np.repeat(values, counts - taken))
     places = np.array(start)
-    blossoms_a = _combined(blossom_matrix(a.degree, a.knots, places, np.array(for_a)), points_a)
-    blossoms_b = _combined(blossom_matrix(b.degree, b.knots, places, np.array(for_b)), points_b)
-    terms = blossoms_a * blossoms_b
-    terms *= np.array(shares).reshape((-1,) + (1,) * (terms.ndim - 1))
-    # Terms of one control point stand together.
-    first = np.searchsorted(target, np.arange(basis.size))
-    return basis, np.add.reduceat(terms, first, axis=0)
+    deal_a = blossom_matrix(degree_a, a.knots, places, np.array(for_a))
+    deal_b = blossom_matrix(degree_b, b.knots, places, np.array(for_b))
+    return basis, np.array(shares), deal_a, deal_b, np.searchsorted(target, np.arange(basis.size))
 
 
 def _combined(matrix: Any, points: Any) -> Any:

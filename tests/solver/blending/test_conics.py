@@ -220,6 +220,14 @@ def test_a_plane_curve_that_is_no_conic_is_refused(column, change):
     assert (recognised_conic(rows, basis_of(knots)) is not None) is (change < 1e-10)
 
 
+@pytest.mark.parametrize("change", [1e-13, 1e-7])
+def test_a_circle_that_leaves_its_plane_is_refused(change):
+    knots, points = standard_arcs(np.linspace(0, TURN, 5))
+    rows = np.insert(points, 2, 0.0, axis=1)[None]
+    rows[0, 3, 2] = change
+    assert (recognised_conic(rows, basis_of(knots)) is not None) is (change < 1e-10)
+
+
 def test_other_curves_are_refused():
     rng = np.random.default_rng(2)
     along = Basis(3, clamped([0.5] * 3, 3, 0, 1))
