@@ -20,7 +20,13 @@ import scipy.sparse as sp
 
 from semispline.solver.arrays import FloatArray
 from semispline.solver.blending.closing import periodic_points
-from semispline.solver.blending.weights import end_derivatives, normalised_rows, rows_from_derivatives, spline_mean
+from semispline.solver.blending.weights import (
+    end_derivatives,
+    is_separable,
+    normalised_rows,
+    rows_from_derivatives,
+    spline_mean,
+)
 from semispline.solver.generated import rows_numpy
 from semispline.solver.splines import Basis, basis_matrix, breakpoints, clamped
 from semispline.solver.splines.products import multiply
@@ -89,9 +95,10 @@ def tamed(
     degree: int,
     spans: tuple[float, ...],
     *,
+    order: int,
     blend_degree: int,
     blend_spans: tuple[float, ...],
-    window: Window,
+    window: Window | None,
     closed: bool = False,
 ) -> TameRows:
     """Return rows of the lowest rung whose weights are positive over the whole window.
@@ -99,7 +106,8 @@ def tamed(
     Parameters
     ----------
     rows : ndarray, shape (order + 1, n, 4)
-        Homogeneous control rows of the base, from the edge inwards; the weights of the edge are positive.
+        Homogeneous control rows of the base, from the edge inwards; the weights of the edge are positive. For order 0
+        there may be a second one.
     along : Basis
         Not elevated: the degree of the last rung is a multiple of it.
     degree : int
@@ -109,7 +117,8 @@ def tamed(
     blend_degree : int
     blend_spans : tuple of float
         The same of the blend.
-    window : Window
+    window : Window or None
+        None asks for weights that do not depend on alpha at all.
     closed : bool
         Whether the rows are closed along.
 
@@ -118,22 +127,27 @@ def tamed(
     Where the last rung has a degree above 25, finer splines are fitted first; if they fail it is taken all the same,
     and its degree is in `rung`.
     """
-    order = len(rows) - 1
     mean, mean_degree = normalised_rows(rows, along, degree, spans)
 
     def measured(name: RungName, found: FloatArray, basis: Basis, across: int) -> tuple[TameRows, bool]:
-        least, most = weight_range(found[:, :, 3], across, spans, blend_degree, blend_spans, window)
+        weights = found[: order + 1, :, 3]
+        if window is None:
+            least, most = float(weights[0].min()), float(weights[0].max())
+        else:
+            least, most = weight_range(weights, across, spans, blend_degree, blend_spans, window)
         rung = Rung(name, basis.degree, most / least if least > 0 else np.inf)
         return TameRows(found, basis, across, rung), least >= LEAST_SHARE * mean[0, :, 3].min()
 
     result, tame = measured("mean", mean, along, mean_degree)
-    if tame or order == 0:
+    constant = window is not None or is_separable(mean[: order + 1, :, 3])
+    if (tame and constant) or order == 0:
         return result
     jets = np.einsum("dk,knc->dnc", end_derivatives(order, mean_degree, spans), mean)
     across = max(degree, order)
     back = rows_from_derivatives(order, across, spans)
     last_fits = (order + 1) * along.degree <= MOST_DEGREE
-    for parts in _PARTS if last_fits else _PARTS + _MORE_PARTS:
+    tries = () if window is None else _PARTS if last_fits else _PARTS + _MORE_PARTS
+    for parts in tries:
         found, basis = fitted_jets(jets, along, parts, closed=closed)
         result, tame = measured("fitted", np.einsum("kd,dnc->knc", back, found), basis, across)
         if tame:

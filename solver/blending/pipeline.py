@@ -12,12 +12,11 @@ from semispline.solver.arrays import FloatArray, require
 from semispline.solver.blending.candidates import Layout, find_layout
 from semispline.solver.blending.measured_energy import measure_energy
 from semispline.solver.blending.problem import BlendProblem, make_problem
-from semispline.solver.blending.representative import Representative, represented
 from semispline.solver.blending.result import BlendResult, Objective
 from semispline.solver.blending.rounding import measure_energy_rounding, rounding_warning
 from semispline.solver.blending.shape_parameters import Found, active_bounds, admissible, bulged
 from semispline.solver.blending.shape_warnings import shape_warnings
-from semispline.solver.blending.sides import Side, make_side, matched_sides
+from semispline.solver.blending.sides import Side, make_side, matched_sides, of_one_degree
 from semispline.solver.blending.warnings import (
     bare_places,
     bound_warnings,
@@ -135,7 +134,7 @@ def blend(
         energy=energy,
         energy_rounding=rounding.energy,
         quadrature_error=measured.quadrature_error,
-        weights=placed.weights,
+        weights=problem.weights,
         alpha2=None if sides[0].order == 0 else found.a,
         beta2=None if sides[1].order == 0 else found.b,
         alpha2_bounds=admissible(problem, 0),
@@ -208,14 +207,12 @@ class PlacedSides:
     frame : (ndarray of shape (3,), float)
         Centre and size: scaled coordinates are (x - centre) / size.
     matched : Correspondence
-    weights : pair of Representative or None
     """
 
     sides: tuple[Side, Side]
     scaled: tuple[Side, Side]
     frame: tuple[FloatArray, float]
     matched: Correspondence
-    weights: tuple[Representative | None, ...]
 
 
 def place_sides(a: Base, b: Base, options: BlendOptions, flip: Flip) -> PlacedSides:
@@ -226,11 +223,12 @@ def place_sides(a: Base, b: Base, options: BlendOptions, flip: Flip) -> PlacedSi
     # Far from the origin each operation would round by the distance: there is but one rounding, of the result.
     origin = local_origin(a.surface, b.surface)
     local = matched_sides(sides[0].moved(origin, 1.0), sides[1].moved(origin, 1.0), matched)
-    local, weights = represented(*local, options)
+    if not local[0].is_rational:
+        local = of_one_degree(*local)
     sides = local[0].moved(-origin, 1.0), local[1].moved(-origin, 1.0)
     centre, size = _frame(*sides)
     scaled = local[0].moved(centre - origin, size), local[1].moved(centre - origin, size)
-    return PlacedSides(sides, scaled, (centre, size), matched, weights)
+    return PlacedSides(sides, scaled, (centre, size), matched)
 
 
 def _objective(layout: Layout, energy: float, size: float) -> Objective:
@@ -311,8 +309,9 @@ def _surface(
     else:
         points = points * size + centre
     pieces = np.split(points, problem.form.offsets[1:-1])
-    # The contact curves themselves are the bases' own, to the last bit.
-    pieces[0], pieces[-1] = sides[0].rows[0], sides[1].rows[0]
+    if not problem.is_rational:
+        # The contact curves themselves are the bases' own, to the last bit.
+        pieces[0], pieces[-1] = sides[0].rows[0], sides[1].rows[0]
     curves = [
         BSplineCurve(row.degree, row.knots, *euclidean(piece), name=f"control_curves[{i}]")
         for i, (row, piece) in enumerate(zip(problem.rows, pieces, strict=True))

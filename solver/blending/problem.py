@@ -16,9 +16,11 @@ from semispline.solver.blending.exits import Exits, measure_exits
 from semispline.solver.blending.facing import VANISHING, measure_facing
 from semispline.solver.blending.free_system import FreeSystem
 from semispline.solver.blending.gram import EnergyForm
+from semispline.solver.blending.ladder import Window
 from semispline.solver.blending.layout import blend_u_basis, middle_bases
 from semispline.solver.blending.linear_alpha import LinearEnds, LinearInV, linear_rows, monomials_of_ends, raised_basis
-from semispline.solver.blending.rational_energy import RationalForm, RationalSystem
+from semispline.solver.blending.rational_energy import RationalForm, RationalSystem, free_weights
+from semispline.solver.blending.representative import Representative, needs_constant_weights, smooth_along, tame_side
 from semispline.solver.blending.sides import Side
 from semispline.solver.errors import EdgeError, OptionError
 from semispline.solver.options import Alpha, BlendOptions
@@ -32,6 +34,8 @@ from semispline.solver.splines import (
 ENERGY_BOX, WINDOW, WIDE_WINDOW = (1 / 8, 8.0), (1 / 4, 4.0), (1 / 4, 16.0)
 # For G3 and G4; above it lie loops that are fair.
 LOW_WINDOW = (1 / 8, 2.0)
+# Where a window's lower end stops the search it begins at this part of it: bases that bend much want little alpha.
+LOWER = 1 / 2
 # p2 = factor * p1 for G3 and G4: it lowers J by a quarter and by two fifths against zero.
 P2_FACTORS = {3: 3.0, 4: 4.0}
 
@@ -87,6 +91,8 @@ class BlendProblem:
     p2 : (SecondParameter, SecondParameter)
     linear : pair of LinearEnds or None
         Where alpha^2 or beta^2 is linear in v; the rows of that contact then rise in degree.
+    weights : pair of Representative or None
+        Of rational sides, what their rows are built on.
     """
 
     form: EnergyForm
@@ -99,6 +105,12 @@ class BlendProblem:
     exits: Exits
     p2: tuple[SecondParameter, SecondParameter] = (SecondParameter(), SecondParameter())
     linear: tuple[LinearEnds | None, LinearEnds | None] = (None, None)
+    weights: tuple[Representative | None, Representative | None] = (None, None)
+
+    @property
+    def has_constant_weights(self) -> bool:
+        """Whether no weight depends on alpha: where there are none, too."""
+        return all(found is None or found.constant for found in self.weights)
 
     @property
     def is_rational(self) -> bool:
@@ -148,7 +160,7 @@ class BlendProblem:
         U, p = self.form.u.knots, self.form.u.degree
         m = len(self.form.rows) - 1
         return tuple(
-            (side, rows, tuple(distances[p + 1 : p + 1 + max(2, side.order)].tolist()))
+            (side, rows, _first_spans(p, distances, side.order))
             for side, rows, distances in (
                 (self.a, range(m + 1), U - U[0]),
                 (self.b, range(m, -1, -1), U[-1] - U[::-1]),
@@ -193,8 +205,8 @@ class BlendProblem:
         """The energy of rational blends; where something is free their weights do not depend on alpha."""
         given = self.given
         points = self._contact_rows(*given, (self.p2[0].at(given[0]), self.p2[1].at(given[1])))
-        weights = self.plain_system.completed(points[:, 3:])[:, 0]
-        return RationalForm(self.form.u, self.form.rows, weights)
+        form = self.form
+        return RationalForm(form.u, form.rows, free_weights(self.plain_system, form.u, form.rows, points[:, 3]))
 
     def energy_products(self, points: FloatArray) -> FloatArray:
         """Return the energy products of blends, control points of shape (K, N, 3 or 4): shape (K, K).
@@ -266,6 +278,11 @@ class BlendProblem:
         return self.free_system.completed(points)
 
 
+def _first_spans(degree: int, distances: FloatArray, order: int) -> tuple[float, ...]:
+    """Return the distances of the nearest knots of U, from those of all knots from the contact."""
+    return tuple(distances[degree + 1 : degree + 1 + max(2, order)].tolist())
+
+
 def _without_p2(exponents: FloatArray, monomials: FloatArray, second: SecondParameter) -> tuple[FloatArray, FloatArray]:
     """Put what p2 is into monomials a^i p2^j; where it is searched they stay as they are."""
     if second.free:
@@ -297,6 +314,9 @@ def make_problem(a: Side, b: Side, options: BlendOptions) -> BlendProblem:
     u = blend_u_basis(cast("int", options.degree_u), middle_curves, options.u_knots, (a.order, b.order))
     if any(side.has_shape_parameter and x == "fair" for side, x in zip((a, b), options.alphas, strict=True)):
         _check_bends_continuously(u)
+    weights: tuple[Representative | None, Representative | None] = (None, None)
+    if a.is_rational:
+        (a, b), weights = _represented(a, b, u, options)
     orders = [seam_order(side.along, side.rows[: side.order + 1], side.largest) for side in (a, b)]
     closed = min(orders)
     given = cast("Any", options.middle_knots)
@@ -338,7 +358,41 @@ def make_problem(a: Side, b: Side, options: BlendOptions) -> BlendProblem:
         exits,
         (p2_a, p2_b),
         (linear_a, linear_b),
+        weights,
     )
+
+
+def _represented(
+    a: Side, b: Side, u: Basis, options: BlendOptions
+) -> tuple[tuple[Side, Side], tuple[Representative, Representative]]:
+    """Return rational sides that are smooth along, with weights that are positive whatever alpha and p2 may be."""
+    cured = smooth_along(a, b, options)
+    a, b = (side for side, _ in cured)
+    means, exits = measure_facing(a, b), measure_exits(a, b)
+    found = []
+    for index, (side, cure) in enumerate(cured):
+        distances = u.knots - u.knots[0] if index == 0 else u.knots[-1] - u.knots[::-1]
+        spans = _first_spans(u.degree, distances, side.order)
+        if needs_constant_weights(options):
+            window = None
+        elif not side.has_shape_parameter:
+            window = Window((1.0, 1.0))
+        else:
+            natural = means.gap / _checked_speed(side, means.cross_speeds[index], "ab"[index])
+            low, high = _bounds(natural, side.order, options.alphas[index], options.box, exits)
+            second, bulge = _second(side, index, options), options.bulges[index]
+            most = exits.arc / second_weight(u.degree, spans) * natural * max(1.0, bulge**2) if second.free else 0.0
+            # Where it stops a search, a window is made to begin lower.
+            ends = min(LOWER, bulge) * low if low < high else min(1.0, bulge) * low, max(1.0, bulge) * high
+            window = Window(ends, (second.value - most, second.value + most), second.per_a)
+        found.append(tame_side(side, cure, u, spans, window))
+    (tame_a, of_a), (tame_b, of_b) = found
+    return (tame_a, tame_b), (of_a, of_b)
+
+
+def second_weight(degree: int, spans: tuple[float, ...]) -> float:
+    """Return by how much p2 moves the third row of a contact, in |R_w|."""
+    return spans[0] * spans[1] / (degree * (degree - 1))
 
 
 def _check_bends_continuously(u: Basis) -> None:

@@ -19,14 +19,26 @@ from semispline.solver.blending.closing import periodic_points
 from semispline.solver.blending.free_system import ROUNDING_CORRECTION, TRUSTED_CORRECTION, FreeSystem
 from semispline.solver.errors import ComputationError
 from semispline.solver.generated.energy_numpy import gram_block
-from semispline.solver.splines import Basis, basis_matrix, breakpoints, derivative_matrix, gauss_rule, merge_breakpoints
+from semispline.solver.splines import (
+    Basis,
+    basis_matrix,
+    breakpoints,
+    derivative_matrix,
+    gauss_rule,
+    greville,
+    merge_breakpoints,
+)
 
 # Second derivatives, and by what each counts in the energy.
 _SECOND = ((2, 0), (1, 1), (0, 2))
 _FACTORS = [float(gram_block(*np.eye(3)[a], *np.eye(3)[b])) for a, b in _SECOND]
+# Weights of free rows below this part of the least weight of the contacts, or as much above the largest, are not tame.
+TAME = 1 / 2
 # Derivatives up to the second.
 _ORDERS = ((0, 0), (1, 0), (0, 1), *_SECOND)
 _MOST_REFINEMENTS = 5
+# Weights below this fraction of the largest are none.
+_NO_WEIGHT = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
@@ -182,8 +194,37 @@ def _bases(basis: Basis, x: FloatArray) -> list[SparseMatrix]:
     return found
 
 
+def free_weights(plain: FreeSystem, u: Basis, rows: tuple[Basis, ...], weights: FloatArray) -> FloatArray:
+    """Return weights of all rows, shape (N,), those of free rows added: by a scalar thin plate where that is tame.
+
+    Else they are means of the weights of both contacts: positive, as these are.
+
+    Parameters
+    ----------
+    plain : FreeSystem
+    u : Basis
+    rows : tuple of Basis
+    weights : ndarray, shape (N,)
+        Of the prescribed rows, which have those of their contact.
+    """
+    filled = plain.completed(weights[:, None])[:, 0]
+    if plain.size == 0:
+        return filled
+    offsets = plain.offsets
+    given = np.delete(weights, np.r_[plain.free])
+    if filled[plain.free].min() >= TAME * given.min() and filled[plain.free].max() <= given.max() / TAME:
+        return filled
+    places = greville(u.knots, u.degree)
+    ends = [(rows[i], weights[offsets[i] : offsets[i + 1]]) for i in (0, len(rows) - 1)]
+    for i in plain.rows:
+        at = greville(rows[i].knots, rows[i].degree)
+        first, last = (basis_matrix(basis.degree, basis.knots, at) @ values for basis, values in ends)
+        filled[offsets[i] : offsets[i + 1]] = (1 - places[i]) * first + places[i] * last
+    return filled
+
+
 class RationalSystem:
-    """The free rows of a rational blend, in homogeneous points: weights first, by a scalar thin plate, then numerators.
+    """The free rows of a rational blend, in homogeneous points: weights are known, numerators have least energy.
 
     Attributes
     ----------
@@ -213,7 +254,9 @@ class RationalSystem:
         """Fill the free rows of p, shape (N, 4 K), so that the energy is least for the weights of the form."""
         is_weight = np.arange(points.shape[1]) % 4 == 3
         filled = points.copy()
-        filled[:, is_weight] = self.plain.completed(points[:, is_weight])
+        # Weights know nothing of alpha: of the parts that go with its powers there are none, but for rounding.
+        whole = np.abs(points[:, is_weight]).max(axis=0) > _NO_WEIGHT * self.form.weights.max()
+        filled[self.plain.free, is_weight] = np.multiply.outer(self.form.weights[self.plain.free], whole)
         numerators = filled[:, ~is_weight]
         left = np.inf
         for _ in range(_MOST_REFINEMENTS):

@@ -90,12 +90,11 @@ def measure_contact(
         feet = edges.foot_pairs(max(GAP_LIMIT * size + of_gap, _REMOVED * worst_gap))
         if feet is not None:
             pairs, found = feet, edges.measured(feet.s_a, feet.s_b, feet.pace)
+    (c1, c2), (first, second) = found.differences, found.derivatives
     found = _with_worst_between(edges, pairs, found, of_gap)
     worst = [found.worst(k, origin) for k in range(len(found.values))]
     gap, angle, jump = worst[:3]
     largest = max(found.curvature, _STRAIGHT / size)
-    # Those of derivatives as they are: they mean parameters that correspond affinely.
-    (c1, c2), (first, second) = sampled.differences, sampled.derivatives
     # Flat: what bends by the size of the model is the measure; and nearly so, as of curvatures.
     bent = first * first / size
     second = bent if second <= noises[0][2] + noises[1][2] else max(second, _STRAIGHT * bent)
@@ -221,10 +220,7 @@ class _Edges:
         """Measure at parameters along a and along b that correspond, affinely where no pace is given."""
         # Part by part: a long edge has more samples than memory should hold at once.
         return _Samples.joined(
-            [
-                self._part(s_a[i : i + _AT_ONCE], s_b[i : i + _AT_ONCE], pace)
-                for i in range(0, len(s_a), _AT_ONCE)
-            ]
+            [self._part(s_a[i : i + _AT_ONCE], s_b[i : i + _AT_ONCE], pace) for i in range(0, len(s_a), _AT_ONCE)]
         )
 
     def values(self, s_a: FloatArray, s_b: FloatArray, kinds: Sequence[int]) -> tuple[FloatArray, FloatArray]:

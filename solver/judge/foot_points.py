@@ -131,7 +131,11 @@ def foot_map(a: Run, b: Run, most: float, closed: bool) -> FootMap | None:
     values, distance = b.feet(points, values, closed)
     # Points may share a foot but for rounding, nothing more.
     slack = _ONE * (b.ends[1] - b.ends[0])
-    if distance.max() > most or np.diff(values).min() < -slack or values[-1] - values[0] > b.ends[1] - b.ends[0] + slack:
+    if (
+        distance.max() > most
+        or np.diff(values).min() < -slack
+        or values[-1] - values[0] > b.ends[1] - b.ends[0] + slack
+    ):
         return None
     values = np.maximum.accumulate(values)
     halfway = (b.breaks[:-1] + b.breaks[1:]) / 2
