@@ -104,7 +104,8 @@ def test_shared_jumps_are_smoothed(factors, weights, closed):
         assert new[:, :, 3].min() > 0
 
 
-def test_a_closed_profile_whose_speeds_do_not_come_back():
+@pytest.mark.parametrize("rational", [False, True])
+def test_a_closed_profile_whose_speeds_do_not_come_back(rational):
     # Both pieces begin slower than they end: the product of the jumps is not 1.
     quarter = np.array([[1, 0, 0], [1, 0.5, 0], [0.6, 1, 0], [-0.3, 1, 0]])
     other = np.array([[-0.3, 1, 0], [-0.7, 1, 0], [-3, -4.0, 0], [1, -1.5, 0], [1, -1.0, 0], [1, 0, 0]])
@@ -115,18 +116,35 @@ def test_a_closed_profile_whose_speeds_do_not_come_back():
     up = np.array([0, 0, 1.0])
     rows = np.stack([profile, profile + up, 1.1 * profile + 2 * up])
     along = Basis(3, knots)
+    if rational:
+        weights = np.array([1, 1.2, 0.9, 0.8, 0.9, 1.1, 1.2, 0.9, 1])[:, None] * np.ones((3, 1, 1))
+        rows = np.concatenate([rows * weights, weights], axis=-1)
     found = jumps(rows, along, 3, SPANS, closed=True)
     assert [jump.kind for jump in found] == ["shared"] * 2
     product = found[0].speed * found[1].speed
     assert abs(np.log(product)) > 0.5
     new, basis = smoothed(rows, along, found, closed=True)
-    assert basis.degree == 6
+    assert basis.degree == (9 if rational else 6)
     assert jumps(new, basis, 3, SPANS, closed=True) == ()
     assert departure((rows, along), (new, basis)) < 1e-12
     # The spline's own knots stay as smooth as they were.
-    inner, counts = np.unique(basis.knots[7:-7], return_counts=True)
-    assert counts.tolist() == [5, 4, 4]
+    inner, counts = np.unique(basis.knots[basis.degree + 1 : -basis.degree - 1], return_counts=True)
+    assert counts.tolist() == ([8, 7, 7] if rational else [5, 4, 4])
     assert np.isin(inner, along.knots).sum() == 0
+
+
+@pytest.mark.parametrize(("middle", "cured"), [(1.9, True), (2.1, False)])
+def test_weights_that_rise_too_steeply_stay(middle, cured):
+    # Weights 1, m, 1, m, 1: lambda falls to 1 - (m - 1) between them.
+    weights = np.array([1, middle, 1, middle, 1])[:, None]
+    points = np.array([[-2, 1, 0], [-1, 0, 0], [0, 0, 0], [1, 0, 0], [2.0, 1, 0]])
+    rows = np.stack([np.concatenate([weights * (points + np.array([0, 0, k])), weights], axis=1) for k in range(2)])
+    along = Basis(2, clamped([1.0, 1.0], 2, 0, 2))
+    found = jumps(rows, along, 1, SPANS)
+    assert [jump.kind for jump in found] == ["shared"]
+    new, basis = smoothed(rows, along, found)
+    assert (basis.degree == 4) is cured
+    assert (new is rows) is not cured
 
 
 def test_unequal_arcs_whose_weights_jump_apart_from_conics():
