@@ -137,7 +137,7 @@ def recognised_conic(rows: FloatArray, along: Basis) -> Conic | None:
     left, values, right = np.linalg.svd(local.transpose(1, 0, 2).reshape(along.size, -1), full_matrices=False)
     if len(values) < 3 or values[2] < max(_STRAIGHT, allowed) * values[0]:
         return None
-    if (values[4:] > allowed * values[0]).any():
+    if (values[3:] > allowed * values[0]).any():
         return None
     plane, images = left[:, :3], values[:3, None] * right[:3]
     sampled = basis_matrix(along.degree, along.knots, _samples(along))

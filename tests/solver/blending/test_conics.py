@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from scipy.optimize import brentq
 
 from helpers.conics import occ_net, standard_arcs
+from helpers.same_surface import departure, stacked
 from semispline.derivations.circles import circle_points
 from semispline.solver.blending.conics import cured_conic, recognised_conic, same_arcs
 from semispline.solver.blending.knot_lines import knot_lines, least_continuity
-from semispline.solver.splines import Basis, basis_matrix, clamped, elevation_matrix, refinement_matrix
+from semispline.solver.splines import Basis, clamped, elevation_matrix, refinement_matrix
 from semispline.solver.splines.refinement import elevated_knots
 
 TURN = 2 * np.pi
@@ -39,37 +39,6 @@ def random_frames(rng, count, at=(0.0, 0.0, 0.0), size=1.0):
     frames[:, 2, 3] = rng.uniform(0.5, 2, count)
     frames[:, 2, :3] += frames[:, 2, 3:] * np.array(at)
     return frames
-
-
-def stacked(along, rows, v):
-    return np.einsum("vn,knd->vkd", basis_matrix(along.degree, along.knots, np.atleast_1d(v)).toarray(), rows).reshape(
-        len(np.atleast_1d(v)), -1
-    )
-
-
-def departure(old, new):
-    """The largest angle between all rows of the new form and those of the old at the nearest place of row 0."""
-    start, end = old[1].knots[0], old[1].knots[-1]
-    assert (new[1].knots[0], new[1].knots[-1]) == (start, end)
-    grid = np.linspace(start, end, 401)
-    step = grid[1] - grid[0]
-
-    def direction(curve, v):
-        points = stacked(curve[1], curve[0], np.clip(v, start, end))
-        return points / np.linalg.norm(points, axis=1)[:, None]
-
-    at_grid = direction(old, grid)
-    worst = 0.0
-    for found in direction(new, np.linspace(start, end, 23)[1:-1]):
-
-        def slope(v, found=found):
-            before, at, after = direction(old, np.array([v - step / 100, v, v + step / 100]))
-            return float((after - before) @ (at - found))
-
-        near = grid[int(np.argmin(np.linalg.norm(at_grid - found, axis=1)))]
-        v = brentq(slope, near - step, near + step, xtol=1e-15)
-        worst = max(worst, float(np.linalg.norm(direction(old, np.array([v]))[0] - found)))
-    return worst
 
 
 @pytest.mark.parametrize("name", list(CIRCLES))
