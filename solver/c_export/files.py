@@ -31,7 +31,7 @@ from semispline.solver.io import (
     read_problem,
     read_surfaces,
     split_spec,
-    trim_warnings,
+    face_warnings,
     write_texts,
 )
 from semispline.solver.judge import Base
@@ -74,7 +74,7 @@ def write_c(folder: str | Path, problem_file: str | Path) -> tuple[list[Path], t
     surfaces = [next(read).surface if isinstance(base, str) else base for base in bases]
     edges: list[Any] = [stored.edge_a, stored.edge_b]
     named = [edge for base, edge in zip(bases, edges, strict=True) if isinstance(base, str)]
-    warnings = trim_warnings(*zip(specs, named, loaded, strict=True), strict=stored.options.strict)
+    warnings = face_warnings(*zip(specs, named, loaded, strict=True), strict=stored.options.strict)
     a, b = (Base(surface, edge) for surface, edge in zip(surfaces, edges, strict=True))
     texts = c_files(state_problem(a, b, stored.options.decided("generated C")))
     if Path(folder).is_dir():

@@ -51,7 +51,10 @@ class Face(Protocol):
         """
 
     def surface(self) -> Surface:
-        """Return the exact, clamped (rational) B-spline surface, without trimming."""
+        """Return the clamped (rational) B-spline surface, without trimming: exact, or as near as `deviation` says."""
+
+    def deviation(self) -> float | None:
+        """Return how far `surface` was found from what the file holds, in its unit; None where it is exact."""
 
 
 @dataclass(frozen=True)
@@ -85,12 +88,15 @@ class SurfaceEntry:
         N of `PATH#N`.
     kind : str
     degree_u, degree_v : int or None
-        None where the face has no exact B-spline form.
+        None where the face cannot be read out.
     n_u, n_v : int or None
         Control points; n_v is None for a semi-structured surface whose curves differ.
     rational, closed_u, closed_v : bool or None
     trimmed : bool or None
         None where the file does not tell.
+    deviation : float or None
+        Where the face has no exact B-spline form: how far the one that is read out was found from it, in the unit of
+        the file.
     problem : str or None
         Why the face cannot be read out.
     """
@@ -105,6 +111,7 @@ class SurfaceEntry:
     trimmed: bool | None = None
     closed_u: bool | None = None
     closed_v: bool | None = None
+    deviation: float | None = None
     problem: str | None = None
 
 
@@ -139,6 +146,7 @@ def describe(number: int, face: Face) -> SurfaceEntry:
         trimmed=face.trimmed(),
         closed_u=closed_u,
         closed_v=closed_v,
+        deviation=face.deviation(),
     )
 
 
@@ -224,13 +232,19 @@ def surface_from_net(
 
 
 def _snapped_ends(knots: FloatArray, degree: int) -> FloatArray:
-    """Give knots within 1e-12 of the domain from one of its ends the value of that end."""
+    """Give knots within 1e-12 of the domain from one of its ends the value of that end.
+
+    The outermost knots act nowhere in the domain: they follow their neighbours. So the net of a kernel's surface that
+    was periodic stays as it is.
+    """
     if len(knots) < 2 * degree + 2:
         return knots
     start, end = knots[degree], knots[-degree - 1]
     tolerance = MERGE_TOLERANCE * (end - start)
     near_start, near_end = np.abs(knots - start) <= tolerance, np.abs(knots - end) <= tolerance
-    return np.where(near_start, start, np.where(near_end, end, knots))
+    snapped = np.where(near_start, start, np.where(near_end, end, knots))
+    snapped[[0, -1]] = snapped[[1, -2]]
+    return snapped
 
 
 def _is_clamped(knots: FloatArray, degree: int) -> bool:

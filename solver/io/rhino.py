@@ -73,6 +73,10 @@ class RhinoFace:
         """Return the edges of the face, as `Face` says."""
         return self._edges if self.trimmed() else None
 
+    def deviation(self) -> None:
+        """Return None: openNURBS approximates nothing."""
+        return None
+
     @cached_property
     def _edges(self) -> FaceBoundary:
         size = float(np.ptp(self.surface().control_points.reshape(-1, 3), axis=0).max())
