@@ -39,6 +39,7 @@ _STEP_UNITS = {
     "mil": "mil",
 }
 
+
 @dataclass(frozen=True, eq=False)
 class OccFace:
     """A face of a transferred shape; `trimmed`, `surface` and `deviation` as `Face` says."""

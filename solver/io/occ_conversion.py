@@ -29,7 +29,8 @@ KINDS = {
     "Geom_SurfaceOfLinearExtrusion": "extrusion",
     "Geom_OffsetSurface": "offset",
 }
-_SWEPT = ("Geom_SurfaceOfRevolution", "Geom_SurfaceOfLinearExtrusion")
+_EXTRUSION, _REVOLUTION = "Geom_SurfaceOfLinearExtrusion", "Geom_SurfaceOfRevolution"
+_SWEPT = (_EXTRUSION, _REVOLUTION)
 _EXACT_CURVES = ("BSplineCurve", "BezierCurve", "Line", "Circle", "Ellipse", "Parabola", "Hyperbola")
 # These turn about their axis as u goes.
 _TURNED = (
@@ -37,7 +38,7 @@ _TURNED = (
     "Geom_ConicalSurface",
     "Geom_SphericalSurface",
     "Geom_ToroidalSurface",
-    "Geom_SurfaceOfRevolution",
+    _REVOLUTION,
 )
 # Files write angles with some 10 to 16 digits: ends of a range that are this near, in fractions of a turn of 2 pi or
 # of the range, are meant to be the same.
@@ -50,8 +51,8 @@ _EXACT = 1e-9
 # what is further off than the last is another surface.
 _WANTED, _LARGEST = 1e-7, 1e-4
 _MOST_SPANS, _DEGREE = 200, 14
-# Places along each parameter at which an approximation is measured, at most.
-_PLACES = 60
+# Places along each parameter at which an approximation is measured, at most; an error of a high degree has many waves.
+_PLACES = 200
 Ends = tuple[float, float, float, float]
 
 
@@ -140,6 +141,9 @@ def converted(geometry: Any, ends: Ends) -> Conversion:
         return Conversion(_read_out(_as_spline(geometry)), None)
     if max(map(abs, ends)) >= _INFINITE:
         raise FileError(f"the {kind_of(geometry)} has no end; trim the face where it was drawn")
+    if name == "Geom_OffsetSurface" and geometry.Surface() is not None:
+        # The kernel evaluates it as its simple form, which is mirrored.
+        raise FileError("an offset by more than its radius, which Open CASCADE turns inside out; draw what it became")
     if _is_exact(geometry):
         surface = _exact(geometry, ends)
         away = _distance_at_knots(surface, geometry)
@@ -157,18 +161,34 @@ def _exact(geometry: Any, ends: Ends) -> BSplineSurface:
     first_u, last_u, first_v, last_v = geometry.Bounds()
     full_u = bool(geometry.IsUPeriodic()) and high_u - low_u >= last_u - first_u
     full_v = bool(geometry.IsVPeriodic()) and high_v - low_v >= last_v - first_v
-    turned, shift = geometry, 0.0
-    if full_u and type(geometry).__name__ in _TURNED:
+    name = type(geometry).__name__
+    if name in _SWEPT and ((full_u and low_u != first_u) if name == _EXTRUSION else (full_v and low_v != first_v)):
+        geometry = _begun_at(geometry, low_u if name == _EXTRUSION else low_v)
+        first_u, last_u, first_v, last_v = geometry.Bounds()
+        low_v = first_v if full_v else low_v
+    shift = 0.0
+    if full_u and name in _TURNED and low_u != first_u:
         # From 0 on the kernel makes three equal arcs of a circle, and from elsewhere four unequal ones.
         shift = low_u - first_u
-        turned = geometry.Rotated(geometry.Axis(), shift) if shift else geometry
+        geometry = geometry.Rotated(geometry.Axis(), shift)
     # A full turn from the start of the period on is not a trimming: the kernel refuses to cut a period out of itself.
-    spline = _as_spline(_trimmed(turned, ends, not full_u, not (full_v and low_v == first_v)))
+    spline = _as_spline(_trimmed(geometry, ends, not full_u, not (full_v and low_v == first_v)))
     surface = _read_out(spline, shift)
     widths = [x[1] - x[0] for x in surface.domain]
     if not np.allclose(widths, [high_u - low_u, high_v - low_v], rtol=_SNAP, atol=0):
         raise FileError(f"Open CASCADE makes a B-spline of another range of the {kind_of(geometry)}; export it anew")
     return surface
+
+
+def _begun_at(geometry: Any, start: float) -> Any:
+    """Return a surface swept from a closed curve that begins elsewhere: the kernel leaves its seam where it was."""
+    from OCP.Geom import Geom_SurfaceOfLinearExtrusion, Geom_SurfaceOfRevolution, Geom_TrimmedCurve
+
+    curve = geometry.BasisCurve()
+    curve = Geom_TrimmedCurve(curve, start, start + (curve.LastParameter() - curve.FirstParameter()))
+    if type(geometry).__name__ == _EXTRUSION:
+        return Geom_SurfaceOfLinearExtrusion(curve, geometry.Direction())
+    return Geom_SurfaceOfRevolution(curve, geometry.Axis())
 
 
 def _trimmed(geometry: Any, ends: Ends, cut_u: bool, cut_v: bool) -> Any:
@@ -272,29 +292,31 @@ def _deviation(surface: BSplineSurface, geometry: Any, ends: Ends) -> float:
     """
     from OCP.gp import gp_Pnt, gp_Vec
 
-    u, v = (_places(x) for x in surface.breakpoints)
+    degrees = surface.degree_u, surface.degree_v
+    u, v = (_places(x, degree) for x, degree in zip(surface.breakpoints, degrees, strict=True))
     grid = surface.evaluate_grid(u, v)
+    away = grid - np.array([[_coordinates(geometry.Value(a, b)) for b in v.tolist()] for a in u.tolist()])
+    at_same = np.linalg.norm(away, axis=-1)
     point, along_u, along_v = gp_Pnt(), gp_Vec(), gp_Vec()
     worst = 0.0
-    for i, j in np.ndindex(grid.shape[:2]):
-        at, nearest = np.array([u[i], v[j]]), np.inf
+    for i, j in zip(*np.unravel_index(np.argsort(-at_same, axis=None), at_same.shape), strict=True):
+        nearest = float(at_same[i, j])
+        if nearest <= worst:
+            break
+        at = np.array([u[i], v[j]])
         for _ in range(4):
             geometry.D1(float(at[0]), float(at[1]), point, along_u, along_v)
             offset = grid[i, j] - _coordinates(point)
             nearest = min(nearest, float(np.linalg.norm(offset)))
-            if nearest <= worst:
-                break
             slopes = np.stack([_coordinates(along_u), _coordinates(along_v)], axis=1)
             at = np.clip(at + np.linalg.lstsq(slopes, offset)[0], ends[::2], ends[1::2])
         worst = max(worst, nearest)
     return worst
 
 
-def _places(breaks: FloatArray) -> FloatArray:
-    each = max(2, _PLACES // (len(breaks) - 1))
-    inner = (np.arange(each) + 0.5) / each
-    found = np.append((breaks[:-1, None] + np.diff(breaks)[:, None] * inner).ravel(), breaks)
-    return np.sort(found)[:: max(1, len(found) // (2 * _PLACES))]
+def _places(breaks: FloatArray, degree: int) -> FloatArray:
+    each = max(2, min(2 * degree, _PLACES // (len(breaks) - 1)))
+    return np.append((breaks[:-1, None] + np.diff(breaks)[:, None] * (np.arange(each) / each)).ravel(), breaks[-1])
 
 
 def _size(surface: BSplineSurface) -> float:
