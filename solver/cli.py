@@ -58,9 +58,9 @@ def blend_command(
     from semispline.solver.io import (
         atomic_path,
         check_surface_output,
+        face_warnings,
         read_surfaces,
         to_text,
-        face_warnings,
         write_surface,
     )
 
@@ -100,7 +100,7 @@ def check_command(
     ] = None,
 ) -> None:
     """Measure how an edge of A and an edge of B meet: gap, angle, jumps of curvature and its rates, and where."""
-    from semispline.solver.io import read_surfaces, face_warnings
+    from semispline.solver.io import face_warnings, read_surfaces
     from semispline.solver.judge import Base, measure_contact
 
     _check_edges(edge_a, edge_b)

@@ -51,6 +51,7 @@ class _CurveRecord(_Record):
     degree_v: _Degree | None = None
     knots_v: list[_Number]
     control_points: _Points
+    weights: list[_Number] | None = None
 
 
 class _SemiStructuredRecord(_Record):
@@ -191,7 +192,8 @@ def surface_record(surface: Surface) -> dict[str, Any]:
         for curve in surface.control_curves:
             own = {} if curve.degree == surface.degree_v else {"degree_v": curve.degree}
             points = {"knots_v": curve.knots.tolist(), "control_points": curve.control_points.tolist()}
-            curves.append(own | points)
+            weights = {} if curve.weights is None else {"weights": curve.weights.tolist()}
+            curves.append(own | points | weights)
         return {
             "format": FORMAT,
             "kind": "semistructured_surface",
@@ -256,7 +258,9 @@ def surface_from_record(record: Any, where: str = "surface") -> Surface:
             raise FileError(
                 f"control_curves[{i}].degree_v: found {degree}, expected at most that of the surface, {semi.degree_v}"
             )
-        return BSplineCurve(degree, _list(found.knots_v), _list(found.control_points), name=f"control_curves[{i}]")
+        weights = None if found.weights is None else _list(found.weights)
+        points = _list(found.control_points)
+        return BSplineCurve(degree, _list(found.knots_v), points, weights, name=f"control_curves[{i}]")
 
     return _made(
         where,

@@ -74,8 +74,7 @@ class RhinoFace:
         return self._edges if self.trimmed() else None
 
     def deviation(self) -> None:
-        """Return None: openNURBS approximates nothing."""
-        return None
+        """Say nothing: openNURBS approximates nothing."""
 
     @cached_property
     def _edges(self) -> FaceBoundary:

@@ -176,7 +176,7 @@ def test_unclamped_and_periodic_knots_are_clamped_exactly():
         (changed("control_curves", 1, "knots_v", 4, to=-1.0), ["control_curves[1].knots[4]", "non-decreasing"]),
         (changed("control_curves", 1, "knots_v", 8, to=2.0), ["control_curves[1].knots[8]"]),
         (changed("control_curves", 2, "degree_v", to=4), ["control_curves[2].degree_v", "4", "3"]),
-        (changed("control_curves", 2, "weights", to=[1]), ["control_curves[2].weights", "no such key"]),
+        (changed("control_curves", 2, "weights", to=[1]), ["control_curves[2].weights", "(1,)", "(4,)"]),
         (
             changed("control_curves", 0, "control_points", 1, to=[0, 0, 0, 0]),
             ["control_curves[0].control_points[1]", "4"],
