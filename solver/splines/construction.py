@@ -153,8 +153,9 @@ def extrude(curve: BSplineCurve, vector: ArrayLike, degree_u: int = 1) -> BSplin
     if not by.any():
         raise ControlPointError(f"vector: found {by.tolist()}, expected one that is not zero")
     net = np.stack([curve.control_points, curve.control_points + by])
+    weights = _rows_of_weights(curve, 2)
     knots_u = clamped([], 1, 0.0, 1.0)
-    return elevate_degree(BSplineSurface(1, curve.degree, knots_u, curve.knots, net), degree_u)
+    return elevate_degree(BSplineSurface(1, curve.degree, knots_u, curve.knots, net, weights), degree_u)
 
 
 @dataclass(frozen=True, eq=False)
@@ -211,7 +212,7 @@ def revolve(
         weight = cos(half) if i % 2 else 1.0
         at = 0.0 if i * half == 2 * pi else i * half
         rows.append(on_axis + (cos(at) * radial + sin(at) * across) / weight)
-        weights.append(np.full(len(radial), weight))
+        weights.append(weight * (np.ones(len(radial)) if curve.weights is None else curve.weights))
     joints = np.repeat(np.arange(1, arcs) / arcs, 2)
     return BSplineSurface(2, curve.degree, clamped(joints, 2, 0.0, 1.0), curve.knots, np.stack(rows), np.stack(weights))
 
@@ -223,9 +224,10 @@ def revolve_polynomial(
     angle: float = 360.0,
     tolerance: float = 1e-6,
 ) -> Approximation:
-    """Return a polynomial surface of revolution, degree 3 and C2 in u, with the bound on its error.
+    """Return a surface of revolution that is polynomial in u, of degree 3 and C2, with the bound on its error.
 
-    v runs along the curve; u in [0, 1] is proportional to the angle. Cosine and sine are replaced by cubic splines
+    v runs along the curve, and the surface is rational in v where the curve is; u in [0, 1] is proportional to the
+    angle. Cosine and sine are replaced by cubic splines
     over n equal spans that interpolate them (with the end derivatives of an arc, periodic for a whole turn); those are
     off by at most 5/384 h^4, h = angle / n in radians, and the surface by that times the largest radius of a control
     point. Rounding is added to the stated error: 32 eps times the largest coordinate.
@@ -279,12 +281,17 @@ def revolve_polynomial(
     if angle == 360.0:
         factors[-1] = factors[0]
     net = on_axis + factors[:, 0, None, None] * radial + factors[:, 1, None, None] * across
-    surface = BSplineSurface(3, curve.degree, knots_u, curve.knots, net)
+    surface = BSplineSurface(3, curve.degree, knots_u, curve.knots, net, _rows_of_weights(curve, len(net)))
     # Some roundings each for the foot on the axis, the turned vector, the spline's coefficients and their sum.
     largest = max(
         float(np.abs(points).max()) for points in (curve.control_points, net, _vector(axis_point, "axis_point"))
     )
     return Approximation(surface, radius * 5 / 384 * (turn / spans) ** 4 + 32 * float(np.finfo(float).eps) * largest)
+
+
+def _rows_of_weights(curve: BSplineCurve, count: int) -> FloatArray | None:
+    """Return the weights of so many rows that all have those of the curve; None where it has none."""
+    return None if curve.weights is None else np.tile(curve.weights, (count, 1))
 
 
 def _vector(values: ArrayLike, name: str) -> FloatArray:

@@ -20,6 +20,7 @@ from semispline.solver.arrays import FloatArray, SparseMatrix, finite_array, rea
 from semispline.solver.errors import ControlPointError, InputError, KnotError
 from semispline.solver.scalars import real_number
 from semispline.solver.splines.curves import combined_curves, elevate_curve, insert_named, restrict_curve, reverse_curve
+from semispline.solver.splines.evaluation import checked_weights, euclidean, homogeneous_points
 from semispline.solver.splines.knots import affine_knots, reversed_knots
 from semispline.solver.splines.refinement import (
     clamp_knots,
@@ -127,7 +128,7 @@ def transform(surface: S, matrix: ArrayLike, translation: ArrayLike = (0.0, 0.0,
 
     Parameters
     ----------
-    surface : BSplineSurface (rational too) or SemiStructuredSurface
+    surface : BSplineSurface or SemiStructuredSurface, rational too
     matrix : array_like, shape (3, 3) or (4, 4)
         A, or [[A, t], [0, 0, 0, 1]].
     translation : array_like, shape (3,)
@@ -320,10 +321,7 @@ def from_homogeneous(
     degree_u: int, degree_v: int, knots_u: FloatArray, knots_v: FloatArray, net: FloatArray
 ) -> BSplineSurface:
     """Return the surface with the control net (x, y, z) or (w x, w y, w z, w), shape (n_u, n_v, 3 or 4)."""
-    if net.shape[2] == 3:
-        return BSplineSurface(degree_u, degree_v, knots_u, knots_v, net)
-    weights = net[..., 3]
-    return BSplineSurface(degree_u, degree_v, knots_u, knots_v, net[..., :3] / weights[..., None], weights)
+    return BSplineSurface(degree_u, degree_v, knots_u, knots_v, *euclidean(net))
 
 
 def clamped_surface(
@@ -354,10 +352,7 @@ def clamped_surface(
     """
     net = finite_array(control_points, 3, "control_points", ControlPointError)
     if weights is not None:
-        w = finite_array(weights, 2, "weights", ControlPointError)
-        if w.shape != net.shape[:2]:
-            raise ControlPointError(f"weights: shape {w.shape}, expected {net.shape[:2]}")
-        net = np.concatenate([net * w[..., None], w[..., None]], axis=2)
+        net = homogeneous_points(net, checked_weights(weights, net, "weights"))
     new_u, net = clamp_knots(degree_u, knots_u, net)
     new_v, turned = clamp_knots(degree_v, knots_v, net.transpose(1, 0, 2))
     return from_homogeneous(degree_u, degree_v, new_u, new_v, turned.transpose(1, 0, 2))
