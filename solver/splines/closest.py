@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from semispline.solver.arrays import FloatArray, finite_array, require
 from semispline.solver.errors import ControlPointError
-from semispline.solver.splines.evaluation import quotient
+from semispline.solver.splines.evaluation import euclidean, quotient
 from semispline.solver.splines.knots import breakpoints, clamped
 from semispline.solver.splines.refinement import combined, refinement_matrix
 from semispline.solver.splines.surfaces import BSplineCurve, BSplineSurface, SemiStructuredSurface, Surface
@@ -91,7 +91,7 @@ def closest_point(shape: BSplineCurve | Surface, point: ArrayLike) -> ClosestPoi
         raise ControlPointError(f"point: {len(target)} coordinate(s), expected 3, or 2 for a point of the plane z = 0")
     target = np.append(target, np.zeros(3 - len(target)))
     patches = _bezier_patches(shape)
-    tie = TIE * float(np.linalg.norm(np.ptp(_euclidean(patches.nets).reshape(-1, 3), axis=0)))
+    tie = TIE * float(np.linalg.norm(np.ptp(euclidean(patches.nets)[0].reshape(-1, 3), axis=0)))
     patch, at = _starts(patches, target, tie)
     at, distances, points = _descended(patches.nets[patch], target, at)
     # 1 gives the end itself.
@@ -142,10 +142,6 @@ def _bezier_patches(shape: BSplineCurve | Surface) -> _Patches:
     return _Patches(np.stack(nets), np.array(low), np.array(high))
 
 
-def _euclidean(points: FloatArray) -> FloatArray:
-    return np.asarray(points[..., :3] / points[..., 3:]) if points.shape[-1] == 4 else points
-
-
 def _starts(patches: _Patches, target: FloatArray, tie: float) -> tuple[IndexArray, FloatArray]:
     """Return the patch and the place on it, in [0, 1]^d, of the lowest parts that may hold the nearest point."""
     d = patches.low.shape[1]
@@ -170,8 +166,9 @@ def _starts(patches: _Patches, target: FloatArray, tie: float) -> tuple[IndexArr
 
 def _bounds(nets: FloatArray, target: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return for each patch a distance that none of its points is nearer than, and that of its nearest corner."""
-    points = (_euclidean(nets) - target).reshape(len(nets), -1, 3)
-    corners = _euclidean(nets[(slice(None), *np.ix_(*([0, -1],) * (nets.ndim - 2)))]) - target
+    points = (euclidean(nets)[0] - target).reshape(len(nets), -1, 3)
+    ends = nets[(slice(None), *np.ix_(*([0, -1],) * (nets.ndim - 2)))]
+    corners = euclidean(ends)[0] - target
     sight = corners.reshape(len(nets), -1, 3).mean(axis=1)
     length = np.linalg.norm(sight, axis=1)
     unit = sight / np.where(length > 0, length, 1.0)[:, None]
@@ -230,8 +227,9 @@ def _jet(nets: FloatArray, at: FloatArray, order: int) -> tuple[FloatArray, ...]
 
 def _bezier_derivative(nets: FloatArray, at: FloatArray, order: int) -> FloatArray:
     """Return derivatives along axis 1 at one parameter for each patch, that axis taken away."""
-    for s in range(order):
-        nets = np.diff(nets, axis=1) * max(nets.shape[1] - 1, 0) if nets.shape[1] > 1 else np.zeros_like(nets)
+    for _ in range(order):
+        degree = nets.shape[1] - 1
+        nets = np.diff(nets, axis=1) * degree if degree else np.zeros_like(nets)
     p = nets.shape[1] - 1
     basis = np.stack([comb(p, i) * at**i * (1 - at) ** (p - i) for i in range(p + 1)], axis=1)
     return np.asarray(np.einsum("ki,ki...->k...", basis, nets))

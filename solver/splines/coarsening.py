@@ -69,7 +69,9 @@ def without_knots(degree: int, knots: FloatArray, less: FloatArray, name: str) -
         places = np.flatnonzero(left == at)
         if not len(places) or at in (knots[0], knots[-1]):
             known = np.unique(inner_knots(knots, degree))
-            raise KnotError(f"{name}[{i}]: found {value}, expected an inner knot, no more often than it is there: {known}")
+            raise KnotError(
+                f"{name}[{i}]: found {value}, expected an inner knot, no more often than it is there: {known}"
+            )
         left = np.delete(left, places[0])
     return left
 

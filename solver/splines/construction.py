@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from math import ceil, cos, pi, sin
+from typing import Generic, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -16,6 +17,8 @@ from semispline.solver.splines.knots import clamped, uniform_knots
 from semispline.solver.splines.operations import elevate_degree
 from semispline.solver.splines.refinement import clamp_knots
 from semispline.solver.splines.surfaces import BSplineCurve, BSplineSurface, SemiStructuredSurface
+
+S = TypeVar("S", BSplineSurface, SemiStructuredSurface)
 
 
 def plane(
@@ -159,17 +162,17 @@ def extrude(curve: BSplineCurve, vector: ArrayLike, degree_u: int = 1) -> BSplin
 
 
 @dataclass(frozen=True, eq=False)
-class Approximation:
+class Approximation(Generic[S]):
     """A surface that stands for another.
 
     Attributes
     ----------
-    surface : BSplineSurface
+    surface : BSplineSurface or SemiStructuredSurface
     error : float
         No point is farther than this from the point of the exact surface with the same parameters; in model units.
     """
 
-    surface: BSplineSurface
+    surface: S
     error: float
 
 
@@ -223,7 +226,7 @@ def revolve_polynomial(
     axis_direction: ArrayLike,
     angle: float = 360.0,
     tolerance: float = 1e-6,
-) -> Approximation:
+) -> Approximation[BSplineSurface]:
     """Return a surface of revolution that is polynomial in u, of degree 3 and C2, with the bound on its error.
 
     v runs along the curve, and the surface is rational in v where the curve is; u in [0, 1] is proportional to the

@@ -10,7 +10,7 @@ from semispline.solver.arrays import FloatArray, require
 from semispline.solver.errors import InputError, OptionError
 from semispline.solver.scalars import real_number
 from semispline.solver.splines.curves import combined_curves
-from semispline.solver.splines.evaluation import checked_parameters
+from semispline.solver.splines.evaluation import checked_parameters, euclidean, same_width
 from semispline.solver.splines.knots import basis_matrix
 from semispline.solver.splines.refinement import combined
 from semispline.solver.splines.surfaces import BSplineCurve, BSplineSurface, SemiStructuredSurface, Surface
@@ -55,16 +55,15 @@ def iso_curve(surface: Surface, u: float | None = None, v: float | None = None) 
         matrix.eliminate_zeros()
         if isinstance(surface, SemiStructuredSurface):
             return combined_curves(surface.control_curves, matrix)[0]
-        return curve_from_homogeneous(surface.degree_v, surface.knots_v, combined(matrix, surface.homogeneous)[0])
+        points = euclidean(combined(matrix, surface.homogeneous)[0])
+        return BSplineCurve(surface.degree_v, surface.knots_v, *points)
     value = real_number(v, "v", InputError)
     if isinstance(surface, SemiStructuredSurface):
-        rows = [_homogeneous_point(curve, value) for curve in surface.control_curves]
-        width = max(len(row) for row in rows)
-        points = np.stack([np.append(row, np.ones(width - len(row))) for row in rows])
+        net = np.stack(same_width(*(_homogeneous_point(curve, value) for curve in surface.control_curves)))
     else:
         matrix = basis_matrix(surface.degree_v, surface.knots_v, checked_parameters([value], surface.knots_v, "v"))
-        points = combined(matrix, surface.homogeneous.transpose(1, 0, 2))[0]
-    return curve_from_homogeneous(surface.degree_u, surface.knots_u, points)
+        net = combined(matrix, surface.homogeneous.transpose(1, 0, 2))[0]
+    return BSplineCurve(surface.degree_u, surface.knots_u, *euclidean(net))
 
 
 def boundary_curve(surface: Surface, edge: Literal["u0", "u1", "v0", "v1"]) -> BSplineCurve:
@@ -100,10 +99,3 @@ def boundary_curve(surface: Surface, edge: Literal["u0", "u1", "v0", "v1"]) -> B
 def _homogeneous_point(curve: BSplineCurve, v: float) -> FloatArray:
     at = checked_parameters([v], curve.knots, "v")
     return combined(basis_matrix(curve.degree, curve.knots, at), curve.homogeneous)[0]
-
-
-def curve_from_homogeneous(degree: int, knots: FloatArray, points: FloatArray) -> BSplineCurve:
-    """Return the curve with the control points (x, y, z) or (w x, w y, w z, w), shape (n, 3 or 4)."""
-    if points.shape[1] == 3:
-        return BSplineCurve(degree, knots, points)
-    return BSplineCurve(degree, knots, points[:, :3] / points[:, 3:], points[:, 3])

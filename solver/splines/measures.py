@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from itertools import product
+from itertools import pairwise, product
 
 import numpy as np
 
@@ -131,7 +131,7 @@ def _integral(
 
 
 def _boxes(breaks: tuple[FloatArray, ...]) -> list[tuple[FloatArray, FloatArray]]:
-    spans = [list(zip(b[:-1], b[1:], strict=True)) for b in breaks]
+    spans = [list(pairwise(b)) for b in breaks]
     return [(np.array([s[0] for s in box]), np.array([s[1] for s in box])) for box in product(*spans)]
 
 

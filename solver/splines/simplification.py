@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -33,6 +34,9 @@ from semispline.solver.splines.surfaces import BSplineCurve, BSplineSurface, Sem
 
 # Roundings of the largest coordinate that are added to a bound.
 ROUNDING = 16 * float(np.finfo(float).eps)
+
+
+S = TypeVar("S", BSplineSurface, SemiStructuredSurface)
 
 
 @dataclass(frozen=True, eq=False)
@@ -118,7 +122,7 @@ def reduce_curve_degree(curve: BSplineCurve, degree: int) -> CurveApproximation:
     return CurveApproximation(simple, _deviation(_curve_net(curve), _curve_net(simple)))
 
 
-def remove_knots(surface: Surface, knots_u: ArrayLike = (), knots_v: ArrayLike = ()) -> Approximation:
+def remove_knots(surface: S, knots_u: ArrayLike = (), knots_v: ArrayLike = ()) -> Approximation[S]:
     """Return the surface without some of its inner knots, as `remove_curve_knots` does, row by row.
 
     In a semi-structured surface `knots_v` leave those curves that have them; `knots_u` combine rows, whose knots
@@ -154,7 +158,7 @@ def remove_knots(surface: Surface, knots_u: ArrayLike = (), knots_v: ArrayLike =
     return Approximation(simple, _deviation(_surface_net(surface), _surface_net(simple)))
 
 
-def reduce_degree(surface: Surface, degree_u: int | None = None, degree_v: int | None = None) -> Approximation:
+def reduce_degree(surface: S, degree_u: int | None = None, degree_v: int | None = None) -> Approximation[S]:
     """Return the surface with lower degrees, as `reduce_curve_degree` does, row by row; None keeps one.
 
     In a semi-structured surface `degree_v` lowers the curves that are above it; `degree_u` combines rows, whose knots
@@ -262,10 +266,7 @@ def _surface_net(surface: Surface) -> _Net:
 
 def _deviation(one: _Net, other: _Net) -> float:
     """Bound the distance between two splines over one domain, rounding and all."""
-    spaces = [
-        _common_space(*form)
-        for form in zip(one.degrees, one.knots, other.degrees, other.knots, strict=True)
-    ]
+    spaces = [_common_space(*form) for form in zip(one.degrees, one.knots, other.degrees, other.knots, strict=True)]
     nets = []
     for net in (one, other):
         points = net.points
@@ -276,8 +277,7 @@ def _deviation(one: _Net, other: _Net) -> float:
             points = np.moveaxis(combined(matrix, np.moveaxis(points, axis, 0)), 0, axis)
         nets.append(points)
     largest = max(float(np.abs(euclidean(net.points)[0]).max()) for net in (one, other))
-    degrees, vectors = zip(*spaces, strict=True)
-    return deviation_bound(degrees, vectors, *nets) + ROUNDING * largest
+    return deviation_bound([degree for degree, _ in spaces], *nets) + ROUNDING * largest
 
 
 def _common_space(p: int, knots: FloatArray, q: int, others: FloatArray) -> tuple[int, FloatArray]:
