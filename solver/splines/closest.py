@@ -122,6 +122,8 @@ class _Patches:
 
 
 def _bezier_patches(shape: BSplineCurve | Surface) -> _Patches:
+    degrees: tuple[int, ...]
+    vectors: tuple[FloatArray, ...]
     if isinstance(shape, BSplineCurve):
         degrees, vectors, net = (shape.degree,), (shape.knots,), shape.homogeneous
     else:
@@ -167,7 +169,9 @@ def _starts(patches: _Patches, target: FloatArray, tie: float) -> tuple[IndexArr
 def _bounds(nets: FloatArray, target: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return for each patch a distance that none of its points is nearer than, and that of its nearest corner."""
     points = (euclidean(nets)[0] - target).reshape(len(nets), -1, 3)
-    ends = nets[(slice(None), *np.ix_(*([0, -1],) * (nets.ndim - 2)))]
+    ends = nets
+    for axis in range(1, nets.ndim - 1):
+        ends = np.take(ends, [0, -1], axis=axis)
     corners = euclidean(ends)[0] - target
     sight = corners.reshape(len(nets), -1, 3).mean(axis=1)
     length = np.linalg.norm(sight, axis=1)

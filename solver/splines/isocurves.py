@@ -98,4 +98,4 @@ def boundary_curve(surface: Surface, edge: Literal["u0", "u1", "v0", "v1"]) -> B
 
 def _homogeneous_point(curve: BSplineCurve, v: float) -> FloatArray:
     at = checked_parameters([v], curve.knots, "v")
-    return combined(basis_matrix(curve.degree, curve.knots, at), curve.homogeneous)[0]
+    return np.asarray(combined(basis_matrix(curve.degree, curve.knots, at), curve.homogeneous)[0])

@@ -100,7 +100,7 @@ def surface_area(surface: Surface, tolerance: float = 1e-12) -> Measure:
     require(surface, "surface", BSplineSurface, SemiStructuredSurface)
 
     def stretch(at: FloatArray) -> FloatArray:
-        along_u, along_v = (surface.evaluate(*at.T, du=du, dv=dv) for du, dv in ((1, 0), (0, 1)))
+        along_u, along_v = (surface.evaluate(at[:, 0], at[:, 1], du, dv) for du, dv in ((1, 0), (0, 1)))
         return np.asarray(np.linalg.norm(np.cross(along_u, along_v), axis=1))
 
     return _integral(stretch, surface.breakpoints, tolerance)

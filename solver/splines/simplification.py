@@ -150,11 +150,12 @@ def remove_knots(surface: S, knots_u: ArrayLike = (), knots_v: ArrayLike = ()) -
         if len(less_u):
             fewer = without_knots(surface.degree_u, surface.knots_u, less_u, "knots_u")
             simple = with_u(simple, surface.degree_u, fewer, removal_matrix(surface.degree_u, surface.knots_u, fewer))
-        if len(less_v) and isinstance(simple, SemiStructuredSurface):
-            simple = _without_from_rows(simple, less_v)
-        elif len(less_v):
-            fewer = without_knots(simple.degree_v, simple.knots_v, less_v, "knots_v")
-            simple = with_v(simple, simple.degree_v, fewer, removal_matrix(simple.degree_v, simple.knots_v, fewer))
+        if len(less_v):
+            if isinstance(simple, SemiStructuredSurface):
+                simple = _without_from_rows(simple, less_v)
+            else:
+                fewer = without_knots(simple.degree_v, simple.knots_v, less_v, "knots_v")
+                simple = with_v(simple, simple.degree_v, fewer, removal_matrix(simple.degree_v, simple.knots_v, fewer))
     return Approximation(simple, _deviation(_surface_net(surface), _surface_net(simple)))
 
 
