@@ -13,7 +13,7 @@ from math import comb
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from semispline.solver.arrays import FloatArray, finite_array, require
+from semispline.solver.arrays import FloatArray, require, space_points
 from semispline.solver.errors import ControlPointError
 from semispline.solver.splines.evaluation import euclidean, quotient
 from semispline.solver.splines.knots import breakpoints, clamped
@@ -86,10 +86,7 @@ def closest_point(shape: BSplineCurve | Surface, point: ArrayLike) -> ClosestPoi
     (array([[0.25, 1.  ]]), 2.0)
     """
     require(shape, "shape", BSplineCurve, BSplineSurface, SemiStructuredSurface)
-    target = finite_array(point, 1, "point", ControlPointError)
-    if target.shape not in ((2,), (3,)):
-        raise ControlPointError(f"point: {len(target)} coordinate(s), expected 3, or 2 for a point of the plane z = 0")
-    target = np.append(target, np.zeros(3 - len(target)))
+    target = space_points(point, 1, "point", ControlPointError)
     patches = _bezier_patches(shape)
     tie = TIE * float(np.linalg.norm(np.ptp(euclidean(patches.nets)[0].reshape(-1, 3), axis=0)))
     patch, at = _starts(patches, target, tie)

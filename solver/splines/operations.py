@@ -16,7 +16,7 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from semispline.solver.arrays import FloatArray, SparseMatrix, finite_array, real_array, require
+from semispline.solver.arrays import FloatArray, SparseMatrix, finite_array, real_array, require, space_points
 from semispline.solver.errors import ControlPointError, InputError, KnotError
 from semispline.solver.scalars import real_number
 from semispline.solver.splines.curves import combined_curves, elevate_curve, insert_named, restrict_curve, reverse_curve
@@ -338,8 +338,8 @@ def clamped_surface(
     degree_u, degree_v : int
     knots_u, knots_v : array_like, shapes (n_u + degree_u + 1,), (n_v + degree_v + 1,)
         Non-decreasing; the domain is [t_p, t_n]. What `clamp_knots` says of periodic splines holds here.
-    control_points : array_like, shape (n_u, n_v, 3)
-        Euclidean.
+    control_points : array_like, shape (n_u, n_v, 3) or (n_u, n_v, 2)
+        Euclidean; with two coordinates, in the plane z = 0.
     weights : array_like, shape (n_u, n_v), optional
 
     Examples
@@ -349,7 +349,7 @@ def clamped_surface(
     >>> surface.knots_v, surface.control_points[0, :, 1]
     (array([2., 2., 2., 3., 3., 3.]), array([0.5, 1. , 1.5]))
     """
-    net = finite_array(control_points, 3, "control_points", ControlPointError)
+    net = space_points(control_points, 3, "control_points", ControlPointError)
     if weights is not None:
         net = homogeneous_points(net, checked_weights(weights, net, "weights"))
     new_u, net = clamp_knots(degree_u, knots_u, net)

@@ -18,7 +18,7 @@ from semispline.solver.scalars import real_number
 from semispline.solver.splines.coarsening import coarsening_matrix
 from semispline.solver.splines.deviation import deviation_bound
 from semispline.solver.splines.evaluation import euclidean
-from semispline.solver.splines.operations import all_control_points, from_homogeneous
+from semispline.solver.splines.operations import from_homogeneous
 from semispline.solver.splines.refinement import combined, piece_matrix, refinement_matrix, snapped
 from semispline.solver.splines.surfaces import BSplineCurve, BSplineSurface, SemiStructuredSurface, named_row
 
@@ -100,7 +100,8 @@ def move_seam(surface: S, u: float | None = None, v: float | None = None, tolera
     if isinstance(surface, SemiStructuredSurface):
         if u is not None:
             raise InputError(
-                "u: a semi-structured surface is closed in v alone; convert it first: move_seam(surface.to_bspline(), u)"
+                "u: the v-control curves of a semi-structured surface are rows of one sheet; convert it first: "
+                "move_seam(surface.to_bspline(), u)"
             )
         return surface if v is None else _moved_rows(surface, v, tolerance)
     limit = _limit([surface.homogeneous], tolerance)

@@ -17,8 +17,8 @@ from numpy.typing import ArrayLike
 from semispline.solver.arrays import FloatArray, SparseMatrix, finite_array, require
 from semispline.solver.errors import ComputationError, ControlPointError, KnotError
 from semispline.solver.scalars import whole_number
+from semispline.solver.splines.approximation import Approximation, CurveApproximation
 from semispline.solver.splines.coarsening import reduction_matrix, removal_matrix, without_knots
-from semispline.solver.splines.construction import Approximation
 from semispline.solver.splines.deviation import deviation_bound
 from semispline.solver.splines.evaluation import euclidean
 from semispline.solver.splines.knots import inner_knots
@@ -37,21 +37,6 @@ ROUNDING = 16 * float(np.finfo(float).eps)
 
 
 S = TypeVar("S", BSplineSurface, SemiStructuredSurface)
-
-
-@dataclass(frozen=True, eq=False)
-class CurveApproximation:
-    """A curve that stands for another.
-
-    Attributes
-    ----------
-    curve : BSplineCurve
-    error : float
-        No point is farther than this from the point of the other curve with the same parameter; in model units.
-    """
-
-    curve: BSplineCurve
-    error: float
 
 
 def remove_curve_knots(curve: BSplineCurve, knots: ArrayLike) -> CurveApproximation:
