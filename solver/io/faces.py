@@ -12,7 +12,14 @@ from semispline.solver.arrays import FloatArray
 from semispline.solver.errors import FileError, InputError
 from semispline.solver.io.face_boundary import FaceBoundary
 from semispline.solver.judge import extent
-from semispline.solver.splines import MERGE_TOLERANCE, BSplineCurve, BSplineSurface, SemiStructuredSurface, Surface, clamped_surface
+from semispline.solver.splines import (
+    MERGE_TOLERANCE,
+    BSplineCurve,
+    BSplineSurface,
+    SemiStructuredSurface,
+    Surface,
+    clamped_surface,
+)
 
 # Weights that agree to this relative tolerance (rounding of a product and a quotient) are one weight.
 _EQUAL_WEIGHTS = 8 * np.finfo(np.float64).eps

@@ -142,7 +142,10 @@ def test_a_range_is_taken_as_it_was_meant(tmp_path, name):
     (u0, u1), (v0, v1) = surface.domain
     # The kernel counts angles from 0 to a turn.
     np.testing.assert_allclose([u1 - u0, v1 - v0], [meant[1] - meant[0], meant[3] - meant[2]], rtol=4e-15)
-    u, v = (np.unique([*np.linspace(*ends, 23), *breaks]) for ends, breaks in zip(surface.domain, surface.breakpoints, strict=True))
+    u, v = (
+        np.unique([*np.linspace(*ends, 23), *breaks])
+        for ends, breaks in zip(surface.domain, surface.breakpoints, strict=True)
+    )
     assert np.abs(off(surface.evaluate_grid(u, v))).max() < 1e-14
     corners = [[geometry.Value(float(u), float(v)) for v in meant[2:]] for u in meant[:2]]
     expected = [[(p.X(), p.Y(), p.Z()) for p in row] for row in corners]

@@ -10,6 +10,7 @@ import rhino3dm
 from OCP.BRep import BRep_Tool
 from typer.testing import CliRunner
 
+from helpers.cases import CASES
 from semispline import (
     BSplineCurve,
     BSplineSurface,
@@ -243,3 +244,28 @@ def test_generated_c_refuses_a_rational_base(tmp_path):
 
 def test_bytes_of_a_rational_surface_say_so():
     assert b"RATIONAL_B_SPLINE_SURFACE" in occ_bytes(nine_points(), ".step", "mm")
+
+
+# Kind, rational, closed in u and v: of the README that comes with the cases.
+@pytest.mark.parametrize(
+    ("name", "edge", "ring"),
+    [("pipe_rational", "v1", 5.0), ("dome_rational", "v0", 5.0), ("duct_ring_rational", "v0", None)],
+)
+def test_rational_cases_are_read(name, edge, ring):
+    (entry,) = list_surfaces(CASES / f"{name}.json")
+    assert (entry.rational, entry.problem, entry.deviation) == (True, None, None)
+    surface = read_surface(CASES / f"{name}.json")
+    u = np.linspace(*surface.domain[0], 41)
+    rim = surface.evaluate(u, surface.domain[1][int(edge[1])])
+    middle = (rim.max(axis=0) + rim.min(axis=0)) / 2
+    radius = np.linalg.norm(rim - middle, axis=1)
+    if ring is not None:
+        assert entry.closed_u
+        np.testing.assert_allclose(radius, ring, rtol=0, atol=2e-15 * 1000)
+
+
+@pytest.mark.parametrize("path", sorted(CASES.glob("*.json")), ids=lambda path: path.stem)
+def test_every_case_in_json_is_read_and_written_back(tmp_path, path):
+    surface = read_surface(path)
+    write_surface(tmp_path / "s.json", surface)
+    assert surface_record(read_surface(tmp_path / "s.json")) == surface_record(surface)
