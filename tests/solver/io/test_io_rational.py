@@ -28,6 +28,7 @@ from semispline.solver.io.json_files import StoredProblem, surface_from_record, 
 from semispline.solver.io.occ import read_occ
 from semispline.solver.io.occ_writing import occ_bytes
 
+EDGES = ("--edge-a", "u0", "--edge-b", "u0")
 EXACT = (".step", ".igs", ".brep", ".3dm")
 # What reading and writing back may move, in fractions of the size: 3dm holds points times weights.
 MOVED = {".step": 1e-12, ".igs": 1e-9, ".brep": 0.0, ".3dm": 4e-16}
@@ -106,7 +107,7 @@ def test_closed_surfaces_come_back_periodic_and_are_clamped(tmp_path, suffix):
     assert read_here(path).control_points.shape == (3, 11, 3)
 
 
-def test_openNURBS_has_points_times_weights_bit_for_bit(tmp_path):
+def test_3dm_has_points_times_weights_bit_for_bit(tmp_path):
     surface = free_form()
     write_surface(tmp_path / "s.3dm", surface)
     net = rhino3dm.File3dm.Read(str(tmp_path / "s.3dm")).Objects[0].Geometry
@@ -229,7 +230,8 @@ def test_pictures_conversion_and_measuring_take_rational_rows(tmp_path):
     for command in (
         ["show", str(source), "-o", str(tmp_path / "t.png"), "--control-points"],
         ["convert", str(source), str(tmp_path / "t.step")],
-        ["check", str(source), "--edge-a", "u0", str(tmp_path / "t.step"), "--edge-b", "u0", "--require", "C0"],
+        ["convert", str(source), str(tmp_path / "t.3dm")],
+        ["check", *map(str, (tmp_path / "t.3dm", tmp_path / "t.step")), *EDGES, "--require", "C0"],
     ):
         told = runner.invoke(app, command)
         assert told.exit_code == 0, told.output
@@ -246,22 +248,16 @@ def test_bytes_of_a_rational_surface_say_so():
     assert b"RATIONAL_B_SPLINE_SURFACE" in occ_bytes(nine_points(), ".step", "mm")
 
 
-# Kind, rational, closed in u and v: of the README that comes with the cases.
 @pytest.mark.parametrize(
-    ("name", "edge", "ring"),
-    [("pipe_rational", "v1", 5.0), ("dome_rational", "v0", 5.0), ("duct_ring_rational", "v0", None)],
+    ("name", "v", "radius", "closed"),
+    [("pipe_rational", 1, 5.0, True), ("dome_rational", 0, 5.0, True), ("duct_ring_rational", 0, 6.0, False)],
 )
-def test_rational_cases_are_read(name, edge, ring):
+def test_rational_cases_are_read(name, v, radius, closed):
     (entry,) = list_surfaces(CASES / f"{name}.json")
-    assert (entry.rational, entry.problem, entry.deviation) == (True, None, None)
+    assert (entry.rational, entry.closed_u, entry.closed_v, entry.problem) == (True, closed, False, None)
     surface = read_surface(CASES / f"{name}.json")
-    u = np.linspace(*surface.domain[0], 41)
-    rim = surface.evaluate(u, surface.domain[1][int(edge[1])])
-    middle = (rim.max(axis=0) + rim.min(axis=0)) / 2
-    radius = np.linalg.norm(rim - middle, axis=1)
-    if ring is not None:
-        assert entry.closed_u
-        np.testing.assert_allclose(radius, ring, rtol=0, atol=2e-15 * 1000)
+    rim = surface.evaluate(np.linspace(*surface.domain[0], 41), surface.domain[1][v])
+    np.testing.assert_allclose(np.hypot(rim[:, 0], rim[:, 1]), radius, rtol=1e-15)
 
 
 @pytest.mark.parametrize("path", sorted(CASES.glob("*.json")), ids=lambda path: path.stem)
