@@ -293,10 +293,13 @@ def print_entries(entries: Sequence[SurfaceEntry], others: Mapping[str, int]) ->
         flags = (word(entry.rational, "rational"), word(entry.trimmed, "trimmed"), closed or "-")
         rows.append((str(entry.number), entry.kind, degrees, count, *flags))
         if entry.problem:
-            notes.append(entry.problem)
+            notes.append(f"cannot be used: {entry.problem}")
+        if entry.deviation is not None:
+            off = f"up to {entry.deviation:.3g} off, in the unit of the file"
+            notes.append(f"#{entry.number} has no exact B-spline form: the surface taken for it is {off}")
     _print_table(rows)
     for note in notes:
-        typer.echo(f"cannot be used: {note}")
+        typer.echo(note)
     if others:
         typer.echo(f"cannot be used: {counted(others)}")
 

@@ -186,4 +186,4 @@ def _change(curve: Curve, other: Curve) -> float:
             counts[value] = max(times, counts.get(value, 0))
     both = np.repeat(np.array(sorted(counts)), [counts[x] for x in sorted(counts)])
     one, two = (refinement_matrix(c.degree, c.knots, both) @ c.homogeneous for c in (curve, other))
-    return deviation_bound(curve.degree, two, one)
+    return deviation_bound([curve.degree], two, one)

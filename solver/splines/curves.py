@@ -6,11 +6,12 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from semispline.solver.arrays import FloatArray, SparseMatrix, finite_array, require
 from semispline.solver.errors import KnotError, OptionError
 from semispline.solver.scalars import is_whole, real_number
+from semispline.solver.splines.coarsening import coarsening_matrix
 from semispline.solver.splines.compatible import compatible_curves
 from semispline.solver.splines.deviation import deviation_bound
 from semispline.solver.splines.evaluation import euclidean
@@ -191,27 +192,10 @@ def set_curve_continuity(curve: BSplineCurve, v: float, continuity: int, toleran
 def _coarser_points(curve: BSplineCurve, knots: FloatArray) -> tuple[FloatArray, float]:
     """Return homogeneous points over fewer knots, and how far the curve is from the old one.
 
-    Points whose basis functions do not reach the removed knot stay as they are; the few others come from a local least
-    squares fit. The distance is infinite where a weight would not be positive.
+    The distance is infinite where a weight would not be positive.
     """
-    matrix = refinement_matrix(curve.degree, knots, curve.knots)
-    rows, n = matrix.shape
-    # The first `head` rows and the last `tail` rows of the matrix are those of the identity.
-    alone = np.diff(matrix.indptr) == 1
-    only = matrix.indices[matrix.indptr[:-1]]
-    head = _leading(alone & (only == np.arange(rows)))
-    tail = min(n - head, _leading((alone & (only == np.arange(rows) - (rows - n)))[::-1]))
-    old = curve.homogeneous
-    points = np.concatenate([old[:head], np.zeros((n - head - tail, old.shape[1])), old[rows - tail :]])
-    rest = old - matrix @ points
-    if n > head + tail:
-        block = matrix[head : rows - tail, head : n - tail].toarray()
-        points[head : n - tail] = np.linalg.lstsq(block, rest[head : rows - tail], rcond=None)[0]
+    refining = refinement_matrix(curve.degree, knots, curve.knots)
+    points = combined(coarsening_matrix(refining), curve.homogeneous)
     if not (points[:, 3:] > 0).all():
         return points, np.inf
-    return points, deviation_bound(curve.degree, matrix @ points, old)
-
-
-def _leading(flags: NDArray[np.bool_]) -> int:
-    """Count the leading True values."""
-    return len(flags) if flags.all() else int(np.argmin(flags))
+    return points, deviation_bound([curve.degree], refining @ points, curve.homogeneous)

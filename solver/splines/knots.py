@@ -84,7 +84,8 @@ def checked_knots(knots: ArrayLike, degree: int, n_control: int, name: str = "kn
         k = int(np.argmax(wrong))
         found, limit = (counts[k] + degree + 1, degree + 1) if at_end[k] else (counts[k], degree)
         where = f"{name}[{degree + 1 + first[k]}]"
-        raise KnotError(f"{where}: knot {inner[first[k]]} has multiplicity {found}, expected at most {limit}")
+        hint = "clamped_surface and clamp_knots take other vectors" if at_end[k] else "split the spline there"
+        raise KnotError(f"{where}: knot {inner[first[k]]} has multiplicity {found}, expected at most {limit} ({hint})")
     return array
 
 

@@ -17,7 +17,7 @@ from typing import Any, TypeAlias, final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from semispline.solver.arrays import FloatArray, SparseMatrix, finite_array, rebuilt
+from semispline.solver.arrays import FloatArray, SparseMatrix, rebuilt, space_points
 from semispline.solver.errors import ControlPointError, InputError
 from semispline.solver.splines.compatible import compatible_curves
 from semispline.solver.splines.evaluation import (
@@ -50,8 +50,8 @@ class BSplineCurve:
     degree : int
     knots : array_like, shape (n_i + degree + 2,)
         V_i, clamped.
-    control_points : array_like, shape (n_i + 1, 3)
-        Euclidean (not multiplied by the weights).
+    control_points : array_like, shape (n_i + 1, 3) or (n_i + 1, 2)
+        Euclidean (not multiplied by the weights); with two coordinates, in the plane z = 0.
     weights : array_like, shape (n_i + 1,), optional
         Positive.
     name : str
@@ -78,8 +78,7 @@ class BSplineCurve:
     name: str = field(default="curve", repr=False)
 
     def __post_init__(self) -> None:
-        points = finite_array(self.control_points, 2, f"{self.name}.control_points", ControlPointError)
-        _check_points(points, f"{self.name}.control_points")
+        points = space_points(self.control_points, 2, f"{self.name}.control_points", ControlPointError)
         object.__setattr__(self, "control_points", points)
         knots = checked_knots(self.knots, self.degree, len(points), f"{self.name}.knots")
         object.__setattr__(self, "knots", knots)
@@ -120,8 +119,8 @@ class BSplineSurface:
         p and q, at least 1.
     knots_u, knots_v : array_like, shapes (n_u + degree_u + 1,), (n_v + degree_v + 1,)
         Clamped; inner multiplicity at most the degree.
-    control_points : array_like, shape (n_u, n_v, 3)
-        Euclidean (not multiplied by the weights).
+    control_points : array_like, shape (n_u, n_v, 3) or (n_u, n_v, 2)
+        Euclidean (not multiplied by the weights); with two coordinates, in the plane z = 0.
     weights : array_like, shape (n_u, n_v), optional
         Positive.
 
@@ -147,8 +146,7 @@ class BSplineSurface:
     weights: FloatArray | None = None
 
     def __post_init__(self) -> None:
-        points = finite_array(self.control_points, 3, "control_points", ControlPointError)
-        _check_points(points, "control_points")
+        points = space_points(self.control_points, 3, "control_points", ControlPointError)
         object.__setattr__(self, "control_points", points)
         object.__setattr__(self, "knots_u", checked_knots(self.knots_u, self.degree_u, points.shape[0], "knots_u"))
         object.__setattr__(self, "knots_v", checked_knots(self.knots_v, self.degree_v, points.shape[1], "knots_v"))
@@ -401,8 +399,3 @@ Surface: TypeAlias = BSplineSurface | SemiStructuredSurface
 
 def _same_space(a: BSplineCurve, b: BSplineCurve) -> bool:
     return a.degree == b.degree and np.array_equal(a.knots, b.knots)
-
-
-def _check_points(points: FloatArray, name: str) -> None:
-    if points.shape[-1] != 3:
-        raise ControlPointError(f"{name}: points have {points.shape[-1]} coordinate(s), expected 3")

@@ -25,8 +25,9 @@ from semispline.papers.reproduction.measures import (
     plate_energy,
     settled_fairness,
 )
-from semispline.solver.splines.construction import plane, revolve
+from semispline.solver.splines.construction import plane
 from semispline.solver.splines.operations import reverse_u
+from semispline.solver.splines.revolution import revolve
 
 
 def as_formula(surface):

@@ -14,11 +14,10 @@ from semispline.solver.splines.construction import (
     interpolate_curve,
     interpolate_grid,
     plane,
-    revolve,
-    revolve_polynomial,
     ruled,
     skin,
 )
+from semispline.solver.splines.revolution import revolve, revolve_polynomial
 from semispline.solver.splines.surfaces import BSplineCurve
 
 UNIT = [0, 0, 1, 1]
