@@ -161,7 +161,7 @@ LINE = BSplineCurve(1, UNIT, [[2, 0, 0], [2, 0, 5]])
     ("call", "error", "message"),
     [
         (lambda: plane([0, 0, 0], [1, 0, 0], [2, 0, 0]), ControlPointError, "edge_v: found .* not parallel"),
-        (lambda: plane([0, 0], [1, 0, 0], [0, 1, 0]), ControlPointError, r"origin: 2 coordinate\(s\), expected 3"),
+        (lambda: plane([0], [1, 0, 0], [0, 1, 0]), ControlPointError, r"origin: 1 coordinate\(s\), expected 3, or 2"),
         (lambda: extrude(LINE, [0, 0, 0]), ControlPointError, "vector: found"),
         (lambda: revolve(LINE, [0, 0, 0], [0, 0, 0]), ControlPointError, "axis_direction: found"),
         (lambda: revolve(LINE, [0, 0, 0], [0, 0, 1], 0), OptionError, "angle: found 0"),

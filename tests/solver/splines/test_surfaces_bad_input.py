@@ -38,7 +38,7 @@ def surface(**changes):
         ({"degree_v": None}, KnotError, r"knots_v: degree is None"),
         ({"degree_u": 10**30}, KnotError, r"knots_u: 2 control point\(s\) for degree 1000"),
         ({"control_points": []}, ControlPointError, r"control_points: has 1 dimension\(s\), expected 3"),
-        ({"control_points": np.zeros((2, 2, 2))}, ControlPointError, r"points have 2 coordinate\(s\), expected 3"),
+        ({"control_points": np.zeros((2, 2, 4))}, ControlPointError, r"control_points: 4 coordinate\(s\), expected 3, or 2"),
         ({"control_points": np.zeros((0, 2, 3))}, KnotError, r"knots_u: 0 control point\(s\)"),
         ({"control_points": [SQUARE[0], [[1, 0, 0]]]}, ControlPointError, r"control_points\[1\]: 1 entries"),
         ({"control_points": [SQUARE[0], [[1, 0, 0], [1, 0]]]}, ControlPointError, r"control_points\[1, 1\]: 2 entries"),
