@@ -48,13 +48,17 @@ def test_no_point_of_a_grid_is_nearer(seed):
 @settings(max_examples=25)
 @given(bspline_surfaces(most=2), points)
 def test_no_point_of_a_grid_is_nearer_whatever_the_knots(surface, target):
-    assert closest_point(surface, target).distance <= np.linalg.norm(grid_of(surface, 41) - target, axis=1).min() + 1e-15
+    assert (
+        closest_point(surface, target).distance <= np.linalg.norm(grid_of(surface, 41) - target, axis=1).min() + 1e-15
+    )
 
 
 @settings(max_examples=15)
 @given(semistructured_surfaces(degrees=(1, 3)), points)
 def test_semistructured_surfaces_too(surface, target):
-    assert closest_point(surface, target).distance <= np.linalg.norm(grid_of(surface, 41) - target, axis=1).min() + 1e-13
+    assert (
+        closest_point(surface, target).distance <= np.linalg.norm(grid_of(surface, 41) - target, axis=1).min() + 1e-13
+    )
 
 
 @settings(max_examples=25)
@@ -62,7 +66,9 @@ def test_semistructured_surfaces_too(surface, target):
 def test_no_sample_of_a_curve_is_nearer(curve, target, rational, seed):
     weights = np.random.default_rng(seed).uniform(0.4, 2.5, len(curve.control_points)) if rational else None
     curve = BSplineCurve(curve.degree, curve.knots, curve.control_points, weights)
-    net = curve.control_points if weights is None else np.column_stack([curve.control_points * weights[:, None], weights])
+    net = (
+        curve.control_points if weights is None else np.column_stack([curve.control_points * weights[:, None], weights])
+    )
     values = curve_points(curve.degree, curve.knots, net, np.linspace(0, 1, 2001))
     samples = values if weights is None else values[:, :3] / values[:, 3:]
     found = closest_point(curve, target)
@@ -104,14 +110,19 @@ def test_ties_and_both_parameters_of_a_seam_are_returned():
     assert np.array_equal(seam.parameters.round(14), [[0, 0.2], [1, 0.2]])
     # Between two parallel walls.
     channel = BSplineSurface(
-        1, 1, [0, 0, 1, 2, 3, 3], [0, 0, 1, 1], [[[x, y, z] for y in (0, 1)] for x, z in ((0, 3), (0, 0), (2, 0), (2, 3))]
+        1,
+        1,
+        [0, 0, 1, 2, 3, 3],
+        [0, 0, 1, 1],
+        [[[x, y, z] for y in (0, 1)] for x, z in ((0, 3), (0, 0), (2, 0), (2, 3))],
     )
     walls = closest_point(channel, [1, 0.5, 2])
     assert (walls.distance, walls.points.tolist()) == (1.0, [[0, 0.5, 2], [2, 0.5, 2]])
     assert np.abs(walls.parameters - [[1 / 3, 0.5], [2 + 2 / 3, 0.5]]).max() <= 1e-15
     # In the middle of a sphere every point is as near.
     middle = closest_point(sphere(2.0), [0, 0, 0])
-    assert len(middle.points) > 4 and abs(middle.distance - 2) <= 1e-15
+    assert len(middle.points) > 4
+    assert abs(middle.distance - 2) <= 1e-15
 
 
 def test_a_nearest_point_at_a_crease_an_end_and_a_corner():
@@ -146,7 +157,7 @@ def test_units_and_place_do_not_matter():
 
 
 @pytest.mark.parametrize(
-    "call, error, message",
+    ("call", "error", "message"),
     [
         (lambda: closest_point(circle(), [1, 2, 3, 4]), ControlPointError, r"point: 4 coordinate\(s\), expected 3"),
         (lambda: closest_point(circle(), [1, np.nan, 3]), ControlPointError, r"point\[1\]: found nan"),

@@ -79,9 +79,9 @@ def test_a_pole_is_a_curve_of_one_point():
 
 
 @pytest.mark.parametrize(
-    "call, error, message",
+    ("call", "error", "message"),
     [
-        (lambda s: iso_curve(s), OptionError, "found u = None, v = None, expected one"),
+        (iso_curve, OptionError, "found u = None, v = None, expected one"),
         (lambda s: iso_curve(s, 0.5, 0.5), OptionError, "found u = 0.5, v = 0.5, expected one"),
         (lambda s: iso_curve(s, u=1.5), InputError, r"u\[0\]: found 1.5, expected a parameter in \[0.0, 1.0\]"),
         (lambda s: iso_curve(s, v="x"), InputError, "v: found 'x', expected a real number"),

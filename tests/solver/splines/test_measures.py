@@ -20,7 +20,7 @@ from semispline.solver.judge.de_boor import surface_points
 
 
 @pytest.mark.parametrize(
-    "surface, area",
+    ("surface", "area"),
     [
         (cylinder(2.0, 5.0), 20 * np.pi),
         (sphere(3.0), 36 * np.pi),
@@ -133,7 +133,7 @@ def test_rational_rows_count():
 
 
 @pytest.mark.parametrize(
-    "call, error, message",
+    ("call", "error", "message"),
     [
         (lambda: curve_length(circle(), 0), OptionError, "tolerance: found 0, expected a positive number"),
         (lambda: surface_area(sphere(1), float("nan")), OptionError, "tolerance: found nan"),

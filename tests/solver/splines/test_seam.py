@@ -73,12 +73,13 @@ def test_the_seam_of_the_smooth_circle_comes_and_goes():
     assert half.control_points.shape == (11, 2, 3)
 
 
-@pytest.mark.parametrize("u, v", [(0.1, None), (None, 0.6), (0.25, 0.6)])
+@pytest.mark.parametrize(("u", "v"), [(0.1, None), (None, 0.6), (0.25, 0.6)])
 def test_a_torus_moves_in_either_direction(u, v):
     surface = torus(3.0, 1.0)
     moved = move_seam(surface, u, v)
     (u0, u1), (v0, v1) = moved.domain
-    assert (u0, v0) == (u or 0, v or 0) and abs(u1 - u0 - 1) <= 1e-15 and abs(v1 - v0 - 1) <= 1e-15
+    assert (u0, v0) == (u or 0, v or 0)
+    assert max(abs(u1 - u0 - 1), abs(v1 - v0 - 1)) <= 1e-15
     a, b = np.random.default_rng(0).uniform(0, 1, (2, 50))
     there = surface_points(moved, u0 + a, v0 + b)
     assert np.abs(there - surface_points(surface, around(u0 + a, 0, 1), around(v0 + b, 0, 1))).max() <= 1e-14
@@ -95,8 +96,8 @@ def test_ends_that_differ_by_a_factor_are_scaled():
     t = np.linspace(0.4, 1.4, 101)[:-1]
     assert np.abs(moved.evaluate(t) - curve.evaluate(around(t, 0, 1))).max() <= 4e-15
     assert abs(moved.weights[-1] / moved.weights[0] - 3) <= 1e-14
-    sheet = BSplineSurface(1, 3, [0, 0, 1, 1], knots, np.stack([other.control_points, other.control_points + [0, 0, 1]]),
-                           np.stack([other.weights, 2 * other.weights]))  # fmt: skip
+    rows = np.stack([other.control_points, other.control_points + np.array([0, 0, 1])])
+    sheet = BSplineSurface(1, 3, [0, 0, 1, 1], knots, rows, np.stack([other.weights, 2 * other.weights]))
     # The factor is one for all rows, though the rows have other weights.
     assert np.abs(move_seam(sheet, v=0.4).homogeneous[0] - moved.homogeneous).max() <= 1e-14
 
@@ -139,7 +140,7 @@ def _weights_that_do_not_close():
 
 
 @pytest.mark.parametrize(
-    "call, error, message",
+    ("call", "error", "message"),
     [
         (lambda: move_curve_seam(circle(), 0.0), KnotError, r"v: found 0.0, expected a value inside \(0.0, 1.0\)"),
         (lambda: move_curve_seam(circle(), 1.5), KnotError, "v: found 1.5"),
