@@ -1,9 +1,9 @@
 """Bezier patches divided by Bezier functions: both parts are semi-structured surfaces.
 
-A patch of degrees (m, n), cut along v = f(u) with f of degree k, falls into two parts that are of degree n across, while
-row s across is a Bezier curve of degree m + s k (below the cut) or m + (n - s) k (above it). The paper writes the curves
-along u and blends them in v; a `SemiStructuredSurface` blends in its first parameter. So the first parameter of a part
-runs across, from 0 to 1, and the second one runs along the cut, in the parameter of the patch:
+A patch of degrees (m, n), cut along v = f(u) with f of degree k, falls into two parts that have degree n across, while
+row s across is a Bezier curve of degree m + s k (below the cut) or m + (n - s) k (above it). The paper writes the
+curves along u and blends them in v; a `SemiStructuredSurface` blends in its first parameter. So the first parameter of
+a part runs across, from 0 to 1, and the second one runs along the cut, in the parameter of the patch:
 
     lower.evaluate(s, t) = patch(t, lo + s (f(t) - lo)),    upper.evaluate(s, t) = patch(t, f(t) + s (hi - f(t))),
 
@@ -24,7 +24,7 @@ from numpy.typing import ArrayLike
 from semispline.solver.arrays import FloatArray, finite_array, real_array, rebuilt, require
 from semispline.solver.errors import ControlPointError, InputError, OptionError
 from semispline.solver.scalars import real_number
-from semispline.solver.splines.evaluation import euclidean
+from semispline.solver.splines.evaluation import checked_weights, euclidean
 from semispline.solver.splines.knots import clamped
 from semispline.solver.splines.outline import crossing_sides, signed_area
 from semispline.solver.splines.surfaces import BSplineCurve, BSplineSurface, SemiStructuredSurface, Surface
@@ -109,7 +109,8 @@ def bezier_patch(control_points: ArrayLike, weights: ArrayLike | None = None) ->
     rows, columns = points.shape[:2]
     if min(rows, columns) < 2:
         raise ControlPointError(f"control_points: {rows} x {columns} of them, expected at least 2 x 2")
-    return BSplineSurface(rows - 1, columns - 1, _bezier_knots(rows - 1), _bezier_knots(columns - 1), points, weights)
+    w = None if weights is None else checked_weights(weights, points, "weights")
+    return BSplineSurface(rows - 1, columns - 1, _bezier_knots(rows - 1), _bezier_knots(columns - 1), points, w)
 
 
 def divide_bezier(
