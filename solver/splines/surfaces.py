@@ -334,7 +334,7 @@ class SemiStructuredSurface:
                 return np.zeros((len(uu), len(vv), self._columns))
             across = derivative_points(self.degree_u, self.knots_u, rows(b), a)
             basis = basis_matrix(self.degree_u - a, self.knots_u[a : len(self.knots_u) - a], uu)
-            return np.asarray((basis @ across.reshape(len(across), -1)).reshape(len(uu), len(vv), self._columns))
+            return np.asarray((basis @ across.reshape(len(across), -1)).reshape(len(uu), len(vv), -1))
 
         return quotient(values, du, dv) if self.is_rational else values(du, dv)
 
