@@ -147,6 +147,13 @@ def test_conversion_gives_geomdl_the_same_surface(surface, seed):
     agree(surface.evaluate(u, v), expected, surface)
 
 
+def test_no_parameters_give_no_points():
+    surface = SemiStructuredSurface(1, [0, 0, 1, 1], [QUARTER, BSplineCurve(1, [0, 0, 1, 1], np.eye(3)[:2])])
+    assert surface.evaluate([], [], 1, 1).shape == (0, 3)
+    assert surface.evaluate_grid([], [0.5], 2, 1).shape == (0, 1, 3)
+    assert QUARTER.evaluate([], 3).shape == (0, 3)
+
+
 def test_rows_of_one_space_keep_their_numbers_in_both_directions():
     rng = np.random.default_rng(3)
     surface = BSplineSurface(1, 2, [0, 0, 1, 1], BEZIER_2, rng.normal(size=(2, 3, 3)), rng.uniform(0.5, 2, (2, 3)))
