@@ -265,12 +265,13 @@ def _polished(nets: FloatArray, target: FloatArray, at: FloatArray) -> tuple[Flo
     """Take Newton's steps that the distance is too flat to judge, as long as they make the slope smaller."""
     points, first, second = _jet(nets, at, 2)
     steepness = _steepness(points - target, first, at)
+    slack = 16 * np.finfo(float).eps * max(np.abs(points).max(), np.abs(target).max())
     for _ in range(POLISHES):
         tried = np.clip(at + _newton_steps(points - target, first, second, at), 0, 1)
         jet = _jet(nets, tried, 2)
         flatter = _steepness(jet[0] - target, jet[1], tried)
-        slack = 1 + 8 * np.finfo(float).eps
-        good = (flatter < steepness) & (_half_square(jet[0], target) <= slack * _half_square(points, target))
+        longer = np.linalg.norm(jet[0] - target, axis=1) - np.linalg.norm(points - target, axis=1)
+        good = (flatter < steepness) & (longer <= slack)
         if not good.any():
             break
         at, steepness = np.where(good[:, None], tried, at), np.where(good, flatter, steepness)

@@ -17,7 +17,7 @@ from semispline.solver.splines.surfaces import BSplineCurve, BSplineSurface, Sem
 # Gauss points in each direction of a part; the finer rule has twice as many.
 POINTS = 8
 # Parts that one pass may look at: reached by surfaces that are folded along a line, whose error is then stated.
-MOST_PARTS = 4000
+MOST_PARTS = 2000
 # Parts that are evaluated at once.
 TOGETHER = 200
 
@@ -43,7 +43,7 @@ def curve_length(curve: BSplineCurve, tolerance: float = 1e-12) -> Measure:
     """Return the length of a curve.
 
     Spans on which Gauss rules of 8 and of 16 points differ are halved, until the sum of the differences is below
-    `tolerance` times the length, or rounding. A curve of so many cusps that this takes more than 4000 parts has the
+    `tolerance` times the length, or rounding. A curve of so many cusps that this takes more than 2000 parts has the
     error that is reached.
 
     Parameters

@@ -70,7 +70,7 @@ def revolve_smooth(
     v runs along the curve; u in [0, 1] turns it about the axis by `angle`, right-handed. The circle is the square of a
     uniform complex spline of degree 3, of 11 points for a whole turn; it is C2 in homogeneous coordinates, as blends
     with other surfaces need it, where that of `revolve` is C0. u is nearly proportional to the angle: off by at most
-    1.2 degrees over a whole turn.
+    1.23 degrees, over a half or a whole turn.
 
     Parameters
     ----------

@@ -14,7 +14,7 @@ from helpers.splines import curves, exact_point, exact_rational_curve, scale, se
 from semispline.solver.errors import ControlPointError, InputError, KnotError
 from semispline.solver.splines.bezier import BezierFunction, bezier_patch, divide_bezier, trim_bezier
 from semispline.solver.splines.compatible import compatible_curves
-from semispline.solver.splines.construction import extrude, revolve, revolve_polynomial, ruled, skin
+from semispline.solver.splines.construction import extrude, ruled, skin
 from semispline.solver.splines.curves import (
     elevate_curve,
     insert_curve_knots,
@@ -36,6 +36,7 @@ from semispline.solver.splines.operations import (
     transform,
 )
 from semispline.solver.splines.refinement import linear_product_matrices
+from semispline.solver.splines.revolution import revolve, revolve_polynomial
 from semispline.solver.splines.rows import insert_row_knot, merge_knots, set_row_continuity
 from semispline.solver.splines.surfaces import BSplineCurve, BSplineSurface, SemiStructuredSurface
 
@@ -397,10 +398,12 @@ def test_the_stated_distance_is_never_too_small_and_not_far_too_large(curve, see
     )
     v = np.concatenate([np.linspace(0, 1, 301), np.unique(curve.knots)])
     true = np.linalg.norm(curve.evaluate(v) - other.evaluate(v), axis=1).max()
-    bounds = [deviation_bound(curve.degree, a.homogeneous, b.homogeneous) for a, b in ((curve, other), (other, curve))]
+    bounds = [
+        deviation_bound([curve.degree], a.homogeneous, b.homogeneous) for a, b in ((curve, other), (other, curve))
+    ]
     assert true <= min(bounds) + 1e-15
     assert max(bounds) <= 60 * 10**power
-    assert deviation_bound(curve.degree, curve.homogeneous, curve.homogeneous) == 0
+    assert deviation_bound([curve.degree], curve.homogeneous, curve.homogeneous) == 0
 
 
 @laws
