@@ -61,8 +61,25 @@ def pytest_itemcollected(item):
         item.add_marker(pytest.mark.shared)
 
 
+# pytest-xdist has only its workers count what was left out, and says nothing of it.
+LEFT_OUT = pytest.StashKey()
+
+
+def pytest_deselected(items):
+    output = getattr(items[0].config, "workeroutput", {})
+    output["left_out"] = output.get("left_out", 0) + len(items)
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_testnodedown(node):
+    node.config.stash[LEFT_OUT] = getattr(node, "workeroutput", {}).get("left_out", 0)
+
+
 def pytest_terminal_summary(terminalreporter):
-    """Say aloud how many tests had no files to work on."""
+    """Say aloud how many tests were left out, and how many had no files to work on."""
+    left_out = terminalreporter.config.stash.get(LEFT_OUT, 0)
+    if left_out:
+        terminalreporter.write_line(f"{left_out} tests left out by their marks")
     skipped = [r for r in terminalreporter.stats.get("skipped", []) if NO_SHARED in str(r.longrepr)]
     if skipped:
         terminalreporter.write_line(f"{len(skipped)} tests skipped: {NO_SHARED}", yellow=True)
