@@ -73,6 +73,7 @@ class BSplineCurve:
         object.__setattr__(self, "control_points", points)
         knots = checked_knots(self.knots, self.degree, len(points), f"{self.name}.knots")
         object.__setattr__(self, "knots", knots)
+        object.__setattr__(self, "degree", int(self.degree))
 
     def __reduce__(self) -> tuple[Any, ...]:
         return rebuilt(self)
@@ -131,6 +132,8 @@ class BSplineSurface:
         object.__setattr__(self, "control_points", points)
         object.__setattr__(self, "knots_u", checked_knots(self.knots_u, self.degree_u, points.shape[0], "knots_u"))
         object.__setattr__(self, "knots_v", checked_knots(self.knots_v, self.degree_v, points.shape[1], "knots_v"))
+        for name in ("degree_u", "degree_v"):
+            object.__setattr__(self, name, int(getattr(self, name)))
         if self.weights is not None:
             weights = finite_array(self.weights, 2, "weights", ControlPointError)
             if weights.shape != points.shape[:2]:
@@ -256,6 +259,7 @@ class SemiStructuredSurface:
         object.__setattr__(
             self, "knots_u", checked_knots(self.knots_u, self.degree_u, len(self.control_curves), "knots_u")
         )
+        object.__setattr__(self, "degree_u", int(self.degree_u))
         for i, curve in enumerate(self.control_curves):
             if not isinstance(curve, BSplineCurve):
                 raise ControlPointError(f"control_curves[{i}]: found a {type(curve).__name__}, expected a BSplineCurve")
