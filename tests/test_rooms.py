@@ -42,7 +42,7 @@ def imports(name):
 
 @cache
 def all_imports():
-    """(importing module, module, imported name or None) of each import: made where it is asked for, not at collection."""
+    """(importing module, module, imported name or None) of each import; not made at collection."""
     return [(name, *found) for name in FILES for found in imports(name)]
 
 
