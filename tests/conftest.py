@@ -8,8 +8,10 @@ from pathlib import Path
 import pytest
 from hypothesis import settings
 
+from helpers.sweeps import IS_WHOLE, examples
+
 # The clock decides nothing here, and the same examples are tried at every run: a red test can be repeated.
-settings.register_profile("repeatable", deadline=None, derandomize=True, print_blob=True)
+settings.register_profile("repeatable", examples(), deadline=None, derandomize=True, print_blob=True)
 settings.load_profile("repeatable")
 
 NO_SHARED = "shared files not found; set SEMISPLINE_SHARED"
@@ -55,10 +57,18 @@ def pytest_collection_modifyitems(config, items):
         items[:] = reordered(items, seed)
 
 
+@pytest.fixture
+def whole():
+    """Whether all cases of a sweep are asked for, or a few of each kind."""
+    return IS_WHOLE
+
+
 def pytest_itemcollected(item):
-    """Mark the tests that ask for the folder, so that `-m shared` finds them."""
-    if "shared" in getattr(item, "fixturenames", ()):
-        item.add_marker(pytest.mark.shared)
+    """Mark the tests that ask for the folder, or for the size of their sweep, so that `-m` finds them."""
+    asked = getattr(item, "fixturenames", ())
+    for name, mark in (("shared", pytest.mark.shared), ("whole", pytest.mark.sweep)):
+        if name in asked:
+            item.add_marker(mark)
 
 
 # pytest-xdist has only its workers count what was left out, and says nothing of it.
