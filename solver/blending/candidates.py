@@ -11,7 +11,7 @@ from typing import cast
 
 from semispline.solver.blending.linear_problem import WIDER, gap_ratio, try_linear_alpha
 from semispline.solver.blending.problem import LOWER, BlendProblem, make_problem
-from semispline.solver.blending.shape_parameters import Found, active_bounds, find_shape_parameters, found_fair
+from semispline.solver.blending.shape_parameters import Found, alpha_bounds, find_shape_parameters, found_fair
 from semispline.solver.blending.sides import Side
 from semispline.solver.errors import ComputationError, OptionError
 from semispline.solver.options import AlphaV, BlendOptions
@@ -85,7 +85,7 @@ def find_layout(a: Side, b: Side, said: BlendOptions) -> tuple[Layout, tuple[Can
         return best, ()
     if best is not None and first.box is None and _wants_less(best):
         best = _fairer(best, attempt(best.options, LOWER))
-    doubtful = best is None or best.found.condoned or active_bounds(best.problem, best.found)
+    doubtful = best is None or best.found.condoned or alpha_bounds(best.problem, best.found)
     if doubtful and said.degree_u == "auto" and first.degree_u == 5:
         best = _fairer(best, attempt(replace(first, degree_u=4, alpha_v="constant")))
     if best is None:
@@ -120,7 +120,7 @@ def _with_linear_alpha(constant: Layout, alpha_v: AlphaV) -> tuple[Layout, tuple
 
 def _wants_less(layout: Layout) -> bool:
     """Tell whether the lower end of a window stopped the search; U-turns end there for want of a better shape."""
-    active = active_bounds(layout.problem, layout.found)
+    active = alpha_bounds(layout.problem, layout.found)
     return not layout.problem.exits.u_turn and any("lower" in name for name in active)
 
 

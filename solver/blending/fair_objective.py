@@ -133,6 +133,13 @@ class FairObjective:
         value, gradient = self(point.x)
         return Point(point.x, value, gradient, point.hessian)
 
+    def refusal(self, y: FloatArray) -> str:
+        """Return why a place has no value: "fold" or "loop"; nothing where it has one."""
+        measured = self.table.measure(self.unknowns.monomials(y[None])[0])
+        if int(measured.refused[0]) == LOOPS:
+            return "loop"
+        return "" if measured.refused[0] == 0 and np.isfinite(measured.values[0]) else "fold"
+
     def j(self, y: FloatArray, value: float) -> float:
         """Return J of a candidate whose value is known."""
         return float(np.exp(value) - self._tie(y[None])[0])

@@ -70,7 +70,7 @@ class BlendResult:
         The admissible box; None where there is no such unknown. Method bfgs does not know it: see `warnings`. Pairs of
         end values where linear in v.
     active_bounds : tuple of str
-        Which bounds stopped the search, such as "alpha2 lower", or were passed by it (method bfgs).
+        Which bounds stopped the search, such as "alpha2 lower" or "p2 of a upper", or were passed by it (method bfgs).
     flipped : bool
         Whether edge b runs against edge a.
     seam_shift : float

@@ -45,6 +45,8 @@ def checked_knots(knots: ArrayLike, degree: int, n_control: int, name: str = "kn
     """
     if not is_whole(degree) or degree < 1:
         raise KnotError(f"{name}: degree is {degree!r}, expected a whole number of at least 1")
+    # NumPy's unsigned integers have no negative.
+    degree = int(degree)
     if n_control < degree + 1:
         raise KnotError(f"{name}: {n_control} control point(s) for degree {degree}, expected at least {degree + 1}")
     array = finite_array(knots, 1, name, KnotError)

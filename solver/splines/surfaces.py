@@ -82,6 +82,7 @@ class BSplineCurve:
         object.__setattr__(self, "control_points", points)
         knots = checked_knots(self.knots, self.degree, len(points), f"{self.name}.knots")
         object.__setattr__(self, "knots", knots)
+        object.__setattr__(self, "degree", int(self.degree))
         if self.weights is not None:
             object.__setattr__(self, "weights", checked_weights(self.weights, points, f"{self.name}.weights"))
 
@@ -150,6 +151,8 @@ class BSplineSurface:
         object.__setattr__(self, "control_points", points)
         object.__setattr__(self, "knots_u", checked_knots(self.knots_u, self.degree_u, points.shape[0], "knots_u"))
         object.__setattr__(self, "knots_v", checked_knots(self.knots_v, self.degree_v, points.shape[1], "knots_v"))
+        for name in ("degree_u", "degree_v"):
+            object.__setattr__(self, name, int(getattr(self, name)))
         if self.weights is not None:
             object.__setattr__(self, "weights", checked_weights(self.weights, points, "weights"))
 
@@ -272,6 +275,7 @@ class SemiStructuredSurface:
         object.__setattr__(
             self, "knots_u", checked_knots(self.knots_u, self.degree_u, len(self.control_curves), "knots_u")
         )
+        object.__setattr__(self, "degree_u", int(self.degree_u))
         for i, curve in enumerate(self.control_curves):
             if not isinstance(curve, BSplineCurve):
                 raise ControlPointError(f"control_curves[{i}]: found a {type(curve).__name__}, expected a BSplineCurve")

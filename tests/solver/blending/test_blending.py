@@ -4,12 +4,13 @@ import re
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from helpers.bases import FACING, facing_pair, moved, patch, turned
 from helpers.occ import analyse, edge_point
 from helpers.papers_set import blend
+from helpers.sweeps import examples
 from semispline import Base, BSplineSurface, ContactError, EdgeError, OptionError, measure_turn
 from semispline.solver.judge.de_boor import surface_points
 
@@ -20,7 +21,7 @@ def base_at(surface, edge="u0", backwards=False):
     return Base(turned(surface, edge, backwards), edge)
 
 
-@settings(max_examples=40)
+@examples(40)
 @given(
     st.integers(0, 10**6),
     st.tuples(st.sampled_from(EDGES), st.sampled_from(EDGES)),

@@ -4,11 +4,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import example, given, settings
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from helpers.bases import tube, turned
 from helpers.papers_set import blend
+from helpers.sweeps import examples
 from semispline import (
     Base,
     BSplineCurve,
@@ -187,7 +188,7 @@ def test_where_another_energy_is_minimised_its_rounding_counts_too():
     st.sampled_from([0.0, -3.0, 1e4]),
 )
 @example(3, 1, -11.6, 0.5, 0.0)
-@settings(max_examples=25, deadline=None)
+@examples(25)
 def test_the_bound_holds_for_flat_bases(degree, more, digits, at, offset):
     inner = at + 10.0**digits * np.arange(max(1, degree + more))
     a, b = strip(degree, inner, y=(0.0, 1.0)), WALL.surface
@@ -316,7 +317,7 @@ def test_a_blend_that_bends_a_little_is_not_taken_for_a_flat_one():
 
 
 @given(st.integers(0, 2**32 - 1), st.integers(1, 3), st.floats(1e-16, 1e-2))
-@settings(max_examples=20)
+@examples(20)
 def test_the_change_of_the_energy_by_errors_is_within_its_bound(seed, degree, width):
     rng = np.random.default_rng(seed)
     inner = np.sort(np.concatenate([rng.uniform(0.1, 0.4, 2), 0.5 + width * np.arange(1, degree + 1)]))
@@ -362,7 +363,7 @@ def near_bases(draw, side):
 
 
 @given(st.data())
-@settings(max_examples=60, deadline=None)
+@examples(60)
 def test_near_knots_end_in_a_result_or_a_reason(data):
     """Of one base, of both, of given knots; at the ends of the domain; open and closed; all contacts and methods."""
     closed = data.draw(st.booleans())

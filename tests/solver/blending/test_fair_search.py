@@ -1,6 +1,6 @@
 """The fairest shape: J and its gradient against other ways to them, and blends whose right shape is known."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -24,6 +24,7 @@ from semispline import (
     revolve_polynomial,
     transform,
 )
+from semispline.papers.reproduction.families.open_pairs import open_pair
 from semispline.solver.blending import fair_search
 from semispline.solver.blending.candidates import Layout, _fairer
 from semispline.solver.blending.fair_objective import FairObjective, make_unknowns
@@ -32,7 +33,7 @@ from semispline.solver.blending.fairness_grid import NODES_U, across, along
 from semispline.solver.blending.fairness_table import FOLDS, LOOPS, FairnessTable
 from semispline.solver.blending.pipeline import state_problem
 from semispline.solver.blending.projected import Point, descend
-from semispline.solver.blending.shape_parameters import Found
+from semispline.solver.blending.shape_parameters import Found, found_fair
 from semispline.solver.blending.warnings import fairness_warning
 
 CASES = Path(__file__).parents[2] / "cases"
@@ -267,6 +268,20 @@ def test_where_every_candidate_folds_the_fairest_is_taken_and_says_so(seed):
     assert not any("alpha fair" in text for text in result.warnings)
     # The quartic was tried as well.
     assert [c.degree_u for c in result.candidates][:2] == [5, 4]
+
+
+def test_a_search_that_is_stopped_by_a_refusal_says_by_which():
+    problem = state_problem(*(getattr(open_pair("rough", 13), side) for side in "ab")).problem
+    stopped, free = solve_fair(problem), solve_fair(state_problem(*sheets()).problem)
+    assert (stopped.stopped_by, free.stopped_by) == ("loop", "")
+    # There its slope is still steep; where nothing is refused the search goes on.
+    assert stopped.slope > 0.1
+    further = fair_search._solved(problem, (), None)
+    assert further.value < stopped.value
+    known = found_fair(stopped, "reduced").known
+    assert "; it ended beside a loop, which is refused" in known
+    assert "it ended beside a fold" in found_fair(replace(stopped, stopped_by="fold"), "reduced").known
+    assert "it ended" not in found_fair(free, "reduced").known
 
 
 def test_a_candidate_that_passes_comes_before_a_fairer_one_that_was_let_pass():

@@ -6,11 +6,12 @@ from pathlib import Path
 import numpy as np
 import pyiges
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from sympy import Matrix
 
 from helpers.facing import random_facing
+from helpers.sweeps import examples
 from semispline import (
     Base,
     BSplineCurve,
@@ -73,7 +74,7 @@ def splines(draw):
     return degree, knots, points
 
 
-@settings(max_examples=12, deadline=None)
+@examples(12)
 @given(splines(), st.integers(-3, 3), st.integers(-3, 3))
 def test_products_are_the_derived_ones(spline, low, high):
     degree, knots, points = spline

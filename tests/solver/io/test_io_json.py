@@ -85,6 +85,22 @@ def test_file_round_trip(tmp_path, surface):
     assert [p.name for p in tmp_path.iterdir()] == ["s.json"]
 
 
+@pytest.mark.parametrize("whole", [np.int64, np.int32, np.uint8])
+def test_whole_numbers_of_numpy_are_stored_as_plain_ones(tmp_path, whole):
+    path = tmp_path / "s.json"
+    plain = mixed_degrees()
+    curves = (BSplineCurve(whole(c.degree), c.knots, c.control_points) for c in plain.control_curves)
+    for surface, expected in (
+        (BSplineSurface(whole(1), whole(1), K, K, SQUARE.control_points), SQUARE),
+        (SemiStructuredSurface(whole(2), plain.knots_u, tuple(curves)), plain),
+    ):
+        write_json_surface(path, surface)
+        assert same(read_json_surface(path), expected)
+    options = BlendOptions(degree_u=whole(4), middle_curves=whole(2))
+    write_problem(path, StoredProblem(SQUARE, "u1", SQUARE, "v0", options))
+    assert read_problem(path).options == BlendOptions(degree_u=4, middle_curves=2)
+
+
 def test_only_curves_of_another_degree_state_it():
     record = surface_record(mixed_degrees())
     assert record["degree_v"] == 3

@@ -2,10 +2,11 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 
 from helpers.shapes import torus
 from helpers.splines import surfaces
+from helpers.sweeps import examples
 from semispline import BSplineCurve, BSplineSurface, SemiStructuredSurface
 from semispline.solver.judge.bezier_pieces import bernstein_by_degree, in_pieces
 from semispline.solver.judge.de_boor import surface_points
@@ -13,7 +14,7 @@ from semispline.solver.judge.de_boor import surface_points
 ORDERS = [(0, 0), (1, 0), (0, 1), (2, 0), (1, 1), (0, 2)]
 
 
-@settings(max_examples=30, deadline=None)
+@examples(30)
 @given(surfaces())
 def test_points_and_derivatives_are_the_referees(surface):
     pieces = in_pieces(surface)

@@ -2,11 +2,12 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 
 from helpers.bases import facing_pair
 from helpers.papers_set import blend
 from helpers.splines import surfaces
+from helpers.sweeps import examples
 from semispline import BSplineCurve, BSplineSurface, SemiStructuredSurface, measure_regularity, revolve
 from semispline.solver.judge import bezier_pieces, regularity
 from semispline.solver.judge.de_boor import surface_points
@@ -55,7 +56,7 @@ def by_referee(surface):
     return area.min() / area.mean()
 
 
-@settings(max_examples=40, deadline=None)
+@examples(40)
 @given(surfaces())
 def test_the_measure_is_that_of_the_referee_at_every_sample(surface):
     with np.errstate(all="ignore"):

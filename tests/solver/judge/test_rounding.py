@@ -2,9 +2,10 @@
 
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
+from helpers.sweeps import examples
 from semispline import Base, BSplineCurve, BSplineSurface, SemiStructuredSurface
 from semispline.solver.judge.curvature_rates import curvature_rates
 from semispline.solver.judge.rounding import derivative_noises
@@ -102,7 +103,7 @@ def test_noise_of_rates_by_hand():
     assert noise_of(graph(), (4, 0)) == pytest.approx([0, 1])
 
 
-@settings(max_examples=40, deadline=None)
+@examples(40)
 @given(st.integers(0, 2**32 - 1), st.sampled_from(KEYS[1:]))
 def test_no_small_error_of_a_derivative_does_more(seed, place):
     rng = np.random.default_rng(seed)
