@@ -135,6 +135,7 @@ def blend(
         energy_rounding=rounding.energy,
         quadrature_error=measured.quadrature_error,
         weights=problem.weights,
+        cures=problem.cures,
         alpha2=None if sides[0].order == 0 else found.a,
         beta2=None if sides[1].order == 0 else found.b,
         alpha2_bounds=admissible(problem, 0),
@@ -309,7 +310,7 @@ def _surface(
     else:
         points = points * size + centre
     pieces = np.split(points, problem.form.offsets[1:-1])
-    if not problem.is_rational:
+    if not problem.is_rational and problem.cures == (None, None):
         # The contact curves themselves are the bases' own, to the last bit.
         pieces[0], pieces[-1] = sides[0].rows[0], sides[1].rows[0]
     curves = [

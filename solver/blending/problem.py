@@ -21,7 +21,7 @@ from semispline.solver.blending.layout import blend_u_basis, middle_bases
 from semispline.solver.blending.linear_alpha import LinearEnds, LinearInV, linear_rows, monomials_of_ends, raised_basis
 from semispline.solver.blending.rational_energy import RationalForm, RationalSystem, free_weights
 from semispline.solver.blending.representative import Representative, needs_constant_weights, smooth_along, tame_side
-from semispline.solver.blending.sides import Side
+from semispline.solver.blending.sides import Side, of_one_degree
 from semispline.solver.errors import EdgeError, OptionError
 from semispline.solver.options import Alpha, BlendOptions
 from semispline.solver.splines import (
@@ -93,6 +93,8 @@ class BlendProblem:
         Where alpha^2 or beta^2 is linear in v; the rows of that contact then rise in degree.
     weights : pair of Representative or None
         Of rational sides, what their rows are built on.
+    cures : pair of str or None
+        What was done to make the rows of each side smooth along.
     """
 
     form: EnergyForm
@@ -106,6 +108,7 @@ class BlendProblem:
     p2: tuple[SecondParameter, SecondParameter] = (SecondParameter(), SecondParameter())
     linear: tuple[LinearEnds | None, LinearEnds | None] = (None, None)
     weights: tuple[Representative | None, Representative | None] = (None, None)
+    cures: tuple[str | None, str | None] = (None, None)
 
     @property
     def has_constant_weights(self) -> bool:
@@ -314,9 +317,12 @@ def make_problem(a: Side, b: Side, options: BlendOptions) -> BlendProblem:
     u = blend_u_basis(cast("int", options.degree_u), middle_curves, options.u_knots, (a.order, b.order))
     if any(side.has_shape_parameter and x == "fair" for side, x in zip((a, b), options.alphas, strict=True)):
         _check_bends_continuously(u)
+    (a, cure_a), (b, cure_b) = smooth_along(a, b, options)
     weights: tuple[Representative | None, Representative | None] = (None, None)
     if a.is_rational:
         (a, b), weights = _represented(a, b, u, options)
+    elif cure_a or cure_b:
+        a, b = of_one_degree(a, b)
     orders = [seam_order(side.along, side.rows[: side.order + 1], side.largest) for side in (a, b)]
     closed = min(orders)
     given = cast("Any", options.middle_knots)
@@ -359,18 +365,17 @@ def make_problem(a: Side, b: Side, options: BlendOptions) -> BlendProblem:
         (p2_a, p2_b),
         (linear_a, linear_b),
         weights,
+        (cure_a, cure_b),
     )
 
 
 def _represented(
     a: Side, b: Side, u: Basis, options: BlendOptions
 ) -> tuple[tuple[Side, Side], tuple[Representative, Representative]]:
-    """Return rational sides that are smooth along, with weights that are positive whatever alpha and p2 may be."""
-    cured = smooth_along(a, b, options)
-    a, b = (side for side, _ in cured)
+    """Return rational sides with weights that are positive whatever alpha and p2 may be."""
     means, exits = measure_facing(a, b), measure_exits(a, b)
     found = []
-    for index, (side, cure) in enumerate(cured):
+    for index, side in enumerate((a, b)):
         distances = u.knots - u.knots[0] if index == 0 else u.knots[-1] - u.knots[::-1]
         spans = _first_spans(u.degree, distances, side.order)
         if needs_constant_weights(options):
@@ -385,7 +390,7 @@ def _represented(
             # Where it stops a search, a window is made to begin lower.
             ends = min(LOWER, bulge) * low if low < high else min(1.0, bulge) * low, max(1.0, bulge) * high
             window = Window(ends, (second.value - most, second.value + most), second.per_a)
-        found.append(tame_side(side, cure, u, spans, window))
+        found.append(tame_side(side, u, spans, window))
     (tame_a, of_a), (tame_b, of_b) = found
     return (tame_a, tame_b), (of_a, of_b)
 

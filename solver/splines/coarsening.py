@@ -25,10 +25,7 @@ def coarsening_matrix(refining: SparseMatrix) -> SparseMatrix:
            [0., 0., 1.]])
     """
     rows, n = refining.shape
-    alone = np.diff(refining.indptr) == 1
-    only = refining.indices[refining.indptr[:-1]]
-    head = _leading(alone & (only == np.arange(rows)))
-    tail = min(n - head, _leading((alone & (only == np.arange(rows) - (rows - n)))[::-1]))
+    head, tail = _fixed_ends(refining)
     inner, fine = n - head - tail, rows - head - tail
     start = sp.eye_array(head, rows, format="csr")
     end = sp.eye_array(tail, rows, k=rows - tail, format="csr")
@@ -41,6 +38,27 @@ def coarsening_matrix(refining: SparseMatrix) -> SparseMatrix:
     middle[:, :head] = -inverse @ part[:, :head]
     middle[:, rows - tail :] = -inverse @ part[:, n - tail :]
     return sp.vstack([start, sp.csr_array(middle), end], format="csr")
+
+
+def coarser_points(refining: SparseMatrix, fine: FloatArray) -> FloatArray:
+    """Return the coarse control points that fit fine ones, shape (n_fine, d), best: the matrix above is not needed."""
+    rows, n = refining.shape
+    head, tail = _fixed_ends(refining)
+    points = np.concatenate([fine[:head], np.zeros((n - head - tail, fine.shape[1])), fine[rows - tail :]])
+    rest = fine - refining @ points
+    if n > head + tail:
+        block = refining[head : rows - tail, head : n - tail].toarray()
+        points[head : n - tail] = np.linalg.lstsq(block, rest[head : rows - tail], rcond=None)[0]
+    return points
+
+
+def _fixed_ends(refining: SparseMatrix) -> tuple[int, int]:
+    """Count the points that stay as they are at both ends: there the rows are those of the identity."""
+    rows, n = refining.shape
+    alone = np.diff(refining.indptr) == 1
+    only = refining.indices[refining.indptr[:-1]]
+    head = _leading(alone & (only == np.arange(rows)))
+    return head, min(n - head, _leading((alone & (only == np.arange(rows) - (rows - n)))[::-1]))
 
 
 def _leading(flags: NDArray[np.bool_]) -> int:

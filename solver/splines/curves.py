@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from semispline.solver.arrays import FloatArray, SparseMatrix, finite_array, require
 from semispline.solver.errors import KnotError, OptionError
 from semispline.solver.scalars import is_whole, real_number
-from semispline.solver.splines.coarsening import coarsening_matrix
+from semispline.solver.splines.coarsening import coarser_points
 from semispline.solver.splines.compatible import compatible_curves
 from semispline.solver.splines.deviation import deviation_bound
 from semispline.solver.splines.evaluation import euclidean
@@ -195,7 +195,7 @@ def _coarser_points(curve: BSplineCurve, knots: FloatArray) -> tuple[FloatArray,
     The distance is infinite where a weight would not be positive.
     """
     refining = refinement_matrix(curve.degree, knots, curve.knots)
-    points = combined(coarsening_matrix(refining), curve.homogeneous)
+    points = coarser_points(refining, curve.homogeneous)
     if not (points[:, 3:] > 0).all():
         return points, np.inf
     return points, deviation_bound([curve.degree], refining @ points, curve.homogeneous)
