@@ -4,6 +4,7 @@ from .base import local_origin as local_origin
 from .confirmed_meetings import Meeting as Meeting
 from .contact import Contact as Contact
 from .contact import NoNormal as NoNormal
+from .continuity import corresponding_points as corresponding_points
 from .continuity import measure_contact as measure_contact
 from .continuity import model_size as model_size
 from .correspondence import Correspondence as Correspondence

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from semispline.solver.arrays import FloatArray
 from semispline.solver.splines import merge_breakpoints
@@ -204,9 +205,8 @@ def _spread(breaks: FloatArray, total: int) -> FloatArray:
     return np.append(inside.ravel(), breaks[-1])
 
 
-def _is_end(s: FloatArray, run: Run) -> FloatArray:
-    start, end = run.ends
-    return (s == start) | (s == end)
+def _is_end(s: FloatArray, run: Run) -> NDArray[np.bool_]:
+    return np.isin(s, run.ends)
 
 
 def _lengths(vectors: FloatArray) -> FloatArray:
