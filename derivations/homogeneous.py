@@ -1,9 +1,10 @@
-"""Contact with a rational base, in homogeneous coordinates: R^h = (om R, om), om the weight.
+"""Contact with a rational base, in homogeneous coordinates: R^h = (omega R, omega), omega the weight.
 
 Let w(u) = p1 u + p2 u^2 / 2 + .. and lambda(u, v) > 0. Then H(u, v) = lambda(u, v) R^h(w(u), v) has the quotient
 R(w(u), v), whatever lambda is: a blend whose derivatives of order 0..n at u = 0 are those of H meets the base with
 contact of order n. By the product rule H_k = sum_j C(k, j) l_(k-j) A_j, with A_j the contact conditions of R^h and l_j
-the derivatives of lambda. A polynomial base is the case om = 1, lambda = 1.
+the derivatives of lambda. A polynomial base is the case
+omega = 1, lambda = 1.
 
 A lambda that is a function mu of w and v is another representative mu R^h of the same base: `leibniz` of its jets. Two
 of them make weights tame: the reciprocal of the mean weight, whose weights have the means 1, 0, 0, ..
@@ -64,19 +65,19 @@ def reciprocal_jet(values: Sequence[Expr]) -> tuple[Expr, ...]:
 
 
 def homogeneous_conditions(order: int, point: Sequence[Expr], weight: Sequence[Expr]) -> tuple[Matrix, ...]:
-    """Return H_0..H_n as (X, W) for jets of X = om R and of om along w, and lambda's jet l0, l1, ..
+    """Return H_0..H_n as (X, W) for jets of X = omega R and of omega along w.
 
     Parameters
     ----------
     order : int
         n.
     point, weight : sequence of Expr, length n + 1
-        Derivatives of X and of om by w at the contact.
+        Derivatives of X and of omega by w at the contact; those of lambda are l0, l1, ..
 
     Examples
     --------
-    >>> homogeneous_conditions(1, jet("X", 1), jet("om", 1))[1]
-    Matrix([[X0*l1 + X1*l0*p1, l0*om1*p1 + l1*om0]])
+    >>> homogeneous_conditions(1, jet("X", 1), jet("omega", 1))[1]
+    Matrix([[X0*l1 + X1*l0*p1, l0*omega1*p1 + l1*omega0]])
     """
     unused = {Symbol(f"q{k}"): 0 for k in range(1, order + 1)}
     conditions = [condition.subs(unused) for condition in contact_conditions(order)]
@@ -91,16 +92,16 @@ def homogeneous_conditions(order: int, point: Sequence[Expr], weight: Sequence[E
 def contact_residuals(order: int) -> tuple[Expr, ...]:
     """Return what must vanish for H to have the contact conditions of R as its quotient's derivatives.
 
-    With R_k and om_k free, X_k the jet of om R, and P_k the contact conditions of order 0..n of R itself: the
-    derivatives of X = W P, that is X_k - sum_j C(k, j) W_(k-j) P_j. Since W_0 = l0 om0 is not zero, P_k follow from H
-    by forward substitution, and they are these.
+    With R_k and omega_k free, X_k the jet of omega R, and P_k the contact conditions of order 0..n of R itself: the
+    derivatives of X = W P, that is X_k - sum_j C(k, j) W_(k-j) P_j. Since W_0 = l0 omega0 is not zero, P_k follow from
+    H by forward substitution, and they are these.
 
     Examples
     --------
     >>> contact_residuals(2)
     (0, 0, 0)
     """
-    weight, own = jet("om", order), Matrix([base_derivative(k, 0) for k in range(order + 1)])
+    weight, own = jet("omega", order), Matrix([base_derivative(k, 0) for k in range(order + 1)])
     point = tuple(leibniz(weight) * own)
     unused = {Symbol(f"q{k}"): 0 for k in range(1, order + 1)}
     wanted = Matrix([condition.subs(unused) for condition in contact_conditions(order)])
@@ -110,26 +111,26 @@ def contact_residuals(order: int) -> tuple[Expr, ...]:
 
 
 def last_rung(order: int) -> tuple[tuple[Expr, ...], tuple[Expr, ...]]:
-    """Return the jets of a representative of the base whose weight is om^(n+1) at the contact and 0 beyond.
+    """Return the jets of a representative of the base whose weight is omega^(n+1) at the contact and 0 beyond.
 
-    mu = om0^(n+1) / om along w, with om0 its value at the contact: then mu R^h = om0^(n+1) (R, 1), which has the jets
-    om0^(n+1) R_k. All of them are polynomials in the jets of X and om, by om0^k times
+    mu = omega0^(n+1) / omega along w, with omega0 its value at the contact: then mu R^h = omega0^(n+1) (R, 1), which has
+    the jets omega0^(n+1) R_k. All of them are polynomials in the jets of X and omega, by omega0^k times
 
-        om0^(k+1) R_k = om0^k X_k - sum_(j = 1..k) C(k, j) om_j om0^(j-1) om0^(k-j+1) R_(k-j).
+        omega0^(k+1) R_k = omega0^k X_k - sum_(j = 1..k) C(k, j) omega_j omega0^(j-1) omega0^(k-j+1) R_(k-j).
 
     Returns
     -------
     jets : tuple of Expr, length n + 1
-        om0^(n+1) R_k in X_j and om_j.
+        omega0^(n+1) R_k in X_j and om_j.
     weights : tuple of Expr, length n + 1
-        om0^(n+1), 0, 0, ..
+        omega0^(n+1), 0, 0, ..
 
     Examples
     --------
     >>> last_rung(1)[0]
-    (X0*om0, -X0*om1 + X1*om0)
+    (X0*omega0, -X0*omega1 + X1*omega0)
     """
-    x, om = jet("X", order), jet("om", order)
+    x, om = jet("X", order), jet("omega", order)
     numerators: list[Expr] = []
     for k in range(order + 1):
         total = om[0] ** k * x[k]

@@ -174,7 +174,7 @@ def _shape_conditions(request: Request) -> Result:
 
 def _homogeneous_conditions(request: Request) -> Result:
     order = request.order
-    names = [tuple(_derivative_name(letter, "w", k) for k in range(order + 1)) for letter in ("X", "om")]
+    names = [tuple(_derivative_name(letter, "w", k) for k in range(order + 1)) for letter in ("X", "omega")]
     conditions = homogeneous.homogeneous_conditions(order, *names)
     return Result(
         tuple(

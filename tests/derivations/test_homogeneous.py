@@ -42,7 +42,7 @@ def test_the_quotient_has_the_contact_of_the_base_for_every_lambda(order):
 
 def test_the_residual_sees_a_wrong_weight():
     order = 2
-    point, weight = jet("X", order), jet("om", order)
+    point, weight = jet("X", order), jet("omega", order)
     right = homogeneous_conditions(order, point, weight)
     # The base's own weights kept: what row formulas on Cartesian points would do.
     wrong = [Matrix([[row[0], weight[0] if k == 0 else 0]]) for k, row in enumerate(right)]
@@ -80,7 +80,7 @@ def test_the_reciprocal_is_a_derivative(order):
 @pytest.mark.parametrize("order", ORDERS)
 def test_the_last_rung_is_a_polynomial_representative_of_the_base(order):
     jets, weights = last_rung(order)
-    x, om = jet("X", order), jet("om", order)
+    x, om = jet("X", order), jet("omega", order)
     assert all(Poly(value, *x, *om).is_homogeneous for value in jets)
     # om^(n+1) R and om^(n+1), 0, ..: the quotient of these jets is that of the base.
     own = quotient_jet(x, om)
