@@ -184,7 +184,7 @@ def _to_cone(curve: FloatArray, allowed: float) -> FloatArray | None:
     unit = curve / np.linalg.norm(curve, axis=1)[:, None]
     x, y, w = unit.T
     monomials = np.column_stack([x * x, y * y, w * w, 2 * x * y, 2 * x * w, 2 * y * w]) / np.sqrt(len(unit))
-    _, values, right = np.linalg.svd(monomials)
+    _, values, right = np.linalg.svd(monomials, full_matrices=False)
     # More than one form would be a curve on fewer points than a conic has.
     if values[5] > allowed or values[4] <= max(allowed, _DEGENERATE):
         return None
