@@ -203,3 +203,17 @@ def test_values_on_a_broken_line_are_those_of_a_line():
     new, basis = smoothed(rows, along, jumps(rows, along, 1, SPANS))
     assert basis.knots.tolist() == [0, 0, 2, 2]
     assert basis_matrix(1, basis.knots, np.array([0.5])) @ new[1] == pytest.approx(np.array([[1, 0, 1]]))
+
+
+def test_rounding_makes_no_jump():
+    rng = np.random.default_rng(5)
+    # Knots that are simple are smooth, however near the next one is.
+    along = Basis(3, clamped([0.5, 0.5 + 1e-9], 3, 0, 1))
+    rows = rng.uniform(-1, 1, (3, 6, 3)) + 1e6
+    assert jumps(rows, along, 3, SPANS) == ()
+    # A seam is as smooth as the rounding of its coordinates tells, wherever they are counted from now.
+    rows, along = smooth_base(rng, closed=True)
+    far = rows + 1e9
+    assert jumps(far, along, 3, SPANS, closed=True) == ()
+    assert jumps(far - 1e9, along, 3, SPANS, closed=True) != ()
+    assert jumps(far - 1e9, along, 3, SPANS, closed=True, largest=1e9) == ()
