@@ -8,7 +8,7 @@ from helpers.conics import standard_arcs
 from helpers.same_surface import departure
 from semispline import read_surface
 from semispline.solver.blending.jumps import jumps, smoothed
-from semispline.solver.blending.knot_lines import least_continuity
+from semispline.solver.blending.knot_lines import KnotLine, least_continuity
 from semispline.solver.splines import Basis, basis_matrix, clamped, refinement_matrix
 from semispline.solver.splines.products import multiply
 
@@ -203,6 +203,11 @@ def test_values_on_a_broken_line_are_those_of_a_line():
     new, basis = smoothed(rows, along, jumps(rows, along, 1, SPANS))
     assert basis.knots.tolist() == [0, 0, 2, 2]
     assert basis_matrix(1, basis.knots, np.array([0.5])) @ new[1] == pytest.approx(np.array([[1, 0, 1]]))
+
+
+def test_what_the_multiplicity_of_a_knot_promises_is_not_measured():
+    one, other = np.zeros((3, 1, 3)), np.array([[[0.0] * 3], [[1.0] * 3], [[1.0] * 3]])
+    assert [KnotLine(0.5, one, other, np.zeros(3), sure).continuity for sure in (-1, 0, 1, 2)] == [0, 0, 1, 2]
 
 
 def test_rounding_makes_no_jump():

@@ -60,6 +60,43 @@ def test_rims_of_other_arcs_make_no_crease_once_cured(cuts_a, cuts_b, least):
         assert curvature < 1e-10
 
 
+@pytest.mark.parametrize(("lean", "most", "rung"), [(0.05, 0.5, "mean"), (0.25, 4.0, "fitted")])
+def test_rings_whose_weights_are_not_separable(lean, most, rung):
+    sides, bases = [], []
+    for sign, cuts in ((1, np.linspace(0, TURN, 5)), (-1, np.linspace(0.3, 0.3 + TURN, 4))):
+        rng = np.random.default_rng(sign + 1)
+        knots, points = standard_arcs(cuts)
+        frames = np.zeros((3, 3, 4))
+        frames[:, 0, 0] = frames[:, 1, 1] = 1
+        for k in range(3):
+            frames[k, :, 3] = *rng.uniform(-lean, lean, 2), 1
+            frames[k, 2, 2] = sign * (1 + 0.5 * k)
+        base = np.einsum("nc,kcd->knd", points, frames), Basis(2, knots / knots[-1])
+        rows, along = cured_conic(*base, 2)
+        found = tamed(
+            rows,
+            along,
+            2,
+            SPANS,
+            blend_degree=5,
+            blend_spans=SPANS,
+            window=Window((most / 4, most)),
+            closed=True,
+        )
+        sides.append(found)
+        bases.append(base)
+    assert rung in {side.rung.name for side in sides}
+    blend = Blend(*((side.rows, side.along, side.degree) for side in sides), alpha=(most, most / 2))
+    crease, jump = blend.inside(closed=True)
+    assert crease < 1e-9
+    assert jump < 1e-8
+    for end, base in enumerate(bases):
+        gap, angle, curvature = blend.contact(end, *base, 2)
+        assert gap < 1e-12
+        assert angle < 1e-9
+        assert curvature < 1e-9
+
+
 @pytest.mark.parametrize(("spread", "most", "rung"), [(0.1, 0.5, "mean"), (0.3, 4.0, "fitted"), (0.8, 8.0, "om^(n+1)")])
 def test_sheets_on_each_rung_are_in_contact_and_smooth(spread, most, rung):
     rng = np.random.default_rng(11)
