@@ -88,7 +88,8 @@ def cured_rows(
     if kinds in ({"G1"}, {"G1", "shared"}):
         bent = closed_lines(rows, along, degree, spans, closed=closed)
         if bent is not None and bent[1].degree <= _MOST_DEGREE:
-            return CuredRows(*bent, "slopes", found, ())
+            left = jumps(bent[0], bent[1], bent[2], spans, closed=closed, largest=largest)
+            return CuredRows(*bent, "slopes", found, left)
     new, basis = smoothed(rows, along, found, closed=closed)
     if basis is along or basis.degree > _MOST_DEGREE:
         return CuredRows(rows, along, degree, "none", found, found)

@@ -16,7 +16,7 @@ import numpy as np
 from semispline.solver.arrays import FloatArray
 from semispline.solver.blending.knot_lines import bezier_pieces, knot_lines
 from semispline.solver.blending.weights import end_derivatives, rows_from_derivatives
-from semispline.solver.splines import Basis, affine_knots, clamped, elevation_matrix, refinement_matrix
+from semispline.solver.splines import Basis, affine_knots, clamped, refinement_matrix
 
 # What is left of the jump of the derivatives along v, relative to them, where tangent planes are one.
 _TOLERANCE = 1e-8
@@ -178,10 +178,10 @@ def _bent(
     raised = max(zeros.values()) + 1
     has_weights = any(fade[0, 0] for fade in fades.values())
     degree = q + (order + has_weights) * raised
-    points = []
+    points, elevation = [], _elevation(q, degree)
     for v, width, piece in zip(breaks[:-1].tolist(), widths.tolist(), pieces, strict=True):
         if v not in fades:
-            points.append(np.asarray(_elevation(q, degree) @ piece))
+            points.append(np.asarray(elevation @ piece))
             continue
         t = (1 - np.cos(np.linspace(0, np.pi, degree + 1))) / 2
         bump = width * t * (1 - t) ** zeros[v]
@@ -241,4 +241,11 @@ def _bernstein(degree: int, t: FloatArray) -> FloatArray:
 
 
 def _elevation(degree: int, new: int) -> FloatArray:
-    return np.asarray(elevation_matrix(degree, np.repeat([0.0, 1.0], degree + 1), new).toarray())
+    """Return the matrix that raises the degree of Bezier points."""
+    by = new - degree
+    return np.array(
+        [
+            [comb(degree, i) * comb(by, j - i) / comb(new, j) if 0 <= j - i <= by else 0.0 for i in range(degree + 1)]
+            for j in range(new + 1)
+        ]
+    )
