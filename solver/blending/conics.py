@@ -14,8 +14,7 @@ from math import ceil, pi
 import numpy as np
 
 from semispline.solver.arrays import FloatArray
-from semispline.solver.splines import Basis, affine_knots, basis_matrix, breakpoints
-from semispline.solver.splines.products import smooth_arc
+from semispline.solver.splines import Basis, affine_knots, basis_matrix, breakpoints, smooth_arc
 
 # Rows are one conic to this, relative to their size; what coordinates far from the origin lose comes on top.
 CONIC_TOLERANCE = 1e-10

@@ -18,8 +18,7 @@ import numpy as np
 from semispline.solver.arrays import FloatArray
 from semispline.solver.blending.knot_lines import LINE_TOLERANCE, KnotLine, bezier_pieces, knot_lines
 from semispline.solver.blending.weights import end_derivatives
-from semispline.solver.splines import Basis, clamped, refinement_matrix
-from semispline.solver.splines.products import multiply
+from semispline.solver.splines import Basis, clamped, multiply, refinement_matrix
 
 JumpKind: TypeAlias = Literal["shared", "G1", "creased"]
 # Tangent planes nearer than this, in degrees, are one.
