@@ -5,10 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
+import numpy as np
+
 from semispline.solver.arrays import FloatArray
 from semispline.solver.blending.conics import cured_conic
 from semispline.solver.blending.jumps import Jump, jumps, smoothed
 from semispline.solver.blending.own_lines import closed_lines
+from semispline.solver.blending.weights import SEPARABLE
 from semispline.solver.splines import Basis
 
 CureName: TypeAlias = Literal["none", "conic", "spans", "slopes"]
@@ -72,7 +75,6 @@ def cured_rows(
 
     Examples
     --------
-    >>> import numpy as np
     >>> rows = np.array([[[0, 0, 0], [1, 0, 0], [3.0, 0, 0]], [[0, 1, 0], [1, 1, 0], [3.0, 1, 0]]])
     >>> found = cured_rows(rows, Basis(1, np.array([0, 0, 1, 2, 2.0])), 1, (1.0,))
     >>> found.cure, found.along.knots.tolist(), found.left
@@ -81,7 +83,9 @@ def cured_rows(
     found = jumps(rows, along, degree, spans, closed=closed, largest=largest)
     if not found:
         return CuredRows(rows, along, degree, "none", (), ())
-    conic = cured_conic(rows, along, smoothness) if rows.shape[-1] == 4 else None
+    # A parabola without weights along keeps its degree, and stays without them.
+    has_weights = rows.shape[-1] == 4 and np.ptp(rows[0, :, 3]) > SEPARABLE * np.abs(rows[0, :, 3]).max()
+    conic = cured_conic(rows, along, smoothness) if has_weights else None
     if conic is not None:
         return CuredRows(*conic, degree, "conic", found, ())
     kinds = {jump.kind for jump in found}

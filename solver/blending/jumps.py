@@ -18,7 +18,7 @@ import numpy as np
 from semispline.solver.arrays import FloatArray
 from semispline.solver.blending.knot_lines import LINE_TOLERANCE, KnotLine, bezier_pieces, knot_lines
 from semispline.solver.blending.weights import end_derivatives
-from semispline.solver.splines import Basis, clamped, multiply, refinement_matrix
+from semispline.solver.splines import Basis, clamped, inner_knots, multiply, refinement_matrix
 
 JumpKind: TypeAlias = Literal["shared", "G1", "creased"]
 # Tangent planes nearer than this, in degrees, are one.
@@ -77,6 +77,9 @@ def jumps(
     >>> jumps(rows, Basis(1, np.array([0, 0, 1, 2, 2.0])), 1, (1.0,))
     (Jump(v=1.0, kind='shared', speed=2.0, slope=0.0, degrees=0.0),)
     """
+    inner = inner_knots(along.knots, along.degree)
+    if not closed and np.unique(inner, return_counts=True)[1].max(initial=0) < along.degree:
+        return ()
     largest = max(largest, float(np.abs(rows[..., :3]).max()))
     lines = knot_lines(_centred(rows), along, 1, closed=closed, largest=largest)
     return tuple(_judged(line, degree, spans) for line in lines if line.continuity < 1)

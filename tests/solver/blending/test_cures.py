@@ -65,3 +65,15 @@ def test_two_arcs_with_one_tangent_are_no_conic():
     rows[1, :, 2] = rows[1, :, 3]
     found = cured_rows(rows, Basis(2, TWO), 1, SPANS)
     assert (found.cure, found.along.degree, found.left) == ("spans", 4, ())
+
+
+@pytest.mark.parametrize("columns", [3, 4])
+def test_a_parabola_without_weights_stays_one(columns):
+    # v^2 over [0, 1] and [1, 2], the second half twice as fast.
+    points = [[0, 0, 0], [0.5, 0, 0], [1, 1, 0], [1.5, 2, 0], [2, 4, 0]]
+    rows, along = strip(points, clamped([1.0, 1.0], 2, 0, 1.5))
+    if columns == 4:
+        rows = np.concatenate([rows, np.ones((2, 5, 1))], axis=-1)
+    found = cured_rows(rows, along, 1, SPANS)
+    assert (found.cure, found.along.degree, found.left) == ("spans", 2, ())
+    assert found.along.knots.tolist() == pytest.approx([0, 0, 0, 0.75, 1.5, 1.5, 1.5])
