@@ -14,8 +14,7 @@ from math import ceil, pi
 import numpy as np
 
 from semispline.solver.arrays import FloatArray
-from semispline.solver.splines import Basis, affine_knots, basis_matrix, breakpoints
-from semispline.solver.splines.products import smooth_arc
+from semispline.solver.splines import Basis, affine_knots, basis_matrix, breakpoints, smooth_arc
 
 # Rows are one conic to this, relative to their size; what coordinates far from the origin lose comes on top.
 CONIC_TOLERANCE = 1e-10
@@ -184,7 +183,7 @@ def _to_cone(curve: FloatArray, allowed: float) -> FloatArray | None:
     unit = curve / np.linalg.norm(curve, axis=1)[:, None]
     x, y, w = unit.T
     monomials = np.column_stack([x * x, y * y, w * w, 2 * x * y, 2 * x * w, 2 * y * w]) / np.sqrt(len(unit))
-    _, values, right = np.linalg.svd(monomials)
+    _, values, right = np.linalg.svd(monomials, full_matrices=False)
     # More than one form would be a curve on fewer points than a conic has.
     if values[5] > allowed or values[4] <= max(allowed, _DEGENERATE):
         return None

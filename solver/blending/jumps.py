@@ -18,8 +18,7 @@ import numpy as np
 from semispline.solver.arrays import FloatArray
 from semispline.solver.blending.knot_lines import LINE_TOLERANCE, KnotLine, bezier_pieces, knot_lines
 from semispline.solver.blending.weights import end_derivatives
-from semispline.solver.splines import Basis, clamped, refinement_matrix
-from semispline.solver.splines.products import multiply
+from semispline.solver.splines import Basis, clamped, inner_knots, multiply, refinement_matrix
 
 JumpKind: TypeAlias = Literal["shared", "G1", "creased"]
 # Tangent planes nearer than this, in degrees, are one.
@@ -49,7 +48,13 @@ class Jump:
 
 
 def jumps(
-    rows: FloatArray, along: Basis, degree: int, spans: tuple[float, ...], *, closed: bool = False
+    rows: FloatArray,
+    along: Basis,
+    degree: int,
+    spans: tuple[float, ...],
+    *,
+    closed: bool = False,
+    largest: float = 0.0,
 ) -> tuple[Jump, ...]:
     """Return the lines where the rows are not C1, the seam of closed rows last.
 
@@ -63,6 +68,8 @@ def jumps(
     spans : tuple of float
         Distances from the edge to the next knots across.
     closed : bool
+    largest : float
+        As in `knot_lines`.
 
     Examples
     --------
@@ -70,8 +77,11 @@ def jumps(
     >>> jumps(rows, Basis(1, np.array([0, 0, 1, 2, 2.0])), 1, (1.0,))
     (Jump(v=1.0, kind='shared', speed=2.0, slope=0.0, degrees=0.0),)
     """
-    local = _centred(rows)
-    lines = knot_lines(local, along, 1, closed=closed)
+    inner = inner_knots(along.knots, along.degree)
+    if not closed and np.unique(inner, return_counts=True)[1].max(initial=0) < along.degree:
+        return ()
+    largest = max(largest, float(np.abs(rows[..., :3]).max()))
+    lines = knot_lines(_centred(rows), along, 1, closed=closed, largest=largest)
     return tuple(_judged(line, degree, spans) for line in lines if line.continuity < 1)
 
 
@@ -103,7 +113,8 @@ def _shared(line: KnotLine) -> tuple[float, float] | None:
         size = float(before @ before)
         speed, slope = float(before @ after) / size if size else 0.0, 0.0
     rest = after - speed * before - slope * place
-    if speed <= 0 or np.abs(rest).max() > LINE_TOLERANCE * max(np.abs(before).max() * speed, np.abs(after).max()):
+    allowed = LINE_TOLERANCE * max(np.abs(before).max() * speed, np.abs(after).max()) + line.rounding[1]
+    if speed <= 0 or np.abs(rest).max() > allowed:
         return None
     return speed, slope
 

@@ -28,8 +28,7 @@ from semispline.solver.blending.weights import (
     spline_mean,
 )
 from semispline.solver.generated import rows_numpy
-from semispline.solver.splines import Basis, basis_matrix, breakpoints, clamped
-from semispline.solver.splines.products import multiply
+from semispline.solver.splines import Basis, basis_matrix, breakpoints, clamped, multiply
 
 RungName: TypeAlias = Literal["mean", "fitted", "om^(n+1)"]
 # Weights of rows below this part of the least weight of the edge are not tame.

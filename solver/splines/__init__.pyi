@@ -32,6 +32,8 @@ from .operations import reverse_u as reverse_u
 from .operations import reverse_v as reverse_v
 from .operations import swap_directions as swap_directions
 from .operations import transform as transform
+from .products import multiply as multiply
+from .products import smooth_arc as smooth_arc
 from .quadrature import Basis as Basis
 from .quadrature import Samples as Samples
 from .quadrature import first_on_spans as first_on_spans

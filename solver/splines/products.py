@@ -115,6 +115,7 @@ def _combined(matrix: Any, points: Any) -> Any:
     return np.asarray(matrix @ flat).reshape(-1, *np.shape(points)[1:])
 
 
+@lru_cache(maxsize=32)
 def smooth_arc(turn: float, order: int, segments: int) -> tuple[Basis, FloatArray]:
     """Return a rational arc of the unit circle that is C^order in homogeneous coordinates, over [0, 1].
 
@@ -135,7 +136,7 @@ def smooth_arc(turn: float, order: int, segments: int) -> tuple[Basis, FloatArra
     basis : Basis
         Of degree 2 (order + 1).
     points : ndarray, shape (n, 3)
-        (x, y, w) with x^2 + y^2 = w^2 everywhere; w is 1 at both ends.
+        (x, y, w) with x^2 + y^2 = w^2 everywhere; w is 1 at both ends. Read-only.
 
     Source: `semispline.derivations.circles`.
 
@@ -162,4 +163,5 @@ def smooth_arc(turn: float, order: int, segments: int) -> tuple[Basis, FloatArra
     points = np.column_stack([square.real, square.imag, size.real])
     points[0] = 1.0, 0.0, 1.0
     points[-1] = points[0] if turn == 2 * pi else (np.cos(turn), np.sin(turn), 1.0)
+    points.setflags(write=False)
     return basis, points

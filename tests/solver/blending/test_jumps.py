@@ -8,7 +8,7 @@ from helpers.conics import standard_arcs
 from helpers.same_surface import departure
 from semispline import read_surface
 from semispline.solver.blending.jumps import jumps, smoothed
-from semispline.solver.blending.knot_lines import least_continuity
+from semispline.solver.blending.knot_lines import KnotLine, least_continuity
 from semispline.solver.splines import Basis, basis_matrix, clamped, refinement_matrix
 from semispline.solver.splines.products import multiply
 
@@ -203,3 +203,22 @@ def test_values_on_a_broken_line_are_those_of_a_line():
     new, basis = smoothed(rows, along, jumps(rows, along, 1, SPANS))
     assert basis.knots.tolist() == [0, 0, 2, 2]
     assert basis_matrix(1, basis.knots, np.array([0.5])) @ new[1] == pytest.approx(np.array([[1, 0, 1]]))
+
+
+def test_what_the_multiplicity_of_a_knot_promises_is_not_measured():
+    one, other = np.zeros((3, 1, 3)), np.array([[[0.0] * 3], [[1.0] * 3], [[1.0] * 3]])
+    assert [KnotLine(0.5, one, other, np.zeros(3), sure).continuity for sure in (-1, 0, 1, 2)] == [0, 0, 1, 2]
+
+
+def test_rounding_makes_no_jump():
+    rng = np.random.default_rng(5)
+    # Knots that are simple are smooth, however near the next one is.
+    along = Basis(3, clamped([0.5, 0.5 + 1e-9], 3, 0, 1))
+    rows = rng.uniform(-1, 1, (3, 6, 3)) + 1e6
+    assert jumps(rows, along, 3, SPANS) == ()
+    # A seam is as smooth as the rounding of its coordinates tells, wherever they are counted from now.
+    rows, along = smooth_base(rng, closed=True)
+    far = rows + 1e9
+    assert jumps(far, along, 3, SPANS, closed=True) == ()
+    assert jumps(far - 1e9, along, 3, SPANS, closed=True) != ()
+    assert jumps(far - 1e9, along, 3, SPANS, closed=True, largest=1e9) == ()
