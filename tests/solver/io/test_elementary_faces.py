@@ -322,8 +322,8 @@ def test_the_words_reach_list_convert_and_blend(tmp_path):
     assert "offset" in told.stdout
     told = runner.invoke(app, ["convert", str(path), str(tmp_path / "o.json")])
     assert f"warning: {path} (offset) has {words}" in told.stderr
-    command = ["blend", str(path), str(floor), *"--edge-a v1 --edge-b u0 --strict -o".split(), str(tmp_path / "b.json")]
-    told = runner.invoke(app, command)
+    edges = ["--edge-a", "v1", "--edge-b", "u0"]
+    told = runner.invoke(app, ["blend", str(path), str(floor), *edges, "--strict", "-o", str(tmp_path / "b.json")])
     assert told.exit_code == 3
     assert words in told.stderr
     assert "leave out strict" in told.stderr
