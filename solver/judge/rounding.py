@@ -30,8 +30,11 @@ def derivative_noises(base: Base, origin: FloatArray, order: int = 2) -> FloatAr
     first = np.max([_factors(degree, _end_widths(degree, knots, at_end, order)) for degree, knots in across], 0)
     second = np.max([_factors(degree, _inner_widths(degree, knots, order)) for degree, knots in along], 0)
     factors = np.multiply.outer(first, second)
-    if base.surface.is_rational:
-        factors = _quotient_factors(factors, _weight_ratio(base, order))
+    if base.surface.is_rational and (ratio := _weight_ratio(base, order)) > 1:
+        factors = _quotient_factors(factors, ratio)
+        # Weights are rounded, too: a part e of one moves the quotient f by e (P - f) times its share.
+        weighed = eps * float(np.abs(box - origin).max())
+        return np.asarray((stored + worked) * factors + weighed * _of_product(factors))
     return np.asarray((stored + worked) * factors)
 
 
@@ -115,8 +118,7 @@ def _quotient_factors(factors: FloatArray, ratio: float) -> FloatArray:
     """Return the same for a quotient, whose weights differ by no more than a ratio wherever they act together.
 
     With f = X / w the error of the points has f w = X, and f^(k) w = X^(k) - sum C(k, j) w^(j) f^(k - j). Of X^(k) at
-    most the largest weight times the factor is left, of w^(j) half the spread of the weights times it. An error of the
-    weights themselves acts as one of the points, by as much of their distances.
+    most the largest weight times the factor is left, of w^(j) half the spread of the weights times it.
     """
     spread = (ratio - 1) / 2
     found = np.zeros_like(factors)
@@ -125,6 +127,15 @@ def _quotient_factors(factors: FloatArray, ratio: float) -> FloatArray:
         for i, j in np.ndindex(a + 1, b + 1):
             if i or j:
                 found[a, b] += comb(a, i) * comb(b, j) * spread * factors[i, j] * found[a - i, b - j]
+    return found
+
+
+def _of_product(factors: FloatArray) -> FloatArray:
+    """Return how large derivatives of a product may be, by Leibniz' rule, where each of two has these bounds."""
+    found = np.zeros_like(factors)
+    for a, b in np.ndindex(*factors.shape):
+        for i, j in np.ndindex(a + 1, b + 1):
+            found[a, b] += comb(a, i) * comb(b, j) * factors[i, j] * factors[a - i, b - j]
     return found
 
 
