@@ -151,6 +151,10 @@ def print_contact(contact: Contact, unit: str | None) -> None:
             allowed = "see below" if limit is None else f"{limit:.3g}"
         rows.append((name, f"{value:.3g}", allowed, in_unit, f"{place.parameter:.5g}", f"({point})"))
     _print_table(rows)
+    if contact.corresponds == "foot points":
+        typer.echo(
+            "the edges are one curve with two parametrisations: each point is compared with its foot on the other"
+        )
     for bare in contact.no_normal:
         typer.echo(f"{bare.surface.upper()}: {bare}")
 
@@ -255,6 +259,8 @@ def _figures(contact: Contact, asked: Continuity | None) -> Iterator[str]:
             continue
         limit = f" ({allowed[name]:.2g} allowed)" if name in allowed else ""
         yield f"{words} {getattr(contact, name):.2g}{unit}{limit}"
+    if contact.corresponds == "foot points":
+        yield "by foot points"
 
 
 def print_warnings(warnings: Sequence[str]) -> None:

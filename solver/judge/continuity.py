@@ -12,7 +12,7 @@ from semispline.solver.arrays import FloatArray
 from semispline.solver.errors import EdgeError, OptionError
 from semispline.solver.judge.base import Base, local_origin
 from semispline.solver.judge.contact import Contact, Place
-from semispline.solver.judge.correspondence import Correspondence, correspond
+from semispline.solver.judge.correspondence import Correspondence, correspond, corresponding
 from semispline.solver.judge.curvature_rates import curvature_rates
 from semispline.solver.judge.de_boor import EdgeCurves, edge_curves
 from semispline.solver.judge.edge_normals import places_without_normal
@@ -129,6 +129,17 @@ def measure_contact(
     )
 
 
+def corresponding_points(a: Base, b: Base, matched: Correspondence, s: FloatArray) -> FloatArray:
+    """Return the parameters along edge b that belong to `s` along edge a as `measure_contact` has it, by feet too."""
+    contact = measure_contact(a, b, correspondence=matched)
+    if contact.corresponds == "affine":
+        return corresponding(a, b, matched, s)
+    curves = tuple(edge_curves(base.surface, base.edge, 1, local_origin(a.surface, b.surface)) for base in (a, b))
+    pairs = foot_pairs(a, b, matched, (curves[0], curves[1]), 2 * max(contact.gap, contact.allowed["gap"]))
+    assert pairs is not None
+    return pairs.along_b(s)
+
+
 @dataclass(frozen=True)
 class _Worst:
     """The largest of some values, or the first that is not a number, and where it is."""
@@ -221,20 +232,17 @@ class _Edges:
         """Measure at parameters along a and along b that correspond, affinely where no pace is given."""
         # Part by part: a long edge has more samples than memory should hold at once.
         return _Samples.joined(
-            [
-                self._part(s_a[i : i + _AT_ONCE], s_b[i : i + _AT_ONCE], pace)
-                for i in range(0, len(s_a), _AT_ONCE)
-            ]
+            [self._part(s_a[i : i + _AT_ONCE], s_b[i : i + _AT_ONCE], pace) for i in range(0, len(s_a), _AT_ONCE)]
         )
 
-    def values(self, s_a: FloatArray, s_b: FloatArray, kinds: Sequence[int]) -> tuple[FloatArray, FloatArray]:
-        """Return points on a, shape (K, 3), and some kinds of values, numbered as in `_Samples`, shape (kinds, K)."""
+    def values(self, s_a: FloatArray, s_b: FloatArray, kinds: Sequence[int]) -> FloatArray:
+        """Return some kinds of values, numbered as in `_Samples`, shape (kinds, K)."""
         order = max(2, *kinds)
         sides = self._sides(s_a, s_b, order)
         found = _values(*sides)
         if order > 2:
             found += [rate.jumps for rate in self._rates(*sides, order)]
-        return sides[0].point, np.stack([found[kind] for kind in kinds])
+        return np.stack([found[kind] for kind in kinds])
 
     def _sides(self, s_a: FloatArray, s_b: FloatArray, order: int) -> tuple[_Side, _Side]:
         side_a = _Side(self.curves_a, self.a.edge, s_a, 1.0, order)
@@ -314,19 +322,19 @@ def _with_worst_between(edges: _Edges, pairs: Pairs, found: _Samples, of_gap: fl
         return found
 
     def values(s_a: FloatArray) -> FloatArray:
-        return edges.values(s_a, pairs.along_b(s_a), telling)[1]
+        return edges.values(s_a, pairs.along_b(s_a), telling)
 
     s_a = places_between(values, found.s_a, found.values[telling], pairs.breaks)
-    points, more = edges.values(s_a, pairs.along_b(s_a), telling)
-    # Nothing else changes: neither what is rounding, nor what values are compared with.
-    worse = np.full((len(noises), len(s_a)), -np.inf)
-    worse[telling] = np.nan_to_num(more, nan=-np.inf)
-    return replace(
-        found,
-        s_a=np.concatenate([found.s_a, s_a]),
-        points=np.concatenate([found.points, points]),
-        values=np.concatenate([found.values, worse], axis=1),
-    )
+    if not len(s_a):
+        return found
+    more = edges.measured(s_a, pairs.along_b(s_a), pairs.pace)
+    if not np.isfinite(more.values).all():
+        # Beside a place without a normal.
+        return found
+    # What is rounding stays as it was sampled.
+    worse = np.full_like(more.values, -np.inf)
+    worse[telling] = more.values[telling]
+    return replace(_Samples.joined([found, replace(more, values=worse)]), noises=found.noises)
 
 
 def _values(side_a: _Side, side_b: _Side) -> list[FloatArray]:

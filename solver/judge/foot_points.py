@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from semispline.solver.arrays import FloatArray
 from semispline.solver.splines import merge_breakpoints
@@ -131,7 +132,11 @@ def foot_map(a: Run, b: Run, most: float, closed: bool) -> FootMap | None:
     values, distance = b.feet(points, values, closed)
     # Points may share a foot but for rounding, nothing more.
     slack = _ONE * (b.ends[1] - b.ends[0])
-    if distance.max() > most or np.diff(values).min() < -slack or values[-1] - values[0] > b.ends[1] - b.ends[0] + slack:
+    if (
+        distance.max() > most
+        or np.diff(values).min() < -slack
+        or values[-1] - values[0] > b.ends[1] - b.ends[0] + slack
+    ):
         return None
     values = np.maximum.accumulate(values)
     halfway = (b.breaks[:-1] + b.breaks[1:]) / 2
@@ -200,9 +205,8 @@ def _spread(breaks: FloatArray, total: int) -> FloatArray:
     return np.append(inside.ravel(), breaks[-1])
 
 
-def _is_end(s: FloatArray, run: Run) -> FloatArray:
-    start, end = run.ends
-    return (s == start) | (s == end)
+def _is_end(s: FloatArray, run: Run) -> NDArray[np.bool_]:
+    return np.isin(s, run.ends)
 
 
 def _lengths(vectors: FloatArray) -> FloatArray:

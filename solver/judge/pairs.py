@@ -133,8 +133,8 @@ def places_between(
         left = np.where(np.append(False, same), np.append(-np.inf, row[:-1]), -np.inf)
         right = np.where(np.append(same, False), np.append(row[1:], -np.inf), -np.inf)
         # None of a kind of which one value is not a number.
-        maxima = np.flatnonzero((row >= left) & (row >= right)) if np.isfinite(row).all() else []
-        best = sorted(maxima, key=lambda i: -row[i])[:_BESIDE]
+        maxima = np.flatnonzero((row >= left) & (row >= right) & np.isfinite(row).all())
+        best = maxima[np.argsort(-row[maxima], kind="stable")][:_BESIDE].tolist()
         kinds += [kind] * len(best)
         chosen += best
     if not chosen:
@@ -150,7 +150,7 @@ def places_between(
 
 
 def _vertices(x: FloatArray, y: FloatArray, at: FloatArray) -> FloatArray:
-    """Return where the parabolas through the largest values and their neighbours are highest; those at ends are left."""
+    """Return where parabolas through the largest values and their neighbours are highest; those at ends are left."""
     inside = np.flatnonzero((at > 0) & (at < x.shape[1] - 1))
     i = at[inside]
     step = x[inside, i + 1] - x[inside, i]

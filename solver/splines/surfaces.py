@@ -8,10 +8,10 @@ module above.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
-from functools import cache, cached_property
+from functools import cached_property
 from typing import Any, TypeAlias, final
 
 import numpy as np
@@ -303,7 +303,7 @@ class SemiStructuredSurface:
         """Number of control points, over all curves."""
         return sum(len(curve.control_points) for curve in self.control_curves)
 
-    @property
+    @cached_property
     def is_rational(self) -> bool:
         """Whether any curve has weights, equal ones too."""
         return any(curve.weights is not None for curve in self.control_curves)
@@ -312,13 +312,13 @@ class SemiStructuredSurface:
         """Evaluate the surface or a mixed derivative at the points (u[k], v[k]); returns shape (K, 3)."""
         check_orders(du=du, dv=dv)
         uu, vv = point_parameters(u, v, self.knots_u, self.control_curves[0].knots)
-        rows = self._rows(vv)
+        rows = self._rows(vv, dv)
 
         def values(a: int, b: int) -> FloatArray:
             if a > self.degree_u:
-                return np.zeros((len(uu), self._columns))
+                return np.zeros((len(uu), rows[b].shape[2]))
             basis, index = local_basis(self.degree_u - a, self.knots_u[a : len(self.knots_u) - a], uu)
-            local = derivative_points(self.degree_u, self.knots_u, rows(b), a)[index, np.arange(len(uu))[:, None]]
+            local = derivative_points(self.degree_u, self.knots_u, rows[b], a)[index, np.arange(len(uu))[:, None]]
             return np.asarray(np.einsum("ki,kid->kd", basis, local))
 
         return quotient(values, du, dv) if self.is_rational else values(du, dv)
@@ -327,14 +327,14 @@ class SemiStructuredSurface:
         """Evaluate on the grid u x v; returns shape (len(u), len(v), 3)."""
         check_orders(du=du, dv=dv)
         uu, vv = checked_parameters(u, self.knots_u, "u"), checked_parameters(v, self.control_curves[0].knots, "v")
-        rows = self._rows(vv)
+        rows = self._rows(vv, dv)
 
         def values(a: int, b: int) -> FloatArray:
             if a > self.degree_u:
-                return np.zeros((len(uu), len(vv), self._columns))
-            across = derivative_points(self.degree_u, self.knots_u, rows(b), a)
+                return np.zeros((len(uu), len(vv), rows[b].shape[2]))
+            across = derivative_points(self.degree_u, self.knots_u, rows[b], a)
             basis = basis_matrix(self.degree_u - a, self.knots_u[a : len(self.knots_u) - a], uu)
-            return np.asarray((basis @ across.reshape(len(across), -1)).reshape(len(uu), len(vv), -1))
+            return np.asarray((basis @ across.reshape(len(across), -1)).reshape(len(uu), len(vv), rows[b].shape[2]))
 
         return quotient(values, du, dv) if self.is_rational else values(du, dv)
 
@@ -361,30 +361,28 @@ class SemiStructuredSurface:
         same = compatible_curves(self.control_curves)
         return BSplineSurface(self.degree_u, same.degree, self.knots_u, same.knots, *euclidean(same.homogeneous))
 
-    @property
-    def _columns(self) -> int:
-        return 4 if self.is_rational else 3
+    def _rows(self, v: FloatArray, dv: int) -> dict[int, FloatArray]:
+        """Return the dv-th derivative of each (homogeneous) row at each v, shape (m + 1, len(v), 3 or 4).
 
-    def _rows(self, v: FloatArray) -> Callable[[int], FloatArray]:
-        """Return what gives the dv-th derivative of each homogeneous row at each v, shape (m + 1, len(v), 3 or 4)."""
-
-        @cache
-        def rows(dv: int) -> FloatArray:
-            values = np.zeros((len(self.control_curves), len(v), self._columns))
+        Of rational rows those of lower order too, for the quotient rule.
+        """
+        orders = range(dv + 1) if self.is_rational else (dv,)
+        result = {b: np.zeros((len(self.control_curves), len(v), 4 if self.is_rational else 3)) for b in orders}
+        for b, values in result.items():
             known: dict[tuple[int, bytes], SparseMatrix] = {}
             for row, curve in zip(values, self.control_curves, strict=True):
-                if curve.weights is None and dv == 0:
-                    row[:, 3:] = 1.0
-                if dv > curve.degree:
+                if b > curve.degree:
                     continue
                 form = curve.degree, curve.knots.tobytes()
                 if form not in known:
-                    known[form] = basis_matrix(curve.degree - dv, curve.knots[dv : len(curve.knots) - dv], v)
-                points = derivative_points(curve.degree, curve.knots, curve.homogeneous, dv)
-                row[:, : points.shape[1]] = known[form] @ points
-            return values
-
-        return rows
+                    known[form] = basis_matrix(curve.degree - b, curve.knots[b : len(curve.knots) - b], v)
+                points = derivative_points(curve.degree, curve.knots, curve.homogeneous, b)
+                if row.shape[1] > points.shape[1]:
+                    row[:, :3] = known[form] @ points
+                    row[:, 3] = b == 0
+                else:
+                    row[:] = known[form] @ points
+        return result
 
 
 @contextmanager

@@ -146,6 +146,13 @@ def test_conversion_gives_geomdl_the_same_surface(surface, seed):
     agree(surface.evaluate(u, v), expected, surface)
 
 
+def test_no_parameters_give_no_points():
+    surface = SemiStructuredSurface(1, [0, 0, 1, 1], [QUARTER, BSplineCurve(1, [0, 0, 1, 1], np.eye(3)[:2])])
+    assert surface.evaluate([], [], 1, 1).shape == (0, 3)
+    assert surface.evaluate_grid([], [0.5], 2, 1).shape == (0, 1, 3)
+    assert QUARTER.evaluate([], 3).shape == (0, 3)
+
+
 def test_rows_of_one_space_keep_their_numbers_in_both_directions():
     rng = np.random.default_rng(3)
     surface = BSplineSurface(1, 2, [0, 0, 1, 1], BEZIER_2, rng.normal(size=(2, 3, 3)), rng.uniform(0.5, 2, (2, 3)))
@@ -427,13 +434,14 @@ def test_a_row_of_a_surface_takes_a_continuity_of_its_own():
         ([1, 1, -3], r"weights\[2\]: found -3.0"),
         ([1, float("nan"), 1], r"weights\[1\]: found nan, expected a finite number"),
         ([1, 1], r"weights: shape \(2,\), expected \(3,\)"),
+        ([1, 1e300, 1], r"weights: found 1e\+300, too large to be multiplied by the coordinate 1e\+10"),
         ([[1, 1, 1]], r"weights: has 2 dimension\(s\), expected 1"),
         ("abc", r"weights\[0\]: found 'a'"),
     ],
 )
 def test_wrong_weights_are_refused_with_their_place(weights, message):
     with pytest.raises(ControlPointError, match=message):
-        BSplineCurve(2, BEZIER_2, np.eye(3), weights, name="control_curves[2]")
+        BSplineCurve(2, BEZIER_2, 1e10 * np.eye(3), weights, name="control_curves[2]")
 
 
 def test_a_rational_spline_has_no_derivative_of_lower_degree():
