@@ -241,19 +241,13 @@ def surface_from_net(
 
 
 def _snapped_ends(knots: FloatArray, degree: int) -> FloatArray:
-    """Give knots within 1e-12 of the domain from one of its ends the value of that end.
-
-    The outermost knots act nowhere in the domain: they follow their neighbours. So the net of a kernel's surface that
-    was periodic stays as it is.
-    """
+    """Give knots within 1e-12 of the domain from one of its ends the value of that end."""
     if len(knots) < 2 * degree + 2:
         return knots
     start, end = knots[degree], knots[-degree - 1]
     tolerance = MERGE_TOLERANCE * (end - start)
     near_start, near_end = np.abs(knots - start) <= tolerance, np.abs(knots - end) <= tolerance
-    snapped = np.where(near_start, start, np.where(near_end, end, knots))
-    snapped[[0, -1]] = snapped[[1, -2]]
-    return snapped
+    return np.where(near_start, start, np.where(near_end, end, knots))
 
 
 def _is_clamped(knots: FloatArray, degree: int) -> bool:

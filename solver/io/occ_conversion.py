@@ -42,7 +42,7 @@ _TURNED = (
 )
 # Files write angles with some 10 to 16 digits: ends of a range that are this near, in fractions of a turn of 2 pi or
 # of the range, are meant to be the same.
-_SNAP = 1e-9
+_SNAP = 2e-9
 # The kernel's word for infinity.
 _INFINITE = 1e100
 # What was converted exactly agrees to this fraction of the size.

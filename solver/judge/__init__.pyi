@@ -15,6 +15,7 @@ from .correspondence import snapped_seam as snapped_seam
 from .correspondence import tied_directions as tied_directions
 from .creases import Crease as Crease
 from .creases import measure_creases as measure_creases
+from .creases import worst_inside as worst_inside
 from .curvature import LocalGeometry as LocalGeometry
 from .curvature import isophote_angle as isophote_angle
 from .curvature import local_geometry as local_geometry

@@ -324,11 +324,12 @@ def _with_worst_between(edges: _Edges, pairs: Pairs, found: _Samples, of_gap: fl
         return edges.values(s_a, pairs.along_b(s_a), telling)
 
     s_a = places_between(values, found.s_a, found.values[telling], pairs.breaks)
-    # Not where there is no normal.
-    s_a = s_a[np.isfinite(edges.values(s_a, pairs.along_b(s_a), range(len(noises)))).all(axis=0)]
     if not len(s_a):
         return found
     more = edges.measured(s_a, pairs.along_b(s_a), pairs.pace)
+    if not np.isfinite(more.values).all():
+        # Beside a place without a normal.
+        return found
     # What is rounding stays as it was sampled.
     worse = np.full_like(more.values, -np.inf)
     worse[telling] = more.values[telling]

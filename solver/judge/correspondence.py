@@ -27,6 +27,8 @@ LEAST_CIRCLING = 1e-2
 # rounding of control points bends a curve by 1e-16 / h^2, which is to stay below 1e-8.
 SNAP = 1e-4
 _SAMPLES = 256
+# Of quotients no quadrature is exact; one of this degree is, but for rounding, where weights are tame.
+_OF_QUOTIENTS = 48
 _NEWTON_STEPS = 30
 
 
@@ -211,12 +213,14 @@ def _centred(base: Base, t: FloatArray) -> FloatArray:
 def _refined(a: Base, b: Base, matched: Correspondence) -> float:
     """Refine the shift by Newton's method on the correlation of both curves, the integral of <A(t), B(t + shift)>.
 
-    Exact quadrature over the spans of both, and derivatives of first order only: the curves need no more smoothness,
-    and their order does not matter.
+    Exact quadrature over the spans of both, of rational edges to rounding, and derivatives of first order only: the
+    curves need no more smoothness, and their order does not matter.
     """
     start, end = a.range_along
     length = b.range_along[1] - b.range_along[0]
     degree = 2 * max(row.degree for base in (a, b) for row in base.referee.rows)
+    if a.surface.is_rational or b.surface.is_rational:
+        degree = max(degree, _OF_QUOTIENTS)
     shift = matched.shift
     for _ in range(_NEWTON_STEPS):
         # A shift of a whole turn is none, but keeps the parameters periodic.

@@ -36,7 +36,6 @@ from semispline.solver.io.faces import describe
 from semispline.solver.io.occ import read_occ
 from semispline.solver.io.occ_conversion import converted
 from semispline.solver.io.occ_writing import occ_surface
-from semispline.solver.io.surface_files import read_surfaces
 from semispline.solver.splines import uniform_knots
 
 TURN = 2 * math.pi
@@ -121,7 +120,7 @@ RANGES = {
     "cone": (CONE, off_cone, (-4e-13, TURN, -1.0, 3.0), (0.0, TURN, -1.0, 3.0)),
     "sphere": (SPHERE, off_sphere, (0.0, TURN, -1.5707963267949, 1.5707963267949), (0.0, TURN, -TURN / 4, TURN / 4)),
     "half a sphere": (SPHERE, off_sphere, (0.0, TURN, 0.0, 1.5707963267), (0.0, TURN, 0.0, TURN / 4)),
-    "part of a sphere": (SPHERE, off_sphere, (1.0, 2.0, -1.5707963267949, 1.0), (1.0, 2.0, -TURN / 4, 1.0)),
+    "part of a sphere": (SPHERE, off_sphere, (1.0, 2.0, -1.5707963263, 1.0), (1.0, 2.0, -TURN / 4, 1.0)),
     "zone of a sphere": (SPHERE, off_sphere, (-4e-13, TURN, -0.5, 1.0), (0.0, TURN, -0.5, 1.0)),
     "torus": (TORUS, off_torus, (0.0, TURN, -4e-13, TURN), (0.0, TURN, 0.0, TURN)),
     "torus from elsewhere": (TORUS, off_torus, (0.2, 0.2 + TURN, -1, -1 + TURN), (0.2, 0.2 + TURN, -1, -1 + TURN)),
@@ -168,15 +167,28 @@ def test_the_kernel_alone_loses_such_faces(tmp_path):
     assert width < 1e-8
 
 
-@pytest.mark.parametrize("geometry", [CYLINDER, SPHERE, TORUS, EXTRUSION, REVOLUTION])
-def test_the_net_is_that_of_the_kernel(tmp_path, geometry):
+def test_a_turn_counted_modulo_a_turn_is_no_sliver(tmp_path):
+    face = written(tmp_path / "f.brep", BRepBuilderAPI_MakeFace(CYLINDER, -1e-9, TURN, 0.0, 3.0, 1e-7).Face())
+    surface = face.surface()
+    assert np.ptp(surface.domain[0]) == pytest.approx(TURN, rel=1e-15)
+    assert surface.control_points.shape == (7, 2, 3)
+
+
+@pytest.mark.parametrize(
+    "spline",
+    [
+        GeomConvert.SurfaceToBSplineSurface_s(SPHERE),
+        GeomConvert.SurfaceToBSplineSurface_s(REVOLUTION),
+        # Weights whose products round.
+        GeomConvert.SurfaceToBSplineSurface_s(Geom_RectangularTrimmedSurface(TORUS, 1.0, 2.5, True)),
+    ],
+)
+def test_the_net_of_a_periodic_surface_is_that_of_the_kernel(tmp_path, spline):
     """Unclamped knots of what was periodic are mended without inserting any."""
-    ends = (0.0, TURN, *((0.0, TURN) if geometry.IsVPeriodic() else (-TURN / 4, TURN / 4)))
-    surface = written(tmp_path / "f.brep", faced(geometry, *ends)).surface()
-    spline = geometry if geometry.IsVPeriodic() else Geom_RectangularTrimmedSurface(geometry, *ends[2:], False)
-    spline = GeomConvert.SurfaceToBSplineSurface_s(geometry if geometry is SPHERE else spline)
-    assert spline.IsUPeriodic()
-    spline.SetUNotPeriodic()
+    assert spline.IsUPeriodic() or spline.IsVPeriodic()
+    surface = written(tmp_path / "f.brep", BRepBuilderAPI_MakeFace(spline, 1e-7).Face()).surface()
+    if spline.IsUPeriodic():
+        spline.SetUNotPeriodic()
     if spline.IsVPeriodic():
         spline.SetVNotPeriodic()
     places = [(i + 1, j + 1) for i in range(spline.NbUPoles()) for j in range(spline.NbVPoles())]
@@ -263,20 +275,16 @@ def offset_extrusion():
 def test_what_the_kernel_approximates_says_how_well(tmp_path):
     geometry, off = offset_extrusion()
     path = tmp_path / "offset.brep"
-    BRepTools.Write_s(faced(geometry, 0.0, math.pi, 0.0, 2.0), str(path))
-    (entry,) = list_surfaces(path)
+    entry = describe(0, written(path, faced(geometry, 0.0, math.pi, 0.0, 2.0)))
     assert (entry.kind, entry.rational, entry.problem) == ("offset", False, None)
-    with pytest.warns(
-        UserWarning, match=r"offset.brep \(offset\) has no exact B-spline form: the surface taken for it"
-    ):
+    words = rf"offset.brep \(offset\) has no exact B-spline form: .* up to {entry.deviation:.3g} model units off"
+    with pytest.warns(UserWarning, match=words):
         surface = read_surface(path)
     (u0, u1), _ = surface.domain
     true = off(surface.evaluate_grid(np.linspace(u0, u1, 301), [1.0])).max()
     # Size 6; and the measured one is the largest of other samples.
     assert 1e-11 < true < 6e-7
     assert entry.deviation == pytest.approx(true, rel=0.2)
-    (loaded,) = read_surfaces([path])
-    assert loaded.deviation == entry.deviation
 
 
 def test_a_surface_that_is_rough_itself_is_approximated_too(tmp_path):
@@ -301,7 +309,7 @@ def test_a_revolved_offset_curve_is_approximated(tmp_path):
     assert 0 < face.deviation() < 1e-5
 
 
-def test_the_words_reach_list_convert_check_and_blend(tmp_path):
+def test_the_words_reach_list_convert_and_blend(tmp_path):
     geometry, _ = offset_extrusion()
     path = tmp_path / "offset.brep"
     BRepTools.Write_s(faced(geometry, 0.0, math.pi, 0.0, 2.0), str(path))
@@ -312,11 +320,10 @@ def test_the_words_reach_list_convert_check_and_blend(tmp_path):
     told = runner.invoke(app, ["list", str(path)])
     assert words in told.stdout
     assert "offset" in told.stdout
+    told = runner.invoke(app, ["convert", str(path), str(tmp_path / "o.json")])
+    assert f"warning: {path} (offset) has {words}" in told.stderr
     edges = ["--edge-a", "v1", "--edge-b", "u0"]
-    for command in (["convert", str(path), str(tmp_path / "o.json")], ["check", str(path), str(floor), *edges]):
-        told = runner.invoke(app, command)
-        assert f"warning: {path} (offset) has {words}" in told.stderr
-    told = runner.invoke(app, ["blend", str(path), str(floor), *edges, "-o", str(tmp_path / "b.json"), "--strict"])
+    told = runner.invoke(app, ["blend", str(path), str(floor), *edges, "--strict", "-o", str(tmp_path / "b.json")])
     assert told.exit_code == 3
     assert words in told.stderr
     assert "leave out strict" in told.stderr
