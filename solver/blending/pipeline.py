@@ -310,7 +310,7 @@ def _surface(
     else:
         points = points * size + centre
     pieces = np.split(points, problem.form.offsets[1:-1])
-    if not problem.is_rational and problem.cures == (None, None):
+    if not (problem.is_rational or problem.is_cured):
         # The contact curves themselves are the bases' own, to the last bit.
         pieces[0], pieces[-1] = sides[0].rows[0], sides[1].rows[0]
     curves = [

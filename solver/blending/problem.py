@@ -20,7 +20,13 @@ from semispline.solver.blending.ladder import Window
 from semispline.solver.blending.layout import blend_u_basis, middle_bases
 from semispline.solver.blending.linear_alpha import LinearEnds, LinearInV, linear_rows, monomials_of_ends, raised_basis
 from semispline.solver.blending.rational_energy import RationalForm, RationalSystem, free_weights
-from semispline.solver.blending.representative import Representative, needs_constant_weights, smooth_along, tame_side
+from semispline.solver.blending.representative import (
+    Cure,
+    Representative,
+    needs_constant_weights,
+    smooth_along,
+    tame_side,
+)
 from semispline.solver.blending.sides import Side, of_one_degree
 from semispline.solver.errors import EdgeError, OptionError
 from semispline.solver.options import Alpha, BlendOptions
@@ -93,7 +99,7 @@ class BlendProblem:
         Where alpha^2 or beta^2 is linear in v; the rows of that contact then rise in degree.
     weights : pair of Representative or None
         Of rational sides, what their rows are built on.
-    cures : pair of str or None
+    cures : pair of Cure or None
         What was done to make the rows of each side smooth along.
     """
 
@@ -108,7 +114,12 @@ class BlendProblem:
     p2: tuple[SecondParameter, SecondParameter] = (SecondParameter(), SecondParameter())
     linear: tuple[LinearEnds | None, LinearEnds | None] = (None, None)
     weights: tuple[Representative | None, Representative | None] = (None, None)
-    cures: tuple[str | None, str | None] = (None, None)
+    cures: tuple[Cure | None, Cure | None] = (None, None)
+
+    @property
+    def is_cured(self) -> bool:
+        """Whether the rows of a side are not the base's own."""
+        return any(cure is not None and cure.name != "none" for cure in self.cures)
 
     @property
     def has_constant_weights(self) -> bool:
@@ -321,7 +332,7 @@ def make_problem(a: Side, b: Side, options: BlendOptions) -> BlendProblem:
     weights: tuple[Representative | None, Representative | None] = (None, None)
     if a.is_rational:
         (a, b), weights = _represented(a, b, u, options)
-    elif cure_a or cure_b:
+    elif any(cure is not None and cure.name != "none" for cure in (cure_a, cure_b)):
         a, b = of_one_degree(a, b)
     orders = [seam_order(side.along, side.rows[: side.order + 1], side.largest) for side in (a, b)]
     closed = min(orders)

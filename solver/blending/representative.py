@@ -4,13 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-import numpy as np
-
 from semispline.solver.arrays import FloatArray
 from semispline.solver.blending.closing import seam_order
-from semispline.solver.blending.conics import Conic, recognised_conic, same_arcs
-from semispline.solver.blending.jumps import Jump, jumps, smoothed
-from semispline.solver.blending.knot_lines import least_continuity
+from semispline.solver.blending.conics import cured_conic, recognised_conic, same_arcs
+from semispline.solver.blending.cures import CuredRows, CureName, cured_rows
+from semispline.solver.blending.jumps import Jump
 from semispline.solver.blending.ladder import Rung, Window, tamed
 from semispline.solver.blending.sides import Side
 from semispline.solver.blending.weights import is_separable
@@ -61,94 +59,94 @@ def needs_constant_weights(options: BlendOptions) -> bool:
     return is_linear or "energy" in options.alphas or has_free_rows(options)
 
 
-def smooth_along(a: Side, b: Side, options: BlendOptions) -> tuple[tuple[Side, str | None], tuple[Side, str | None]]:
+@dataclass(frozen=True)
+class Cure:
+    """What was done to knot lines where the rows of a side are only continuous.
+
+    Attributes
+    ----------
+    name : {"none", "conic", "spans", "slopes"}
+    words : str
+    left : tuple of Jump
+        Lines at which the blend is not smooth all the same.
+    """
+
+    name: CureName
+    words: str
+    left: tuple[Jump, ...]
+
+
+def smooth_along(a: Side, b: Side, options: BlendOptions) -> tuple[tuple[Side, Cure | None], tuple[Side, Cure | None]]:
     """Make rows smooth along where they would crease the blend else; and say what was done.
 
-    Rims that are conics are run through by a smooth circle; where all rows of a side share a jump of speed (and of
-    weight) at a knot, the spans are scaled by it. To the order of contact they are the same surfaces. What both sides
-    share is left, unless there are rows that do not.
+    To the order of contact they are the same surfaces. What both sides share is left, unless there are rows that do
+    not share it.
     """
-    if not (_may_be_rough(a) or _may_be_rough(b)):
-        return (a, None), (b, None)
-    order, free_rows = max(a.order, b.order), has_free_rows(options)
-    of_a, of_b = _conics(a, b)
-    if of_a is not None and of_b is not None and same_arcs(of_a, of_b) and not free_rows:
-        return (a, None), (b, None)
-    first, second = ((s, None) if c is None else _smooth(s, c, order) for s, c in ((a, of_a), (b, of_b)))
-    jumps_a, jumps_b = (() if cure else _shared_jumps(side) for side, cure in (first, second))
-    if not free_rows and _are_same(jumps_a, jumps_b, a.along, b.along):
-        return first, second
-    return _even(*first, jumps_a), _even(*second, jumps_b)
-
-
-def _may_be_rough(side: Side) -> bool:
-    """Tell from the knots alone whether rows may be less than C1 somewhere."""
-    inner = side.along.knots[side.along.degree + 1 : -side.along.degree - 1]
-    full = len(inner) and int(np.unique(inner, return_counts=True)[1].max()) >= side.along.degree
-    return bool(full) or (side.is_rational and _is_rough(side)) or _has_corner_at_seam(side)
-
-
-def _has_corner_at_seam(side: Side) -> bool:
-    return seam_order(side.along, read_rows(side), side.largest) == 0
-
-
-def _is_rough(side: Side) -> bool:
-    # A single line or arc has no knots to be rough at.
-    return least_continuity(read_rows(side), side.along, closed=_is_closed(side)) < min(_SMOOTH, side.along.degree)
-
-
-def _conics(a: Side, b: Side) -> tuple[Conic | None, Conic | None]:
-    """Return the conics that the rims are, where they are to be made smooth."""
-    if not a.is_rational:
-        return None, None
-    rough = [_is_rough(side) for side in (a, b)]
+    order, shared = max(a.order, b.order), not has_free_rows(options)
+    found_a, found_b = (_cured(side, order) for side in (a, b))
+    if found_a.cure == found_b.cure == "none" or (shared and _jump_alike(a, b, found_a, found_b)):
+        return (a, _as_found(found_a)), (b, _as_found(found_b))
     # A conic without such knots is made smooth too, for both to run alike, where that does not spoil its weights.
-    first, second = (
-        recognised_conic(read_rows(side), side.along)
-        if own or (any(rough) and is_separable(read_rows(side)[..., 3]))
-        else None
-        for own, side in zip(rough, (a, b), strict=True)
+    if a.is_rational:
+        found_a = _as_the_other(a, found_a, found_b, order)
+        found_b = _as_the_other(b, found_b, found_a, order)
+    return _with_cure(a, found_a), _with_cure(b, found_b)
+
+
+def _cured(side: Side, order: int) -> CuredRows:
+    return cured_rows(
+        read_rows(side),
+        side.along,
+        side.degree,
+        side.spans,
+        smoothness=order,
+        closed=_is_closed(side),
+        largest=side.largest,
     )
-    return first, second
 
 
-def _smooth(side: Side, conic: Conic, order: int) -> tuple[Side, str | None]:
-    rows, along = conic.smooth_rows(order)
-    if not (rows[0, :, 3] > 0).all():
-        return side, None
-    return replace(side, rows=rows, along=along), f"circle reparametrised, degree {along.degree}, corresponds by angle"
-
-
-def _shared_jumps(side: Side) -> tuple[Jump, ...]:
-    if not _may_be_rough(side):
-        return ()
-    return jumps(read_rows(side), side.along, side.degree, side.spans, closed=_is_closed(side))
-
-
-def _are_same(one: tuple[Jump, ...], other: tuple[Jump, ...], a: Basis, b: Basis) -> bool:
-    """Tell whether both sides jump alike at the same places."""
-    if len(one) != len(other):
+def _jump_alike(a: Side, b: Side, found_a: CuredRows, found_b: CuredRows) -> bool:
+    """Tell whether both sides jump by the same factors at the same places: then no row differs, and no crease is."""
+    if found_a.cure == found_b.cure == "conic":
+        of_a, of_b = (recognised_conic(read_rows(side), side.along) for side in (a, b))
+        return of_a is not None and of_b is not None and same_arcs(of_a, of_b)
+    if len(found_a.found) != len(found_b.found):
         return False
     # Both have one domain.
-    length = float(a.knots[-1] - a.knots[0])
+    length = float(a.along.knots[-1] - a.along.knots[0])
     return all(
         x.kind == y.kind == "shared"
         and abs(x.v - y.v) <= SAME_JUMP * length
         and abs(x.speed - y.speed) <= SAME_JUMP * x.speed
         and abs(x.slope - y.slope) * length <= SAME_JUMP
-        for x, y in zip(one, other, strict=True)
+        for x, y in zip(found_a.found, found_b.found, strict=True)
     )
 
 
-def _even(side: Side, cure: str | None, found: tuple[Jump, ...]) -> tuple[Side, str | None]:
-    """Scale the spans of a side by its jumps of speed."""
-    if cure is not None or not any(jump.kind == "shared" for jump in found):
-        return side, cure
-    rows, along = smoothed(read_rows(side), side.along, found, closed=_is_closed(side))
-    if along is side.along:
-        return side, None
-    places = ", ".join(f"{jump.v:.5g}" for jump in found if jump.kind == "shared")
-    return replace(side, rows=rows, along=along), f"spans scaled by the jump of speed at v = {places}"
+def _as_the_other(side: Side, found: CuredRows, other: CuredRows, order: int) -> CuredRows:
+    if found.cure != "none" or other.cure != "conic" or not is_separable(read_rows(side)[..., 3]):
+        return found
+    conic = cured_conic(read_rows(side), side.along, order)
+    return found if conic is None else replace(found, rows=conic[0], along=conic[1], cure="conic")
+
+
+def _as_found(found: CuredRows) -> Cure | None:
+    """Return what is said of a side that stays as it is: lines at which the base itself is creased."""
+    left = tuple(jump for jump in found.found if jump.kind != "shared")
+    return Cure("none", "", left) if left else None
+
+
+def _with_cure(side: Side, found: CuredRows) -> tuple[Side, Cure | None]:
+    if found.cure == "none":
+        return side, _as_found(found)
+    places = ", ".join(f"{jump.v:.5g}" for jump in found.found if jump not in found.left)
+    words = {
+        "conic": f"circle reparametrised, degree {found.along.degree}, corresponds by angle",
+        "spans": f"spans scaled by the jump of speed at v = {places}",
+        "slopes": f"G1 at v = {places}, closed by slopes of the reparametrisation",
+    }[found.cure]
+    smooth = replace(side, rows=found.rows, along=found.along, degree=found.degree)
+    return smooth, Cure(found.cure, words, found.left)
 
 
 def tame_side(
