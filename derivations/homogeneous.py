@@ -113,8 +113,8 @@ def contact_residuals(order: int) -> tuple[Expr, ...]:
 def last_rung(order: int) -> tuple[tuple[Expr, ...], tuple[Expr, ...]]:
     """Return the jets of a representative of the base whose weight is omega^(n+1) at the contact and 0 beyond.
 
-    mu = omega0^(n+1) / omega along w, with omega0 its value at the contact: then mu R^h = omega0^(n+1) (R, 1), which has
-    the jets omega0^(n+1) R_k. All of them are polynomials in the jets of X and omega, by omega0^k times
+    mu = omega0^(n+1) / omega along w, with omega0 its value at the contact: then mu R^h = omega0^(n+1) (R, 1), which
+    has the jets omega0^(n+1) R_k. All of them are polynomials in the jets of X and omega, by omega0^k times
 
         omega0^(k+1) R_k = omega0^k X_k - sum_(j = 1..k) C(k, j) omega_j omega0^(j-1) omega0^(k-j+1) R_(k-j).
 

@@ -117,7 +117,7 @@ def blend(
     creases = measure_creases(surface)
     shape = _measured_shape(surface, a, b, chosen)
     warnings = (
-        shape_warnings(shape, regularity, creases, is_fair=found.fairness is not None)
+        shape_warnings(shape, regularity, creases, is_fair=found.fairness is not None, cures=problem.cures)
         + bound_warnings(problem, layout.found)
         + (fairness_warning(found.fairness, shape.fairness.value) if chosen.bulges == (1.0, 1.0) else ())
         + rounding_warning(rounding, surface, energy)

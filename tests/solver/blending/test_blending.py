@@ -252,9 +252,6 @@ def test_options_are_refused(options, message):
 
 
 def test_bases_are_refused():
-    rational = BSplineSurface(1, 1, [0, 0, 1, 1], [0, 0, 1, 1], flat().control_points, [[1, 1], [1, 2]])
-    with pytest.raises(EdgeError, match="base b: rational"):
-        blend(Base(flat(3), "u0"), Base(rational, "u1"))
     same_weights = BSplineSurface(1, 1, [0, 0, 1, 1], [0, 0, 1, 1], flat().control_points, np.full((2, 2), 3.0))
     assert blend(Base(same_weights, "u1"), Base(flat(3, 1), "u0")).contact_a.angle_degrees < 1e-9
     with pytest.raises(EdgeError, match="coincide"):

@@ -73,7 +73,15 @@ def on_rung(name, order, seed=0, closed=False, **options):
         rows, along = base(rng, order, spread, closed=closed, **options)
         window = Window((most / 10, most))
         found = tamed(
-            rows, along, 3, SPANS, blend_degree=2 * order + 1, blend_spans=SPANS, window=window, closed=closed
+            rows,
+            along,
+            3,
+            SPANS,
+            order=len(rows) - 1,
+            blend_degree=2 * order + 1,
+            blend_spans=SPANS,
+            window=window,
+            closed=closed,
         )
         if found.rung.name == name:
             return rows, along, found, window
@@ -100,7 +108,16 @@ def test_the_surface_stays_and_its_weights_are_positive(name, order):
 def test_separable_weights_need_the_first_rung_alone(order):
     rng = np.random.default_rng(order)
     rows, along = base(rng, order, 0.8, separable=True)
-    found = tamed(rows, along, 3, SPANS, blend_degree=9, blend_spans=SPANS, window=Window((0.01, 100.0), (-9.0, 9.0)))
+    found = tamed(
+        rows,
+        along,
+        3,
+        SPANS,
+        order=len(rows) - 1,
+        blend_degree=9,
+        blend_spans=SPANS,
+        window=Window((0.01, 100.0), (-9.0, 9.0)),
+    )
     assert found.rung.name == "mean"
     own = rows[0, :, 3]
     assert found.rung.ratio == pytest.approx(own.max() / own.min(), rel=1e-6)
@@ -147,7 +164,9 @@ def test_weights_are_tame_to_a_limit(factor):
     rows[1, :, 3] = 1.5, 1.0, 0.5
     # Row 1 of the blend is (1 + a) w_0 - a w_1: for the first column 1 - a / 2.
     most = 2 * (1 - LEAST_SHARE * factor)
-    found = tamed(rows, along, 1, (1.0,), blend_degree=3, blend_spans=(3.0,), window=Window((0.1, most)))
+    found = tamed(
+        rows, along, 1, (1.0,), order=len(rows) - 1, blend_degree=3, blend_spans=(3.0,), window=Window((0.1, most))
+    )
     assert (found.rung.name == "mean") is (factor > 1)
 
 
@@ -188,7 +207,7 @@ def test_rows_of_the_last_rung_do_not_know_alpha():
 def test_beyond_the_degree_of_kernels_finer_splines_come_first(monkeypatch):
     rng = np.random.default_rng(3)
     rows, along = base(rng, 4, 0.3, degree=6)
-    options = {"blend_degree": 9, "blend_spans": SPANS, "window": Window((0.25, 4.0))}
+    options = {"order": 4, "blend_degree": 9, "blend_spans": SPANS, "window": Window((0.25, 4.0))}
     parts = []
     fit = ladder.fitted_jets
 
@@ -212,6 +231,8 @@ def test_position_alone_asks_for_nothing():
     along = Basis(2, clamped([0.5], 2, 0, 1))
     rows = np.zeros((1, 4, 4))
     rows[0, :, 3] = 1.0, 0.5, 2.0, 1.0
-    found = tamed(rows, along, 2, SPANS, blend_degree=3, blend_spans=SPANS, window=Window((1.0, 1.0)))
+    found = tamed(
+        rows, along, 2, SPANS, order=len(rows) - 1, blend_degree=3, blend_spans=SPANS, window=Window((1.0, 1.0))
+    )
     assert found.rung.name == "mean"
     assert found.rung.ratio == 4

@@ -78,6 +78,7 @@ def test_rings_whose_weights_are_not_separable(lean, most, rung):
             along,
             2,
             SPANS,
+            order=2,
             blend_degree=5,
             blend_spans=SPANS,
             window=Window((most / 4, most)),
@@ -110,7 +111,7 @@ def test_sheets_on_each_rung_are_in_contact_and_smooth(spread, most, rung):
         weights = np.exp(rng.uniform(-spread, spread, points.shape[:2]))[..., None]
         sheets.append(np.concatenate([points * weights, weights], axis=-1))
     window = Window((most / 4, most))
-    sides = [tamed(s[:3], along, 3, SPANS, blend_degree=5, blend_spans=SPANS, window=window) for s in sheets]
+    sides = [tamed(s[:3], along, 3, SPANS, order=2, blend_degree=5, blend_spans=SPANS, window=window) for s in sheets]
     assert rung in {side.rung.name for side in sides}
     blend = Blend(*((side.rows, side.along, side.degree) for side in sides), alpha=(most, most / 2))
     assert min(rows[:, :, 3].min() for rows, _ in blend.sides) > 0
