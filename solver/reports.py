@@ -164,6 +164,7 @@ def print_contact(contact: Contact, unit: str | None) -> None:
 
 def print_result(result: BlendResult) -> None:
     """Print what a blend came to."""
+    from semispline.solver.judge import worst_inside
 
     def shape(value: LinearInV | None, bounds: tuple[LinearInV, LinearInV] | None) -> str:
         if value is None:
@@ -204,6 +205,8 @@ def print_result(result: BlendResult) -> None:
     rows.append(("contact B", ", ".join(_figures(result.contact_b, at_b))))
     if result.seam is not None:
         rows.append(("seam", ", ".join(_figures(result.seam, None))))
+    if (worst := worst_inside(result.creases)) is not None:
+        rows.append(("inside", str(worst)))
     rows += _shape_rows(result.shape)
     _print_table(rows)
     print_warnings(result.warnings)

@@ -46,10 +46,12 @@ class Part:
     is_last: bool
 
 
-def parts_of(surface: Surface) -> Iterator[Part]:
-    """Cut a surface along v into parts of some polynomial pieces."""
+def parts_of(surface: Surface, cuts: int = 1) -> Iterator[Part]:
+    """Cut a surface along v into parts of some polynomial pieces, each span into so many."""
     q, n_u = surface.degree_v, len(surface.breakpoints[0]) - 1
     v_breaks = surface.breakpoints[1]
+    if cuts > 1:
+        v_breaks = np.append((v_breaks[:-1, None] + np.diff(v_breaks)[:, None] * np.arange(cuts) / cuts), v_breaks[-1])
     groups, (n_rows, d) = _rows_by_knots(surface)
     step = max(1, _PIECES_AT_ONCE // n_u)
     for at in range(0, len(v_breaks) - 1, step):
