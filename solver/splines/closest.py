@@ -313,10 +313,8 @@ def _newton_steps(away: FloatArray, first: FloatArray, second: FloatArray, at: F
     # At a pole or a cusp: along what is left.
     values = np.maximum(values, np.maximum(1e-10 * values[:, -1:], np.finfo(float).tiny))
     step = -np.einsum("kij,kj->ki", vectors, np.einsum("kij,ki->kj", vectors, slope) / values)
-    # A step that a bound cuts down to one uphill: along the slope instead.
-    inward = np.where(((at <= 0) & (step < 0)) | ((at >= 1) & (step > 0)), 0.0, step)
-    downhill = np.sum(inward * slope, axis=1, keepdims=True) < 0
-    step = np.where(downhill, inward, -slope / np.where(trace > 0, trace, 1.0)[:, :, 0])
+    # What a bound cuts off goes uphill (such a parameter is free, its slope points inward): the rest goes downhill.
+    step = np.where(((at <= 0) & (step < 0)) | ((at >= 1) & (step > 0)), 0.0, step)
     return np.asarray(step / np.maximum(1.0, np.abs(step).max(axis=1, keepdims=True)))
 
 
