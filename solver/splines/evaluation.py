@@ -46,6 +46,9 @@ def checked_weights(values: ArrayLike, points: FloatArray, name: str) -> FloatAr
         at = tuple(np.argwhere(weights <= 0)[0].tolist())
         where = ", ".join(map(str, at))
         raise ControlPointError(f"{name}[{where}]: found {weights[at]}, expected a positive number")
+    heaviest, farthest = float(weights.max()), float(np.abs(points).max())
+    if heaviest * farthest == np.inf:
+        raise ControlPointError(f"{name}: found {heaviest}, too large to be multiplied by the coordinate {farthest}")
     return weights
 
 

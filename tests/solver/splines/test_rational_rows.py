@@ -437,13 +437,14 @@ def test_a_row_of_a_surface_takes_a_continuity_of_its_own():
         ([1, 1, -3], r"weights\[2\]: found -3.0"),
         ([1, float("nan"), 1], r"weights\[1\]: found nan, expected a finite number"),
         ([1, 1], r"weights: shape \(2,\), expected \(3,\)"),
+        ([1, 1e300, 1], r"weights: found 1e\+300, too large to be multiplied by the coordinate 10000000000.0"),
         ([[1, 1, 1]], r"weights: has 2 dimension\(s\), expected 1"),
         ("abc", r"weights\[0\]: found 'a'"),
     ],
 )
 def test_wrong_weights_are_refused_with_their_place(weights, message):
     with pytest.raises(ControlPointError, match=message):
-        BSplineCurve(2, BEZIER_2, np.eye(3), weights, name="control_curves[2]")
+        BSplineCurve(2, BEZIER_2, 1e10 * np.eye(3), weights, name="control_curves[2]")
 
 
 def test_a_rational_spline_has_no_derivative_of_lower_degree():
