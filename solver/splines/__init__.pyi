@@ -1,7 +1,11 @@
+from .approximation import Approximation as Approximation
+from .approximation import CurveApproximation as CurveApproximation
 from .bezier import BezierFunction as BezierFunction
 from .bezier import bezier_patch as bezier_patch
 from .bezier import divide_bezier as divide_bezier
 from .bezier import trim_bezier as trim_bezier
+from .closest import ClosestPoint as ClosestPoint
+from .closest import closest_point as closest_point
 from .compatible import compatible_curves as compatible_curves
 from .construction import interpolate_grid as interpolate_grid
 from .curves import elevate_curve as elevate_curve
@@ -10,6 +14,8 @@ from .curves import set_curve_continuity as set_curve_continuity
 from .evaluation import euclidean as euclidean
 from .evaluation import homogeneous_points as homogeneous_points
 from .evaluation import same_width as same_width
+from .isocurves import boundary_curve as boundary_curve
+from .isocurves import iso_curve as iso_curve
 from .knots import MERGE_TOLERANCE as MERGE_TOLERANCE
 from .knots import affine_knots as affine_knots
 from .knots import basis_matrix as basis_matrix
@@ -24,6 +30,9 @@ from .knots import inner_knots as inner_knots
 from .knots import merge_breakpoints as merge_breakpoints
 from .knots import reversed_knots as reversed_knots
 from .knots import uniform_knots as uniform_knots
+from .measures import Measure as Measure
+from .measures import curve_length as curve_length
+from .measures import surface_area as surface_area
 from .operations import bounding_box as bounding_box
 from .operations import clamped_surface as clamped_surface
 from .operations import insert_knots as insert_knots
@@ -47,6 +56,15 @@ from .refinement import elevated_knots as elevated_knots
 from .refinement import elevation_matrix as elevation_matrix
 from .refinement import linear_product_matrices as linear_product_matrices
 from .refinement import refinement_matrix as refinement_matrix
+from .revolution import revolve as revolve
+from .revolution import revolve_polynomial as revolve_polynomial
+from .revolution import revolve_smooth as revolve_smooth
+from .seam import move_curve_seam as move_curve_seam
+from .seam import move_seam as move_seam
+from .simplification import reduce_curve_degree as reduce_curve_degree
+from .simplification import reduce_degree as reduce_degree
+from .simplification import remove_curve_knots as remove_curve_knots
+from .simplification import remove_knots as remove_knots
 from .surfaces import BSplineCurve as BSplineCurve
 from .surfaces import BSplineSurface as BSplineSurface
 from .surfaces import SemiStructuredSurface as SemiStructuredSurface

@@ -28,6 +28,8 @@ MOST_STARTS = 32
 # Distances closer than this fraction of the size are equal; parameters closer than that of the domain are one.
 TIE = 1e-10
 SAME_PARAMETER = 1e-6
+# Of a span: a longer step could leave the valley that the start lies in.
+LONGEST_STEP = 1 / 16
 STEPS = 60
 HALVINGS = 40
 POLISHES = 3
@@ -148,10 +150,10 @@ def _starts(patches: _Patches, target: FloatArray, tie: float) -> tuple[IndexArr
     cell = np.zeros((len(nets), d), dtype=np.intp)
     best, level = np.inf, 0
     while True:
-        bound, nearest = _bounds(nets, target)
-        best = min(best, float(nearest.min()))
+        bound, corners = _bounds(nets, target)
+        best = min(best, float(corners.min()))
         kept = bound <= best + tie
-        nets, owner, cell, nearest = nets[kept], owner[kept], cell[kept], nearest[kept]
+        nets, owner, cell, corners = nets[kept], owner[kept], cell[kept], corners[kept]
         if level == LEVELS or len(nets) > MOST_PARTS:
             break
         for axis in range(d):
@@ -159,12 +161,15 @@ def _starts(patches: _Patches, target: FloatArray, tie: float) -> tuple[IndexArr
             owner, cell = np.tile(owner, 2), np.tile(cell, (2, 1))
             cell[:, axis] = 2 * cell[:, axis] + np.repeat([0, 1], len(cell) // 2)
         level += 1
-    lowest = _local_minima(owner, cell, nearest)
-    return owner[lowest], (cell[lowest] + 0.5) / 2**level
+    lowest = _local_minima(owner, cell, corners.min(axis=1))
+    # From the nearest corner: what is found is then no farther than any corner that was looked at.
+    place = cell[lowest] + np.array(list(product((0, 1), repeat=d)))[corners[lowest].argmin(axis=1)]
+    starts = np.unique(np.column_stack([owner[lowest], place]), axis=0)
+    return starts[:, 0], starts[:, 1:] / 2**level
 
 
 def _bounds(nets: FloatArray, target: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Return for each patch a distance that none of its points is nearer than, and that of its nearest corner."""
+    """Return for each patch a distance that none of its points is nearer than, and those of its corners."""
     points = (euclidean(nets)[0] - target).reshape(len(nets), -1, 3)
     ends = nets
     for axis in range(1, nets.ndim - 1):
@@ -174,7 +179,7 @@ def _bounds(nets: FloatArray, target: FloatArray) -> tuple[FloatArray, FloatArra
     length = np.linalg.norm(sight, axis=1)
     unit = sight / np.where(length > 0, length, 1.0)[:, None]
     bound = np.maximum(0.0, np.einsum("kid,kd->ki", points, unit).min(axis=1))
-    return bound, np.linalg.norm(corners, axis=-1).reshape(len(nets), -1).min(axis=1)
+    return bound, np.linalg.norm(corners, axis=-1).reshape(len(nets), -1)
 
 
 def _halved(nets: FloatArray, axis: int) -> FloatArray:
@@ -313,11 +318,9 @@ def _newton_steps(away: FloatArray, first: FloatArray, second: FloatArray, at: F
     # At a pole or a cusp: along what is left.
     values = np.maximum(values, np.maximum(1e-10 * values[:, -1:], np.finfo(float).tiny))
     step = -np.einsum("kij,kj->ki", vectors, np.einsum("kij,ki->kj", vectors, slope) / values)
-    # A step that a bound cuts down to one uphill: along the slope instead.
-    inward = np.where(((at <= 0) & (step < 0)) | ((at >= 1) & (step > 0)), 0.0, step)
-    downhill = np.sum(inward * slope, axis=1, keepdims=True) < 0
-    step = np.where(downhill, inward, -slope / np.where(trace > 0, trace, 1.0)[:, :, 0])
-    return np.asarray(step / np.maximum(1.0, np.abs(step).max(axis=1, keepdims=True)))
+    # What a bound cuts off goes uphill (such a parameter is free, its slope points inward): the rest goes downhill.
+    step = np.where(((at <= 0) & (step < 0)) | ((at >= 1) & (step > 0)), 0.0, step)
+    return np.asarray(step / np.maximum(1.0, np.abs(step).max(axis=1, keepdims=True) / LONGEST_STEP))
 
 
 def _distinct(parameters: FloatArray, distances: FloatArray, width: FloatArray, tie: float) -> list[int]:

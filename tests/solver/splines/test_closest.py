@@ -14,6 +14,7 @@ from helpers.splines import bspline_surfaces, curves, semistructured_surfaces
 from semispline import BSplineCurve, BSplineSurface, SemiStructuredSurface, closest_point
 from semispline.solver.errors import ControlPointError, InputError
 from semispline.solver.judge.de_boor import curve_points, surface_points
+from semispline.solver.splines.closest import _bounds
 
 points = st.tuples(*[st.floats(-2, 2)] * 3)
 
@@ -145,6 +146,23 @@ def test_the_nearest_of_many_waves_is_found():
     curve = BSplineCurve(2, np.concatenate([[0, 0], np.linspace(0, 1, 399), [1, 1]]), np.column_stack([x, depth]))
     found = closest_point(curve, [5, 1e6])
     assert abs(found.points[0, 0] - x[251]) <= 1e-3
+
+
+@settings(max_examples=25)
+@given(st.integers(0, 2**32 - 1), points, st.booleans())
+def test_the_bound_of_a_part_is_one_and_is_near(seed, target, rational):
+    rng = np.random.default_rng(seed)
+    net = rng.uniform(-1, 1, (4, 3, 3))
+    patch = BSplineSurface(
+        3, 2, [0] * 4 + [1] * 4, [0] * 3 + [1] * 3, net, rng.uniform(0.5, 2, (4, 3)) if rational else None
+    )
+    bound, corner = _bounds(patch.homogeneous[None], np.array(target))
+    distances = np.linalg.norm(grid_of(patch, 21) - target, axis=1)
+    assert bound[0] <= distances.min()
+    assert distances.min() <= corner[0].min()
+    assert corner[0].max() <= distances.max()
+    far = np.array([1e3, 0, 0])
+    assert _bounds(patch.homogeneous[None], far)[0][0] >= 1e3 - 1.01
 
 
 def test_units_and_place_do_not_matter():
