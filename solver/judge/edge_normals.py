@@ -20,7 +20,7 @@ _NOTHING = 1e-9
 _SUSPECT = 0.5
 _PER_SPAN = 8
 _SECTIONS = 40
-# No value falls across a bracket by more than so many times the largest one: a spline of degree p by some 3 p^2 / 8, and
+# No value falls across a bracket by more than so many times the largest one: a spline of degree p by some p^2 / 2, and
 # beside a span that is narrower than its neighbour by as many times more.
 _STEEPEST = 1e5
 _GOLDEN = (5**0.5 - 1) / 2
