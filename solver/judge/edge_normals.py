@@ -97,7 +97,7 @@ def _lows(base: Base, s: FloatArray, mean: float, kind: int, row: FloatArray) ->
     most, width = float(row.max()), right - left
     for _ in range(_SECTIONS):
         # What is still high in a bracket so narrow cannot vanish there.
-        if np.all(least > VANISHES + _STEEPEST * most * (right - left) / width):
+        if np.all((least - VANISHES) * width > _STEEPEST * most * (right - left)):
             return []
         inner = right - _GOLDEN * (right - left), left + _GOLDEN * (right - left)
         below, above = np.split(_sizes(base, np.concatenate(inner))[kind] / mean, 2)
