@@ -241,7 +241,9 @@ def test_numbers_are_the_same_from_run_to_run(compared):
 
 
 @pytest.mark.skipif(importlib.util.find_spec("OCP") is None, reason="the extra cad is not installed")
-@pytest.mark.parametrize(("figure", "gap", "angle"), [(6, 0.01, 0.5), (11, 0.5, 6.0)])
+@pytest.mark.parametrize(
+    ("figure", "gap", "angle"), [(6, 0.01, 0.5), pytest.param(11, 0.5, 6.0, marks=pytest.mark.slow)]
+)
 def test_a_filling_is_rough(figure, gap, angle):
     found = run(example(figure), method("open-cascade-filling")).measures
     assert 1e-5 < found.gap < gap

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from helpers.bases import tube, turned
 from helpers.papers_set import blend
-from helpers.sweeps import examples
+from helpers.sweeps import examples, first_ones
 from semispline import (
     Base,
     BSplineCurve,
@@ -214,20 +214,22 @@ NARROW = {
 }
 
 
-@pytest.mark.parametrize("v_scale", ["paper", "unit"])
+# Over a domain of length 1 both scales are the same.
+@pytest.mark.parametrize("v_scale", first_ones(1, ["paper", "unit"]))
 @pytest.mark.parametrize("continuity", STRAIGHT)
 @pytest.mark.parametrize("place", NARROW)
-def test_a_narrow_span_hides_no_energy(place, continuity, v_scale):
+def test_a_narrow_span_hides_no_energy(place, continuity, v_scale, whole):
     """Narrow spans once hid all else from the solve: up to forty times the least energy, without a word."""
     true = STRAIGHT[continuity]
-    for width in (1e-3, 1e-5, 1e-6):
+    for width in (1e-3, 1e-5, 1e-6) if whole else (1e-3, 1e-6):
         result = blend(floor(3, NARROW[place](width)), WALL, continuity=continuity, v_scale=v_scale)
         assert result.energy == pytest.approx(true, rel=1e-7), width
         assert abs(result.energy - true) <= result.energy_rounding + 1e-12
         assert not result.warnings
         assert (result.proven_gap is not None) is (continuity == "G2")
     # From here on the factorisation may meet a zero pivot, on some processors sooner than on others: right, or refused.
-    for width in (1e-7, 3e-8, 1e-8, 5e-9, 3e-9, 1e-9, 3e-10, 1e-10, 1e-11):
+    widths = (1e-7, 3e-8, 1e-8, 5e-9, 3e-9, 1e-9, 3e-10, 1e-10, 1e-11)
+    for width in widths if whole else widths[::4]:
         try:
             result = blend(floor(3, NARROW[place](width)), WALL, continuity=continuity, v_scale=v_scale)
         except ComputationError:

@@ -192,8 +192,8 @@ def test_knots_that_do_not_fit_are_refused(options, message):
         blend(a, b, **options)
 
 
-def test_orientation_is_the_same_every_time_and_either_way():
-    for seed in range(10):
+def test_orientation_is_the_same_every_time_and_either_way(whole):
+    for seed in range(10 if whole else 3):
         a, b = facing_pair(np.random.default_rng(seed))
         assert blend(a, b).flipped == blend(b, a).flipped == blend(a, b).flipped
 
