@@ -6,7 +6,8 @@ from math import comb, factorial
 import pytest
 from sympy import Matrix, Poly, Rational, Symbol, cancel, diff, expand, eye, symbols
 
-from semispline.derivations.contact import A, contact_conditions, contact_rows_from_pieces
+from semispline.derivations.circles import half_turns
+from semispline.derivations.contact import A, contact_conditions, contact_rows, contact_rows_from_pieces
 from semispline.derivations.fairness import DERIVATIVES, reversed_program
 from semispline.derivations.homogeneous import (
     contact_residuals,
@@ -18,7 +19,7 @@ from semispline.derivations.homogeneous import (
     quotient_program,
     reciprocal_jet,
 )
-from semispline.derivations.splines import end_derivatives_from_pieces, span_symbols
+from semispline.derivations.splines import end_derivatives, end_derivatives_from_pieces, span_symbols
 
 ORDERS = range(5)
 T = Symbol("t")
@@ -112,6 +113,32 @@ def test_rows_of_the_blend_follow_from_four_columns(order, degree, base_degree):
     weighted = Matrix([w * x for x, w in zip(plain, weights, strict=True)])
     kept = quotient_jet(list(blend_end * weighted), list(blend_end * Matrix(weights)))
     assert (kept == found) is (order == 1)
+
+
+@pytest.mark.parametrize("order", [2, 3, 4])
+def test_a_torus_is_met_in_exact_fractions(order):
+    """A quarter meridian of rational weights, turned about the z axis by the circle of eleven points; no float."""
+    meridian = [(Rational(4), Rational(0), 1), (Rational(4), Rational(1), 1), (Rational(3), Rational(1), 2)]
+    h = [Rational(k + 1, 3) for k in range(order)]
+    rows_of = contact_rows(order, 2 * order + 1, h, 2, [1, 1, 1, 1][:order], Rational(3, 4))
+    blend_end = end_derivatives(order, 2 * order + 1, h)
+    base_end = end_derivatives(order, 2, [1] * order)
+    # A span as a Bezier curve at two places, so that the points are those of the circle itself.
+    for place in (Rational(1, 3), Rational(5, 7)):
+        binomials = [comb(6, j) * place**j * (1 - place) ** (6 - j) for j in range(7)]
+        x, y, w = (sum(b * p[d] for b, p in zip(binomials, half_turns(3, 2)[0], strict=True)) for d in range(3))
+        assert x**2 + y**2 == w**2
+        # Rows that the base of degree 2 lacks count nothing.
+        padded = [*meridian, *([meridian[-1]] * (order - 2))]
+        base = Matrix([[weight * r * x, weight * r * y, weight * z * w, weight * w] for r, z, weight in padded])
+        rows = rows_of * base
+        found, wanted = blend_end * rows, base_end * base
+        for d in range(3):
+            jets = quotient_jet(list(found[:, d]), list(found[:, 3]))
+            assert jets == [
+                Rational(-3, 4) ** k * value
+                for k, value in enumerate(quotient_jet(list(wanted[:, d]), list(wanted[:, 3])))
+            ]
 
 
 def test_the_quotient_program_gives_derivatives():
