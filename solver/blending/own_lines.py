@@ -112,7 +112,8 @@ def closed_lines(
     centre = _middle(rows)
     jets = np.einsum("dk,knc->dnc", end_derivatives(order, degree, spans), _moved(rows, -centre))
     found = line_series(jets, along, closed=closed)
-    if found is None:
+    # None where it is creased; empty where rounding alone made a line.
+    if not found:
         return None
     seam = float(along.knots[0])
     inner = [series for series in found if series.v > seam]

@@ -21,7 +21,8 @@ from semispline.derivations.splines import end_derivatives
 
 ROOT = Path(__file__).parents[2]
 FORMULAS = (
-    "energy", "fairness", "linear-power", "linear-product", "shape-conditions", "special-conditions", "stationarity",
+    "energy", "fairness", "homogeneous-conditions", "homogeneous-last", "linear-power", "linear-product",
+    "shape-conditions", "special-conditions", "stationarity",
 )  # fmt: skip
 
 
