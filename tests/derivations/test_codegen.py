@@ -22,7 +22,6 @@ from semispline.derivations.codegen.catalogue import (
     contact_routine,
     density_routine,
     end_derivative_routine,
-    generated_files,
     gram_routine,
 )
 from semispline.derivations.codegen.expressions import expression_text, summands
@@ -96,11 +95,6 @@ def test_temporaries_never_hide_an_argument():
     steps = routine_steps(routine)
     assert steps.temporaries
     assert "x0" not in [name for name, _ in steps.temporaries]
-
-
-@pytest.fixture(scope="module")
-def generated():
-    return generated_files()
 
 
 def test_committed_files_are_fresh(generated):
