@@ -434,7 +434,7 @@ def test_a_row_of_a_surface_takes_a_continuity_of_its_own():
         ([1, 1, -3], r"weights\[2\]: found -3.0"),
         ([1, float("nan"), 1], r"weights\[1\]: found nan, expected a finite number"),
         ([1, 1], r"weights: shape \(2,\), expected \(3,\)"),
-        ([1, 1e300, 1], r"weights: found 1e\+300, too large to be multiplied by the coordinate 1e\+10"),
+        ([1, 1e300, 1], r"weights: found 1e\+300, too large to be multiplied by the coordinate 10000000000.0"),
         ([[1, 1, 1]], r"weights: has 2 dimension\(s\), expected 1"),
         ("abc", r"weights\[0\]: found 'a'"),
     ],
