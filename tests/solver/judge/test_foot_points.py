@@ -9,9 +9,11 @@ from helpers.bases import facing_pair, moved
 from helpers.circles import arcs, cone, cylinder, full_circle, smooth_circle, torus
 from semispline import Base, BSplineSurface, measure_contact
 from semispline.solver.judge import Correspondence, corresponding_points, measure_meets
+from semispline.solver.judge.continuation import continuation
 from semispline.solver.judge.foot_points import Run, foot_map
 from semispline.solver.judge.limits import shortfalls
-from semispline.solver.splines.operations import reverse_v, swap_directions
+from semispline.solver.reports import contact_record, print_contact
+from semispline.solver.splines.operations import reverse_v, split_u, swap_directions
 
 TURN = 2 * np.pi
 CIRCLES = {
@@ -218,8 +220,51 @@ def test_bases_go_on_from_feet():
     assert place.point[2] == pytest.approx(0.75, abs=1e-9)
 
 
+@pytest.mark.parametrize("seam", [0.0, 2.0])
+def test_a_continuation_has_the_points_and_tangents_of_the_edge(seam):
+    between, high = cylinder(smooth_circle()), cone(full_circle(3, seam), (1.0, 2.0), (1.0, 3.0))
+    further = continuation(between, Base(high, "u0"), 1)
+    v = np.linspace(0, 1, 50)[1:-1]
+    np.testing.assert_allclose(further.evaluate_grid([0.0], v)[0], between.evaluate_grid([1.0], v)[0], atol=1e-13)
+    np.testing.assert_allclose(
+        further.evaluate_grid([0.0], v, 0, 1)[0], between.evaluate_grid([1.0], v, 0, 1)[0], atol=1e-11
+    )
+    w = np.full_like(v, 0.4)
+    tangents = (further.evaluate(w, v + 1e-6) - further.evaluate(w, v - 1e-6)) / 2e-6
+    np.testing.assert_allclose(further.evaluate(w, v, 0, 1), tangents, atol=1e-7)
+
+
+def test_residuals_mean_affine_parameters():
+    # One surface cut in two, the second half with other speeds: smooth by feet, not by parameters.
+    rng = np.random.default_rng(7)
+    net = np.stack([*np.meshgrid(np.arange(3.0), np.arange(3.0), indexing="ij"), np.zeros((3, 3))], axis=2)
+    whole = BSplineSurface(2, 2, [0, 0, 0, 1, 1, 1], [0, 0, 0, 1, 1, 1], net + rng.uniform(-0.3, 0.3, (3, 3, 3)))
+    first, second = split_u(whole, 0.5)
+    plain = measure_contact(Base(first, "u1"), Base(second, "u0"))
+    found = measure_contact(Base(first, "u1"), Base(paced(second, 0.6), "u0"))
+    assert found.corresponds == "foot points"
+    assert not shortfalls(found, "G2")
+    assert plain.c1_residual <= 1e-13
+    assert found.c1_residual > 1e-2
+    assert found.c2_residual > 1e-2
+
+
 def _bulged(tube):
     """A tube with a belly: its rows at both ends, and one of three times the radius at half height between them."""
     first, last = tube.control_points
     middle = (first + last) / 2 * [3, 3, 1]
     return np.stack([first, middle, last]), np.stack([tube.weights[0]] * 3)
+
+
+def test_what_was_compared_is_said(capsys):
+    contact = measure_contact(
+        Base(cylinder(smooth_circle()), "u1"), Base(cylinder(full_circle(4), heights=(1, 2)), "u0")
+    )
+    assert contact_record(contact)["corresponds"] == "foot points"
+    print_contact(contact, None)
+    assert "each point is compared with its foot on the other" in capsys.readouterr().out
+    same = cylinder(full_circle(4))
+    contact = measure_contact(Base(same, "u1"), Base(same, "u1"))
+    assert contact_record(contact)["corresponds"] == "affine"
+    print_contact(contact, None)
+    assert "foot" not in capsys.readouterr().out

@@ -24,10 +24,10 @@ from semispline.solver.judge import (
     surface_points,
     worst_inside,
 )
-from semispline.solver.judge.bezier_pieces import in_pieces
+from semispline.solver.judge.bezier_pieces import bernstein_by_degree, in_pieces
 from semispline.solver.judge.de_boor import edge_curves
 from semispline.solver.judge.limits import shortfalls
-from semispline.solver.judge.regularity import area_bound
+from semispline.solver.judge.regularity import _numerator, area_bound
 from semispline.solver.judge.rounding import derivative_noises
 from semispline.solver.splines.operations import reverse_v, swap_directions
 
@@ -119,6 +119,8 @@ def test_pieces_lose_nothing_far_from_the_origin():
     far = in_pieces(moved_rational(surface, offset=(2.0**30, 0, 0)).to_semistructured())
     near = in_pieces(surface)
     u, v = np.linspace(0, 1, 5), np.linspace(0, 1, 7)
+    points = near.evaluate_grid(u, v) + np.array([2.0**30, 0, 0])
+    np.testing.assert_allclose(far.evaluate_grid(u, v), points, atol=1e-6)
     for order in ((1, 0), (0, 2), (1, 1), (0, 3)):
         # What storing the points rounds, 2e-7, times what the order magnifies.
         np.testing.assert_allclose(far.evaluate_grid(u, v, *order), near.evaluate_grid(u, v, *order), atol=1e-3)
@@ -175,6 +177,33 @@ def test_the_bound_of_equal_weights_is_that_of_none():
     plain, weighed = (BSplineSurface(2, 3, BEZIER[2], BEZIER[3], net, w) for w in (None, np.full((3, 4), 3.0)))
     # Pieces are smaller, so the bound may be better.
     assert area_bound(plain) * (1 - 1e-12) <= area_bound(weighed) <= 1.5 * area_bound(plain)
+
+
+def test_the_numerator_of_the_area_is_exact():
+    rng = np.random.default_rng(4)
+    net = np.concatenate([rng.uniform(-1, 1, (3, 4, 3)), rng.uniform(0.5, 2, (3, 4, 1))], axis=2)
+    surface = BSplineSurface(2, 3, BEZIER[2], BEZIER[3], net[..., :3] / net[..., 3:], net[..., 3])
+    # One piece: axes 3 and 4.
+    pieces = net[..., None, None]
+    found = _numerator(pieces, 2 * np.diff(pieces, axis=0), 3 * np.diff(pieces, axis=1))[..., 0, 0]
+    for u, v in ((0.0, 0.0), (0.3, 0.8), (1.0, 0.4)):
+        (of_u,), (of_v,) = (
+            bernstein_by_degree(n - 1, np.array([x]))[-1] for n, x in zip(found.shape, (u, v), strict=False)
+        )
+        normal = np.cross(surface_points(surface, [u], [v], 1, 0), surface_points(surface, [u], [v], 0, 1)).ravel()
+        weight = sum(
+            x * net[i, j, 3]
+            for (i, j), x in np.ndenumerate(
+                np.outer(*(bernstein_by_degree(d, np.array([x]))[-1][0] for d, x in ((2, u), (3, v))))
+            )
+        )
+        np.testing.assert_allclose(of_u @ found.transpose(2, 0, 1) @ of_v, normal * weight**3, rtol=1e-11, atol=1e-12)
+
+
+def test_weights_times_a_constant_change_no_bound():
+    surface = torus(full_circle(4))
+    times = BSplineSurface(2, 2, surface.knots_u, surface.knots_v, surface.control_points, 7 * surface.weights)
+    assert area_bound(times) == pytest.approx(area_bound(surface), rel=1e-12)
 
 
 def test_a_pinched_quotient_is_not_proved():
