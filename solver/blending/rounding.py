@@ -64,12 +64,12 @@ def measure_energy_rounding(
     # Of the surface as it is, and with v stretched as in the energy that is minimised; vv, uv, uu stretch unlike.
     stretch = (_length(problem.form) / _length(own)) ** np.array([-3.0, -1.0, 1.0])
     largest = _error_factors(problem, found)
-    parts = own.error_energies(largest) * float(np.sum(errors**2))
+    parts = own.error_energies(largest) * float(np.sum(errors**2)) * _weight_spread(surface) ** 2
     least = energy * float(stretch.min())
     floor, minimised_floor = (_ZERO_ENERGY * _bent(form) * size**2 for form in (own, problem.form))
     change = _change(energy, float(parts.sum()))
     share = max(change / max(energy, floor), _change(least, float(parts @ stretch)) / max(least, minimised_floor))
-    if share <= ROUNDING_SHARE:
+    if share <= ROUNDING_SHARE or problem.is_rational:
         return EnergyRounding(change, share)
     # Only where that is not enough: place by place.
     change = own.change_by_errors(points - centre, errors, largest)
@@ -79,6 +79,12 @@ def measure_energy_rounding(
         change_there = problem.form.change_by_errors(points - centre, errors, largest)
         share = max(share, change_there / max(minimised, minimised_floor))
     return EnergyRounding(change, share)
+
+
+def _weight_spread(surface: SemiStructuredSurface) -> float:
+    """Return by how much rational basis functions may be larger than polynomial ones: an estimate for derivatives."""
+    weights = [curve.weights for curve in surface.control_curves if curve.weights is not None]
+    return float(np.concatenate(weights).max() / np.concatenate(weights).min()) if weights else 1.0
 
 
 def _error_factors(problem: BlendProblem, found: Found) -> FloatArray:
