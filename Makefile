@@ -15,7 +15,7 @@ QUICK := tests/test_documents.py tests/test_readme.py tests/test_rooms.py tests/
 	$(addprefix tests/solver/,splines generated proof judge blending io c_export) \
 	$(patsubst %,--ignore=tests/solver/%.py,$(LONG))
 
-.PHONY: report check quick test test-left-out test-kernels mutants lint types layers fresh bench shapes clean
+.PHONY: report check quick test test-left-out test-kernels mutants lint types layers fresh bench shapes pictures clean
 
 $(STAMP): pyproject.toml constraints.txt
 	$(PYTHON) -m venv $(VENV)
@@ -67,6 +67,10 @@ bench: $(STAMP)
 # AGAIN=--tables makes table and pictures from what is there.
 shapes: $(STAMP)
 	$(BIN)/python benchmarks/shapes/run.py $(AGAIN)
+
+# The picture in README, of the example beside it: docs/pipe_to_elbow.png.
+pictures: $(STAMP)
+	$(BIN)/python docs/pictures.py
 
 clean:
 	rm -rf $(VENV) build
