@@ -52,7 +52,7 @@ def blend_command(
     edge_b: EdgeB,
     out: Annotated[str, typer.Option("-o", "--out", metavar="OUT", help="File to write; the suffix says the format.")],
     options: BlendOptions,
-    report: Annotated[str | None, typer.Option(metavar="FILE", help="JSON with all that is known of the blend.")] = None,
+    report: Annotated[str | None, typer.Option(metavar="FILE", help="JSON with all that is known of it.")] = None,
 ) -> None:
     """Join an edge of A and an edge of B by a semi-structured surface of fairest shape, or as the options say."""
     from semispline.solver.io import (

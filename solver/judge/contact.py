@@ -81,7 +81,7 @@ class Contact:
         Closed edges: how far edge b's seam is from edge a's, in b's parameter.
     corresponds : {"affine", "foot points"}
         Which points of the edges are compared: of parameters that correspond affinely, or, where the edges are one
-        curve with two parametrisations, each with its foot on the other. Residuals compare derivatives at these points.
+        curve with two parametrisations, each with its foot on the other.
     rate_jump, second_rate_jump : float or None
         Largest difference of the rate of curvature, 1/length^2, and of its second rate, 1/length^3.
     rate_jump_relative, second_rate_jump_relative : float or None
