@@ -1,6 +1,6 @@
-"""The complete cylinders of Fig. 10 and the cone of Fig. 11 as exact rational surfaces, beside the polynomial stand-ins.
+"""The complete cylinders of Fig. 10 and the cone of Fig. 11 as exact rational surfaces, beside polynomial stand-ins.
 
-Axes, radii, lengths, openings and speeds across the contact are those of the stand-ins, and the circles are true ones.
+Axes, radii, lengths, openings and speeds across the contact are those of the stand-ins; the circles are true ones.
 Knots and sizes of Table 1 no longer apply: a circle takes weights, and its knots are those of its arcs.
 """
 
