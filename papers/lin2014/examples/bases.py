@@ -191,8 +191,8 @@ def _cone_and_free() -> tuple[BSplineSurface, BSplineSurface]:
     knots_u = _across(rows, 1.0)
     g = greville(knots_u, DEGREE)[:, None, None]
     # Straight along its rulings, so that interpolating the arc once is enough.
-    radius, end, length, opening = CONE
-    cone = (radius + (end - radius) * g) * _arc(first, opening) + g * np.array([length, 0, 0])
+    at_contact, at_end, length, opening = CONE
+    cone = (at_contact + (at_end - at_contact) * g) * _arc(first, opening) + g * np.array([length, 0, 0])
     knots_free = _across(free_rows, 1.1)
     u, v = np.meshgrid(greville(knots_free, DEGREE), greville(second, DEGREE), indexing="ij")
     angle = radians(190) * (v - 0.5)

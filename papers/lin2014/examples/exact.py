@@ -11,6 +11,8 @@ from functools import cache
 from math import cos, radians, sin
 from typing import Literal, TypeAlias
 
+import numpy as np
+
 from semispline.papers.baselines import BlendTask
 from semispline.papers.lin2014.examples.bases import CONE, CYLINDERS, tilted
 from semispline.papers.lin2014.examples.section5 import PRINTED, example
@@ -60,7 +62,9 @@ def _revolved(circle: Circle, radii: tuple[float, float], length: float, opening
     """
     whole = opening == 360.0
     angle = radians(180.0 if whole else -opening / 2)
-    ends = [(x, r * (0.0 if whole else sin(angle)), r * cos(angle)) for x, r in zip((0.0, length), radii, strict=True)]
-    ruling = BSplineCurve(1, [0.0, 0.0, 1.0, 1.0], ends)
+    ends = np.array(
+        [(x, r * (0.0 if whole else sin(angle)), r * cos(angle)) for x, r in zip((0.0, length), radii, strict=True)]
+    )
+    ruling = BSplineCurve(1, np.array([0.0, 0.0, 1.0, 1.0]), ends)
     axis = (1.0 if whole else -1.0, 0.0, 0.0)
     return swap_directions(_REVOLVE[circle](ruling, (0.0, 0.0, 0.0), axis, opening))
