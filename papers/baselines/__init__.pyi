@@ -1,6 +1,7 @@
 from .contacts import ContactSide as ContactSide
 from .contacts import contact_sides as contact_sides
 from .contacts import oriented_bases as oriented_bases
+from .contacts import polynomial_sides as polynomial_sides
 from .interface import BlendTask as BlendTask
 from .interface import Method as Method
 from .interface import NotApplicableError as NotApplicableError

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -23,29 +24,39 @@ from semispline.solver.splines import (
 
 # Admissible alpha^2 and beta^2 in units of their natural sizes, as in `semispline.solver.blend`.
 BOX = (1 / 8, 8.0)
+_POLYNOMIAL = "bases: found a rational one, but this method takes polynomial B-spline surfaces only"
 _SAMPLES = (np.arange(64) + 0.5) / 64
 
 
 @dataclass(frozen=True, eq=False)
 class ContactSide:
-    """One contact: position and cross derivatives along it, as splines in the blend's v.
+    """One contact: position and cross derivatives along it, in the blend's v.
 
     Attributes
     ----------
     surface : BSplineSurface
-        The base, contact at u = 0, over the v-domain of a's edge.
-    along : Basis
-    outwards : ndarray, shape (3, n, 3)
-        Control points of the base's position and first and second derivative across the contact, in the base's own
-        parameter, in the direction that leaves the base.
+        The base, contact at u = 0, over the v-domain of a's edge; rational ones too.
     natural : float
         Mean distance of the contact curves over the mean |R_w|: the natural size of alpha^2.
     """
 
     surface: BSplineSurface
-    along: Basis
-    outwards: FloatArray
     natural: float
+
+    @property
+    def along(self) -> Basis:
+        """Of the base along the contact."""
+        return Basis(self.surface.degree_v, self.surface.knots_v)
+
+    @cached_property
+    def outwards(self) -> FloatArray:
+        """Control points of the base's position and first and second derivative across the contact, shape (3, n, 3).
+
+        In the base's own parameter, in the direction that leaves the base; of polynomial bases only.
+        """
+        if self.surface.weights is not None:
+            raise NotApplicableError(_POLYNOMIAL)
+        return _outwards(self.surface)
 
     @property
     def bounds(self) -> tuple[float, float]:
@@ -54,6 +65,9 @@ class ContactSide:
 
     def derivatives(self, v: FloatArray, order: int, along: int = 0) -> FloatArray:
         """Return the derivative of order `order` across and `along` along the contact at v, shape (K, 3)."""
+        if self.surface.weights is not None:
+            contact = np.full_like(v, self.surface.domain[0][0])
+            return (-1.0) ** order * self.surface.evaluate(contact, v, order, along)
         degree, knots = self.along.degree, self.along.knots
         if along > degree:
             return np.zeros((len(v), 3))
@@ -67,21 +81,40 @@ def contact_sides(task: BlendTask) -> tuple[ContactSide, ContactSide]:
     Raises
     ------
     NotApplicableError
+        A base is semi-structured.
+    """
+    sides = [ContactSide(surface, 1.0) for surface in oriented_bases(task)]
+    start, end = sides[0].surface.domain[1]
+    v = start + (end - start) * _SAMPLES
+    curves = [side.derivatives(v, 0) for side in sides]
+    gap = float(np.linalg.norm(curves[0] - curves[1], axis=1).mean())
+    speeds = [float(np.linalg.norm(side.derivatives(v, 1), axis=1).mean()) for side in sides]
+    first, second = (replace(side, natural=gap / speed) for side, speed in zip(sides, speeds, strict=True))
+    return first, second
+
+
+def polynomial_sides(task: BlendTask) -> tuple[ContactSide, ContactSide]:
+    """Return both contacts for a method that works on control points.
+
+    Raises
+    ------
+    NotApplicableError
         A base is rational or semi-structured.
     """
-    surfaces = oriented_bases(task)
-    bases = [Basis(s.degree_v, s.knots_v) for s in surfaces]
-    outwards = [_outwards(s) for s in surfaces]
-    start, end = surfaces[0].domain[1]
-    v = start + (end - start) * _SAMPLES
-    matrices = [basis_matrix(b.degree, b.knots, v) for b in bases]
-    curves = [m @ d[0] for m, d in zip(matrices, outwards, strict=True)]
-    gap = float(np.linalg.norm(curves[0] - curves[1], axis=1).mean())
-    speeds = [float(np.linalg.norm(m @ d[1], axis=1).mean()) for m, d in zip(matrices, outwards, strict=True)]
-    first, second = (
-        ContactSide(s, b, d, gap / speed) for s, b, d, speed in zip(surfaces, bases, outwards, speeds, strict=True)
-    )
-    return first, second
+    require_polynomial(task)
+    return contact_sides(task)
+
+
+def require_polynomial(task: BlendTask) -> None:
+    """Refuse rational bases for a method that does not know weights.
+
+    Raises
+    ------
+    NotApplicableError
+        A base is rational.
+    """
+    if any(isinstance(b.surface, BSplineSurface) and b.surface.weights is not None for b in (task.a, task.b)):
+        raise NotApplicableError(_POLYNOMIAL)
 
 
 def oriented_bases(task: BlendTask) -> tuple[BSplineSurface, BSplineSurface]:
@@ -90,13 +123,13 @@ def oriented_bases(task: BlendTask) -> tuple[BSplineSurface, BSplineSurface]:
     Raises
     ------
     NotApplicableError
-        A base is rational or semi-structured.
+        A base is semi-structured.
     """
     turned = []
     for base in (task.a, task.b):
         surface = base.surface
-        if not isinstance(surface, BSplineSurface) or surface.weights is not None:
-            raise NotApplicableError("bases: expected B-spline surfaces without weights")
+        if not isinstance(surface, BSplineSurface):
+            raise NotApplicableError("bases: found a semi-structured one, expected B-spline surfaces")
         if base.edge[0] == "v":
             surface = swap_directions(surface)
         turned.append(reverse_u(surface) if base.edge[1] == "1" else surface)
@@ -113,15 +146,12 @@ def on_common_knots(a: ContactSide, b: ContactSide) -> tuple[ContactSide, Contac
     sides = (a, b)
     curves = [BSplineCurve(s.along.degree, s.along.knots, row) for s in sides for row in s.surface.control_points]
     same = compatible_curves(curves)
-    basis = Basis(same.degree, same.knots)
     count = len(a.surface.control_points)
     refined = [
         replace(s.surface, degree_v=same.degree, knots_v=same.knots, control_points=net)
         for s, net in zip(sides, (same.homogeneous[:count], same.homogeneous[count:]), strict=True)
     ]
-    first, second = (
-        replace(s, surface=r, along=basis, outwards=_outwards(r)) for s, r in zip(sides, refined, strict=True)
-    )
+    first, second = (replace(s, surface=r) for s, r in zip(sides, refined, strict=True))
     return first, second
 
 

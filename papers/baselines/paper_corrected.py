@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from semispline.papers.baselines.contacts import require_polynomial
 from semispline.papers.baselines.interface import BlendTask, Method, Outcome
 from semispline.papers.baselines.semistructured import outcome_of
 from semispline.solver.blending import blend
@@ -9,6 +10,7 @@ from semispline.solver.blending import blend
 
 def blend_corrected(task: BlendTask) -> Outcome:
     """Blend with the contact that the paper asks for in this example."""
+    require_polynomial(task)
     return outcome_of(
         blend(task.a, task.b, continuity=task.continuity, middle_curves=task.middle_curves, method="bfgs")
     )

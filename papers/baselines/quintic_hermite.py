@@ -6,7 +6,7 @@ import time
 
 import numpy as np
 
-from semispline.papers.baselines.contacts import contact_sides
+from semispline.papers.baselines.contacts import polynomial_sides
 from semispline.papers.baselines.interface import BlendTask, Method, Outcome
 from semispline.papers.baselines.semistructured import outcome_of
 from semispline.papers.baselines.surfaces_from_rows import semistructured_surface, u_basis
@@ -22,7 +22,7 @@ def hermite_rows(outwards: FloatArray, a: float) -> FloatArray:
 
 def blend_natural(task: BlendTask) -> Outcome:
     """Blend with alpha^2 and beta^2 of natural size."""
-    a, b = contact_sides(task)
+    a, b = polynomial_sides(task)
     started = time.perf_counter()
     rows = [*hermite_rows(a.outwards, a.natural), *hermite_rows(b.outwards, b.natural)[::-1]]
     surface = semistructured_surface(u_basis(6, 5), (a.along,) * 3 + (b.along,) * 3, rows)

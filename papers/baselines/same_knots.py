@@ -9,7 +9,7 @@ from __future__ import annotations
 import time
 from functools import partial
 
-from semispline.papers.baselines.contacts import contact_sides, on_common_knots
+from semispline.papers.baselines.contacts import on_common_knots, polynomial_sides
 from semispline.papers.baselines.interface import BlendTask, Method, Outcome
 from semispline.papers.baselines.quadratic_forms import THIN_PLATE, energy_matrix
 from semispline.papers.baselines.rows_of_least_energy import contact_rule, least_energy
@@ -18,7 +18,7 @@ from semispline.papers.baselines.surfaces_from_rows import tensor_product, u_bas
 
 def blend_same_knots(order: int, task: BlendTask) -> Outcome:
     """Blend with G1 or G2 rows over the union of all knots, as many rows as the semi-structured blend has."""
-    sides = contact_sides(task)
+    sides = polynomial_sides(task)
     started = time.perf_counter()
     a, b = on_common_knots(*sides)
     u, v = u_basis(6 + task.middle_curves), a.along

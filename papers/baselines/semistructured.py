@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from functools import partial
 
+from semispline.papers.baselines.contacts import require_polynomial
 from semispline.papers.baselines.interface import BlendTask, Method, Outcome
 from semispline.solver.blending import BlendResult, blend
 from semispline.solver.options import Method as Search
@@ -16,6 +17,8 @@ def blend_fair(task: BlendTask) -> Outcome:
 
 def blend_semistructured(search: Search, task: BlendTask) -> Outcome:
     """Blend with G2 contact and least energy, with as many middle curves as the paper has."""
+    if search != "reduced":
+        require_polynomial(task)
     return outcome_of(
         blend(task.a, task.b, continuity="G2", middle_curves=task.middle_curves, alpha="energy", method=search)
     )
@@ -31,6 +34,7 @@ def outcome_of(result: BlendResult) -> Outcome:
         result.seconds,
         result.alpha2,
         result.beta2,
+        aligned=all(contact.corresponds == "affine" for contact in (result.contact_a, result.contact_b)),
         note=note,
     )
 

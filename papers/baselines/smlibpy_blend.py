@@ -42,7 +42,8 @@ def blend_smlibpy(task: BlendTask) -> Outcome:
 def _contact_edge(smlibpy: Any, base: BSplineSurface) -> Any:
     """Return the edge of a sheet that lies on the contact: the one closest to points of it."""
     net, knots = base.control_points.tolist(), (base.knots_u.tolist(), base.knots_v.tolist())
-    sheet = smlibpy.nurbs_surface(net, knots=knots, degrees=(base.degree_u, base.degree_v))
+    weights = None if base.weights is None else base.weights.tolist()
+    sheet = smlibpy.nurbs_surface(net, knots=knots, degrees=(base.degree_u, base.degree_v), weights=weights)
     v = np.linspace(*base.domain[1], 7)
     points = base.evaluate(np.full_like(v, base.domain[0][0]), v)
 

@@ -11,7 +11,7 @@ from __future__ import annotations
 import time
 from functools import partial
 
-from semispline.papers.baselines.contacts import contact_sides, on_common_knots
+from semispline.papers.baselines.contacts import on_common_knots, polynomial_sides
 from semispline.papers.baselines.interface import BlendTask, Method, Outcome
 from semispline.papers.baselines.quadratic_forms import THIN_PLATE, TRIHARMONIC, energy_matrix
 from semispline.papers.baselines.rows_of_least_energy import contact_rule, least_energy
@@ -22,7 +22,7 @@ ROWS = 11
 
 def blend_refined(energy: str, task: BlendTask) -> Outcome:
     """Blend with G2 rows of natural size and the least triharmonic or thin-plate energy over the same space."""
-    sides = contact_sides(task)
+    sides = polynomial_sides(task)
     started = time.perf_counter()
     a, b = on_common_knots(*sides)
     u, v = u_basis(ROWS), a.along

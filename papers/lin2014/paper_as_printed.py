@@ -22,9 +22,9 @@ from semispline.papers.baselines import (
     Method,
     Outcome,
     RowRule,
-    contact_sides,
     energy_matrix,
     least_energy,
+    polynomial_sides,
     semistructured_surface,
 )
 from semispline.papers.lin2014 import printed as pr
@@ -69,11 +69,11 @@ def printed_rule(side: ContactSide, u: Basis, *, at_end: bool) -> RowRule:
 
 def blend_as_printed(task: BlendTask) -> Outcome:
     """Blend with the printed rows."""
+    a, b = polynomial_sides(task)
     # Only the knots are taken from it: U and those of the middle curve follow the text.
     layout = blend(task.a, task.b, continuity="C2", middle_curves=task.middle_curves, alpha="energy").surface
     u = Basis(layout.degree_u, layout.knots_u)
     bases = [Basis(c.degree, c.knots) for c in layout.control_curves]
-    a, b = contact_sides(task)
     started = time.perf_counter()
     rules = printed_rule(a, u, at_end=False), printed_rule(b, u, at_end=True)
     matrix = energy_matrix(u, bases, THIN_PLATE)

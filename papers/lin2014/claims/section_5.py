@@ -35,6 +35,7 @@ from semispline.papers.lin2014.checks import conditions_in_figures as conditions
 from semispline.papers.lin2014.checks import curvature_pictures as pictures
 from semispline.papers.lin2014.checks import hartmann
 from semispline.papers.lin2014.checks import printed_numbers as numbers
+from semispline.papers.lin2014.checks.exact_blends import exact_contact
 from semispline.papers.lin2014.checks.measured_rows import measured_rows
 from semispline.papers.lin2014.checks.rows_along_normal import along_normal
 from semispline.papers.lin2014.claims.section_3_conditions import TRUE_3_1, TRUE_3_2
@@ -134,10 +135,11 @@ CLAIMS: tuple[Claim, ...] = (
               Reading((part(proved(numbers.extrusion_cases, "a cubic curve moved along a line, degree raised to 3")),),
                       label="cylinders over some other curve, which may be near a circle"),
               remark="No polynomial spline, which is what (7) is, runs along a circle; that takes weights. What is "
-              "called radius is that of an approximation."),
+              "called radius is that of an approximation. The study runs Fig. 10 with exact, rational cylinders too."),
     holds("sec-5.cone", "Section 5", "The conical base of Fig. 11 is bicubic.",
           part(proved(numbers.cone_patch_cases, "a patch in the implicit equation of a circular cone")),
-          remark="Possible on a circular cone too, between parabolas; between circles it is not, as for cylinders."),
+          remark="Possible on a circular cone too, between parabolas; between circles it is not, as for cylinders: "
+          "that takes weights. The study runs Fig. 11 with such an exact cone too."),
     holds("sec-5.middle-curves", "Section 5", "Figs. 5, 6, 8, 9 have one middle curve, Figs. 10 and 11 none.",
           part(of_data(numbers.middle_curve_cases, "the two kinds of section 3, what the paragraphs repeat, and the "
                        "printed inner knots"), printed.MIDDLE_CURVES)),
@@ -252,6 +254,8 @@ CLAIMS: tuple[Claim, ...] = (
               Reading((part(conditions.row_2_check("start", 5, "any", parametric=False),
                             conditions.at_figure(TRUE_3_1, 5, parametric=False)),),
                       label=_CORRECTED),
+              consequence=partial(exact_contact, 10, "Exact, rational cylinders, not polynomial stand-ins, blended "
+                                  "with derived rows, worst of both contacts"),
               remark="With (3.1) as printed it holds by accident: a complete cylinder is met along a closed curve and, "
               "with a parameter along its rulings, which is not said to be so, is straight across; only the second "
               "derivative along the normal matters, and it is zero whatever multiple of the base's is taken. So this "
@@ -263,7 +267,8 @@ CLAIMS: tuple[Claim, ...] = (
           consequence=partial(measured_rows, "end", {1: pr.COND_2_2, 2: pr.COND_3_2},
                               "The made pair, whose second base stands for the free-form surface"),
           remark="On the cone it holds by accident, as in Fig. 10; on the free-form side it does not as printed, and "
-          "with squares just where its one knot across is in the middle."),
+          "with squares just where its one knot across is in the middle. With an exact, rational cone instead of a "
+          "stand-in derived rows are G2 as well, which the study measures."),
     holds("table-1.sizes", "Table 1", "Sizes of the control nets, across and along the contact.",
           *(size for figure in pr.SIZES for size in _sizes(figure)),
           remark="For Fig. 10 they agree with four zeros: fig-10.first-knots."),

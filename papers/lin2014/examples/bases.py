@@ -38,6 +38,10 @@ from semispline.solver.splines import (
 )
 
 _X, _Y, _Z = np.eye(3)
+# Of the complete cylinders: radius, and length along x from the contact.
+CYLINDERS = ((40.0, -80.0), (26.0, 80.0))
+# Of the cone: radius at the contact and at its end, length along x from the contact, opening in degrees.
+CONE = (34.0, 60.0, -70.0, 200.0)
 
 
 def stand_in(figure: int) -> StoredProblem:
@@ -168,9 +172,15 @@ def _circle(knots_v: FloatArray) -> FloatArray:
 
 def _cylinders() -> tuple[BSplineSurface, BSplineSurface]:
     first, second = _knots(10)
-    large = _swept(40 * _circle(first), first, np.array([-80.0, 0, 0]), _across(10, 1.1))
-    small = _swept(26 * _circle(second), second, np.array([80.0, 0, 0]), _across(8, 0.9))
-    return large, _turned(small, -_Y, 40, (75.0, 0, 30))
+    (radius, length), (other_radius, other_length) = CYLINDERS
+    large = _swept(radius * _circle(first), first, np.array([length, 0, 0]), _across(10, 1.1))
+    small = _swept(other_radius * _circle(second), second, np.array([other_length, 0, 0]), _across(8, 0.9))
+    return large, tilted(small)
+
+
+def tilted(cylinder: BSplineSurface) -> BSplineSurface:
+    """Return the second cylinder of Fig. 10, made along x, where it stands."""
+    return _turned(cylinder, -_Y, 40, (75.0, 0, 30))
 
 
 def _cone_and_free() -> tuple[BSplineSurface, BSplineSurface]:
@@ -181,7 +191,8 @@ def _cone_and_free() -> tuple[BSplineSurface, BSplineSurface]:
     knots_u = _across(rows, 1.0)
     g = greville(knots_u, DEGREE)[:, None, None]
     # Straight along its rulings, so that interpolating the arc once is enough.
-    cone = (34 + 26 * g) * _arc(first, 200) + g * np.array([-70.0, 0, 0])
+    at_contact, at_end, length, opening = CONE
+    cone = (at_contact + (at_end - at_contact) * g) * _arc(first, opening) + g * np.array([length, 0, 0])
     knots_free = _across(free_rows, 1.1)
     u, v = np.meshgrid(greville(knots_free, DEGREE), greville(second, DEGREE), indexing="ij")
     angle = radians(190) * (v - 0.5)

@@ -16,7 +16,9 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
 from semispline.papers.baselines import BlendTask, as_spline, method
+from semispline.papers.lin2014.checks.exact_blends import FIGURES_OWN, blended, task_of
 from semispline.papers.lin2014.examples.bases import figure_5_on_common_knots
+from semispline.papers.lin2014.examples.exact import EXACT_FIGURES
 from semispline.papers.lin2014.examples.section5 import FIGURES, PRINTED, example
 from semispline.papers.lin2014.figures.panels import DPI, save, show
 from semispline.papers.reproduction import Drawing
@@ -49,7 +51,7 @@ def common_knots_task() -> BlendTask:
 
 
 def drawings() -> list[Drawing]:
-    """Return figures 4 to 11: names, captions, and what draws each into a file."""
+    """Return figures 4 to 11, and 10 and 11 with exact surfaces: names, captions, what draws each into a file."""
     made = [Drawing("figure-4", "Fig. 4: a semi-structured blend between two bases, and its knots", draw_figure_4)]
     for figure in FIGURES:
         printed = PRINTED[figure]
@@ -59,6 +61,12 @@ def drawings() -> list[Drawing]:
         if figure == 6:
             text = "Fig. 7: the pair of Fig. 6 by Hartmann's method with pieces inside the bases: it runs backwards"
             made.append(Drawing("figure-7", text, draw_figure_7))
+    for figure in EXACT_FIGURES:
+        printed = PRINTED[figure]
+        caption = (
+            f"Fig. {figure}: {printed.description}, blended with {printed.continuity}; exact surfaces of revolution"
+        )
+        made.append(Drawing(f"figure-{figure}-exact", caption, partial(draw_exact, figure)))
     return made
 
 
@@ -68,6 +76,13 @@ def draw_example(figure: int, path: str | Path) -> None:
     task = example(figure)
     rows = [_scene(task, figure_blend(figure).surface)]
     _draw_rows(path, rows, [""])
+
+
+def draw_exact(figure: int, path: str | Path) -> None:
+    """Draw the three panels of Fig. 10 or 11 with exact surfaces."""
+    check_output(path)
+    bases = "exact, in arcs"
+    _draw_rows(path, [_scene(task_of(figure, bases), blended(figure, FIGURES_OWN, bases).result.surface)], [""])
 
 
 def draw_figure_5(path: str | Path) -> None:
