@@ -5,7 +5,7 @@ import pytest
 
 from helpers.cases import CASES
 from helpers.rational import FULL, HALF, QUARTER, THIRDS, cylinder, meridian, random_pair
-from semispline import Base, BSplineSurface, OptionError, blend, measure_contact, read_surface, transform
+from semispline import Base, BSplineSurface, ContactError, OptionError, blend, measure_contact, read_surface, transform
 from semispline.solver.judge import required_limits
 from semispline.solver.judge.creases import worst_inside
 
@@ -153,8 +153,16 @@ def test_random_rational_pairs(seed):
 @pytest.mark.slow
 @pytest.mark.parametrize("first", range(24, 500, 28))
 def test_five_hundred_random_rational_pairs(first):
+    untold = []
     for seed in range(first, first + 28):
-        check_pair(seed)
+        try:
+            check_pair(seed)
+        except ContactError as error:
+            # G4 on weights of the fifth power: the bound on rounding is too wide to tell, and says so; 2 of the 500.
+            assert "G4" in random_pair(seed)[2], seed
+            assert "rounding alone may change second_rate" in str(error)
+            untold.append(seed)
+    assert len(untold) <= 1
 
 
 def test_contact_by_the_referee_is_that_of_the_written_surface():
