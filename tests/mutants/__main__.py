@@ -22,13 +22,13 @@ _TIMES, _MORE = 5.0, 10.0
 _FIRST = 8
 
 
-def all_mutants(root: Path, rooms: tuple[str, ...], sample: int) -> list[Mutant]:
-    """Return the complete class and the sample of the rest."""
+def all_mutants(root: Path, rooms: tuple[str, ...], sample: int) -> tuple[list[Mutant], list[Mutant]]:
+    """Return the complete class with the sample of the rest, and what is left out."""
     found = []
     for path in sorted(p for room in rooms for p in (root / room).rglob("*.py")):
         found += mutants_of(path.relative_to(root).as_posix(), path.read_bytes())
     rest = sorted((m for m in found if not m.complete), key=lambda m: m.key)
-    return [m for m in found if m.complete] + sorted(rest[:sample], key=lambda m: (m.file, m.start))
+    return [m for m in found if m.complete] + sorted(rest[:sample], key=lambda m: (m.file, m.start)), rest[sample:]
 
 
 def decide(
@@ -98,7 +98,8 @@ def main() -> int:
     parser.add_argument("--workers", type=int, default=2)
     parser.add_argument("--report", action="store_true", help="show what is known, run nothing")
     words = parser.parse_args()
-    wanted = [m for m in all_mutants(ROOT, ROOMS, SAMPLE) if any(Path(m.file).is_relative_to(p) for p in words.paths)]
+    taken, left_out = all_mutants(ROOT, ROOMS, SAMPLE)
+    wanted = [m for m in taken if any(Path(m.file).is_relative_to(p) for p in words.paths)]
     results = FOLDER / "results.jsonl"
     if not words.report:
         load_libraries()
@@ -108,7 +109,7 @@ def main() -> int:
             print(f"left out, fails without any mutant: {test}")
         chosen = {m.key: chosen_for(m, table, ROOT, BOUND) for m in wanted}
         decide(ROOT, wanted, chosen, table, slots, results)
-    return report(wanted, read_records(results), read_accepted(Path(__file__).parent / "accepted.toml"))
+    return report(wanted, left_out, read_records(results), read_accepted(Path(__file__).parent / "accepted.toml"))
 
 
 if __name__ == "__main__":

@@ -89,9 +89,11 @@ def read_accepted(path: Path) -> list[dict[str, Any]]:
     return entries
 
 
-def report(mutants: list[Mutant], records: dict[str, Record], accepted: list[dict[str, Any]]) -> int:
-    """Print what survived, and return the exit status."""
-    used = []
+def report(
+    mutants: list[Mutant], left_out: list[Mutant], records: dict[str, Record], accepted: list[dict[str, Any]]
+) -> int:
+    """Print what survived, and return the exit status; what is said of mutants that are left out is not stale."""
+    used = [entry for mutant in left_out if (entry := _reason(accepted, mutant))]
     counts: dict[str, Counter[str]] = defaultdict(Counter)
     unexplained, undecided_files = 0, set()
     for mutant in mutants:
