@@ -6,7 +6,7 @@ import pytest
 from helpers.bases import facing_pair, tube
 from helpers.papers_set import blend
 from helpers.shapes import sheets
-from semispline import Base, EdgeError
+from semispline import Base, BSplineSurface, EdgeError
 from semispline.solver.judge.continuation import continuation
 from semispline.solver.judge.sections import unit_normals
 
@@ -64,3 +64,37 @@ def test_another_edge_is_refused():
     surface, other = sheets(1, 2)
     with pytest.raises(EdgeError, match=r"its edge u1 is .* away from the surface's end u0"):
         continuation(surface, Base(other, "u1"), 0)
+
+
+K1 = [0, 0, 1, 1]
+
+
+def strip(start, end, offset=0.0, knots=K1):
+    """The unit wide strip between two places along x."""
+    places = np.linspace(start, end, len(knots) - 2) + offset
+    return BSplineSurface(1, 1, knots, K1, [[[x, 0, 0], [x, 1, 0]] for x in places])
+
+
+@pytest.mark.parametrize(
+    ("gap", "offset", "is_edge"),
+    # A millionth of the extent; and 256 roundings of what is 1e9 away, 5.7e-5.
+    [(0.5e-6, 0, True), (2e-6, 0, False), (3e-5, 1e9, True), (1e-4, 1e9, False)],
+)
+def test_how_far_apart_edges_may_be(gap, offset, is_edge):
+    surface, base = strip(0, 1, offset), Base(strip(1 + gap, 2, offset), "u0")
+    if is_edge:
+        continuation(surface, base, 1)
+    else:
+        with pytest.raises(EdgeError, match="away from the surface's end u1"):
+            continuation(surface, base, 1)
+
+
+def test_knots_of_the_base_are_counted_from_its_edge():
+    surface, knots = strip(0, 1), [0, 0, 0.25, 1, 1]
+    for end, base, expected in (
+        (1, Base(strip(1, 2, knots=knots), "u0"), [0, 0.25, 1]),
+        (0, Base(strip(-1, 0, knots=knots), "u1"), [0, 0.75, 1]),
+    ):
+        across, along = continuation(surface, base, end).breakpoints
+        assert across.tolist() == expected
+        assert along.tolist() == [0, 1]
