@@ -36,9 +36,9 @@ def test_surfaces_tell_how_they_circle_from_a_product_of_sines_of_a_hundredth_on
     assert tied_directions(cone(square), cone(square, 0.5)) == (("no", "yes") if told else ("no",))
 
 
-def test_a_straight_pipe_runs_one_way():
-    above = Base(revolved(line((1, 1), (1, 2))), "u0")
-    below = Base(revolved(line((1, 0), (1, -1))), "u0")
+@pytest.mark.parametrize("outwards", [0.0, 1.0])
+def test_a_straight_pipe_runs_one_way(outwards):
+    above, below = (Base(revolved(line((1, side), (1 + outwards, side * 2))), "u0") for side in (1, -1))
     assert tied_directions(below, above) == ("no",)
 
 
