@@ -304,3 +304,9 @@ def test_pairs_are_found_in_clusters_as_tight_as_knots_may_be():
     knots = 0.5 + 2e-10 * np.arange(20)
     breaks = np.array([0.0, *np.sort(np.concatenate([knots, knots + 3e-12])), 1.0])
     assert _wide_spans(breaks, 1e8).tolist() == [True, *[False, True] * 19, False, True]
+
+
+@pytest.mark.parametrize(("part", "narrow"), [(0.045, True), (0.055, False)])
+def test_spans_of_a_cluster_are_below_a_twentieth_of_the_mean_one(part, narrow):
+    # Three spans of a surface one window long: a cluster may be a quarter of it.
+    assert _wide_spans(np.array([0.0, 0.4, 0.4 + part / 3, 1.0]), 1.0).tolist() == [True, not narrow, True]
