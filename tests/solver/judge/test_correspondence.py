@@ -4,8 +4,16 @@ import numpy as np
 import pytest
 
 from helpers.shapes import line, revolved
-from semispline import Base, BSplineSurface, transform
-from semispline.solver.judge.correspondence import Correspondence, correspond, corresponding, is_closed, tied_directions
+from semispline import Base, BSplineSurface, map_domain, reverse_v, transform
+from semispline.solver.judge.correspondence import (
+    Correspondence,
+    correspond,
+    corresponding,
+    corresponding_samples,
+    is_closed,
+    snapped_seam,
+    tied_directions,
+)
 
 K1 = [0, 0, 1, 1]
 
@@ -42,35 +50,43 @@ def test_a_straight_pipe_runs_one_way(outwards):
     assert tied_directions(below, above) == ("no",)
 
 
-def test_a_shift_between_rims_is_that_of_their_seams():
-    """Turned about their axis by any angle, by Newton's method from samples; the parameters of a circle are uneven."""
-    rim = revolved(line((1, 0), (1, -1)))
-    for degrees in (37.0, 90.0, 200.0):
-        t = np.radians(degrees)
-        rotation = np.array([[np.cos(t), -np.sin(t), 0], [np.sin(t), np.cos(t), 0], [0, 0, 1]])
-        a, b = Base(rim, "u0"), Base(transform(rim, rotation, [0, 0, 1.0]), "u0")
-        assert is_closed(a)
-        assert is_closed(b)
-        matched = correspond(a, b)
-        assert not matched.flipped
-        s = np.linspace(0, 4, 9)[:-1]
-        if degrees == 90:
-            # A quarter of the circle is one piece: there nothing is uneven.
-            assert matched.shift == pytest.approx(3.0, abs=1e-9)
-            on_b = b.derivative(corresponding(a, b, matched, s), 0, 0)
-            assert on_b == pytest.approx(a.derivative(s, 0, 0) + np.array([0, 0, 1]), abs=1e-9)
-        else:
-            # Of all shifts beside it none is closer.
-            steps = matched.shift + np.array([-1e-3, 0.0, 1e-3])
-            fine = np.linspace(0, 4, 4001)[:-1]
-            apart = [
-                np.sum(
-                    (
-                        b.derivative(corresponding(a, b, Correspondence(False, x % 4), fine), 0, 0)
-                        - a.derivative(fine, 0, 0)
-                    )
-                    ** 2
-                )
-                for x in steps
-            ]
-            assert apart[1] < min(apart[0], apart[2])
+def turned_rims(degrees, on_a=(0.0, 4.0), on_b=(0.0, 4.0), *, backwards=False):
+    """Circles one above the other, four even pieces each, b turned about the axis, with ranges of their parameters."""
+    rim, t = revolved(line((1, 0), (1, -1))), np.radians(degrees)
+    rotation = np.array([[np.cos(t), -np.sin(t), 0], [np.sin(t), np.cos(t), 0], [0, 0, 1]])
+    other = transform(rim, rotation, [0, 0, 1.0])
+    other = reverse_v(other) if backwards else other
+    ranges = ((rim, on_a), (other, on_b))
+    return [Base(map_domain(surface, surface.domain[0], of_v), "u0") for surface, of_v in ranges]
+
+
+@pytest.mark.parametrize("backwards", [False, True])
+@pytest.mark.parametrize(("on_a", "on_b"), [((0, 4), (0, 4)), ((100, 101), (-3, 5)), ((-7, -6), (2, 2.5))])
+def test_rims_turned_by_one_piece(on_a, on_b, backwards):
+    a, b = turned_rims(90, on_a, on_b, backwards=backwards)
+    assert is_closed(a)
+    assert is_closed(b)
+    matched = correspond(a, b)
+    length = on_b[1] - on_b[0]
+    assert matched.flipped is backwards
+    assert matched.shift == pytest.approx((0.25 if backwards else 0.75) * length, abs=1e-9 * length)
+    # All spans are in common: seven samples in each, all inside, and what corresponds is one above the other.
+    s_a, s_b = corresponding_samples(a, b, snapped_seam(a, b, matched))
+    assert len(s_a) == len(s_b) == 28
+    assert on_a[0] < s_a.min() < s_a.max() < on_a[1]
+    assert b.derivative(s_b, 0, 0) == pytest.approx(a.derivative(s_a, 0, 0) + np.array([0, 0, 1]), abs=1e-9)
+    pieces = np.floor((s_a - on_a[0]) / (on_a[1] - on_a[0]) * 4).astype(int)
+    assert np.bincount(pieces).tolist() == [7] * 4
+
+
+@pytest.mark.parametrize("degrees", [37.0, 200.0])
+def test_a_shift_between_samples_is_refined(degrees):
+    """The parameters of a circle are uneven: of all shifts beside the one that is found none is closer."""
+    a, b = turned_rims(degrees)
+    matched, fine = correspond(a, b), np.linspace(0, 4, 4001)[:-1]
+
+    def apart(shift):
+        there = corresponding(a, b, Correspondence(False, shift), fine)
+        return np.sum((b.derivative(there, 0, 0) - a.derivative(fine, 0, 0)) ** 2)
+
+    assert apart(matched.shift) < min(apart(matched.shift - 1e-3), apart(matched.shift + 1e-3))
