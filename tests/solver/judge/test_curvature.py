@@ -317,3 +317,6 @@ def test_the_limit_of_degenerate_points(width, regular):
     for net in (strip, slanted):
         surface = BSplineSurface(1, 1, BEZIER_1, BEZIER_1, net)
         assert local_geometry(surface, [0.5], [0.5]).regular.tolist() == [regular]
+        # Wherever the parameters are.
+        moved = map_domain(surface, (10, 11), (-6, -5))
+        assert local_geometry(moved, [10.5], [-5.5]).regular.tolist() == [regular]
