@@ -6,8 +6,8 @@ import pytest
 from helpers.bases import facing_pair, tube
 from helpers.papers_set import blend
 from helpers.shapes import sheets
-from semispline import Base, BSplineSurface, EdgeError
-from semispline.solver.judge.continuation import continuation
+from semispline import Base, BSplineSurface, EdgeError, transform
+from semispline.solver.judge.continuation import _nearest, continuation
 from semispline.solver.judge.sections import unit_normals
 
 OPTIONS = {"degree_u": 5, "middle_curves": 0, "alpha": "natural"}
@@ -98,3 +98,15 @@ def test_knots_of_the_base_are_counted_from_its_edge():
         across, along = continuation(surface, base, end).breakpoints
         assert across.tolist() == expected
         assert along.tolist() == [0, 1]
+
+
+def test_the_nearest_place_on_a_closed_edge():
+    """Of a flat ring, whose sides are close to each other, and of one that is a circle."""
+    rng = np.random.default_rng(3)
+    ring = tube(rng, 11, noise=0.02)
+    for surface in (ring, transform(ring, np.diag([10.0, 0.3, 1.0]))):
+        base = Base(surface, "u1")
+        first, last = base.range_along
+        for part in np.arange(16) / 16 + 0.01:
+            at = first + part * (last - first)
+            assert _nearest(base, base.derivative(np.array([at]), 0, 0)[0]) == pytest.approx(at, abs=1e-9)

@@ -90,3 +90,17 @@ def test_a_shift_between_samples_is_refined(degrees):
         return np.sum((b.derivative(there, 0, 0) - a.derivative(fine, 0, 0)) ** 2)
 
     assert apart(matched.shift) < min(apart(matched.shift - 1e-3), apart(matched.shift + 1e-3))
+
+
+@pytest.mark.parametrize(("gap", "closed"), [(1.8e-9, True), (2.2e-9, False)])
+def test_an_edge_is_closed_by_its_own_extent_wherever_it_is(gap, closed):
+    rim = revolved(line((1, 0), (1, -1)))
+    net = rim.control_points + np.array([100.0, 50.0, -20.0])
+    net[:, -1, 0] += gap
+    assert is_closed(Base(BSplineSurface(2, 2, rim.knots_u, rim.knots_v, net, rim.weights), "u0")) is closed
+
+
+def test_one_closed_edge_has_no_shift():
+    rim, half = (Base(revolved(line((1, 0), (1, -1)), 30, end), "u0") for end in (390, 210))
+    for a, b in ((rim, half), (half, rim), (half, half)):
+        assert correspond(a, b).shift == 0
