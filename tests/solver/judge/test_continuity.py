@@ -27,6 +27,8 @@ def test_gap_angle_and_curvature_of_parabolas():
     a, b = parabola(2.0), parabola(-1.0, bend=-1.0, offset=0.25)
     contact = measure_contact(Base(a, "u0"), Base(b, "u0"))
     assert contact.gap == pytest.approx(0.25, rel=1e-14)
+    # Rates are measured where they are asked for.
+    assert (contact.rate_jump, contact.second_rate_jump) == (None, None)
     assert contact.angle_degrees == pytest.approx(0, abs=1e-12)
     # Seen with one normal, the curvatures are 2 and -1.
     assert contact.curvature_jump == pytest.approx(3.0, rel=1e-13)

@@ -104,3 +104,12 @@ def test_one_closed_edge_has_no_shift():
     rim, half = (Base(revolved(line((1, 0), (1, -1)), 30, end), "u0") for end in (390, 210))
     for a, b in ((rim, half), (half, rim), (half, half)):
         assert correspond(a, b).shift == 0
+
+
+def test_a_shift_has_no_units():
+    a, b = turned_rims(37.0)
+    shift = correspond(a, b).shift
+    assert shift % (4 / 256) > 1e-3
+    for unit in (1e-4, 1e4):
+        small = [Base(transform(base.surface, unit * np.eye(3)), "u0") for base in (a, b)]
+        assert correspond(*small).shift == pytest.approx(shift, abs=1e-9)
