@@ -90,7 +90,7 @@ def test_how_far_apart_edges_may_be(gap, offset, is_edge):
 
 
 def test_knots_of_the_base_are_counted_from_its_edge():
-    surface, knots = strip(0, 1), [0, 0, 0.25, 1, 1]
+    surface, knots = strip(0, 1), [2, 2, 2.25, 3, 3]
     for end, base, expected in (
         (1, Base(strip(1, 2, knots=knots), "u0"), [0, 0.25, 1]),
         (0, Base(strip(-1, 0, knots=knots), "u1"), [0, 0.75, 1]),

@@ -118,5 +118,6 @@ def test_points_where_no_order_is_asked_for_and_second_derivatives_along_an_edge
     assert curves.points(np.array([0.25]))[2, 0].tolist() == [[2, 0, 0]]
     # Rows of the net: as many as second differences read.
     assert sum(row.control_points.shape[1] for row in curves.rows) == 3 * 3
-    longer = BSplineSurface(2, 1, [0, 0, 0, 0.5, 1, 1, 1], [0, 0, 1, 1], [*net, net[2]])
-    assert sum(row.control_points.shape[1] for row in edge_curves(longer, "u0").rows) == 3 * 3
+    cubic = BSplineSurface(3, 1, [0] * 4 + [1] * 4, [0, 0, 1, 1], [[[x, y, 0] for y in (0, 1)] for x in range(4)])
+    assert sum(row.control_points.shape[1] for row in edge_curves(cubic, "u0").rows) == 3 * 3
+    assert sum(row.control_points.shape[1] for row in edge_curves(cubic, "u0", 3).rows) == 4 * 3

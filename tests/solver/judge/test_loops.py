@@ -105,6 +105,16 @@ def test_few_samples_turn_nearly_as_many():
         assert measure_loop(surface).largest_turning_degrees == pytest.approx(fine.largest_turning_degrees, abs=1.5)
 
 
+@pytest.mark.parametrize("seed", range(3))
+def test_a_section_of_one_span_is_sampled_as_finely(seed):
+    rng = np.random.default_rng(seed)
+    points = np.column_stack([np.arange(8), 3 * rng.normal(size=(8, 2))])
+    net = np.stack([points, points + np.array([0, 0, 0.1])], axis=1)
+    surface = BSplineSurface(7, 1, [0] * 8 + [1] * 8, [0, 0, 1, 1], net)
+    fine = loop_on_samples(surface, np.linspace(0, 1, 2001), np.linspace(0, 1, 21))
+    assert measure_loop(surface).largest_turning_degrees == pytest.approx(fine.largest_turning_degrees, abs=1.5)
+
+
 def test_ends_without_speed_have_the_next_tangent():
     knots = [0] * 4 + [1] * 4
     net = [[[x, y, z] for y in (0, 1)] for x, z in ((0, 0), (0, 0), (1, 1), (2, 1))]
