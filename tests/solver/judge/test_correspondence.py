@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from helpers.shapes import line, revolved
-from semispline import Base, BSplineSurface, map_domain, reverse_v, transform
+from semispline import Base, BSplineSurface, insert_knots, map_domain, reverse_v, transform
 from semispline.solver.judge.correspondence import (
     Correspondence,
     correspond,
@@ -77,6 +77,13 @@ def test_rims_turned_by_one_piece(on_a, on_b, backwards):
     assert b.derivative(s_b, 0, 0) == pytest.approx(a.derivative(s_a, 0, 0) + np.array([0, 0, 1]), abs=1e-9)
     pieces = np.floor((s_a - on_a[0]) / (on_a[1] - on_a[0]) * 4).astype(int)
     assert np.bincount(pieces).tolist() == [7] * 4
+    # A knot of b alone parts a span of a, on either side of the seam.
+    for part in (0.05, 0.8):
+        knot = on_b[0] + part * length
+        parted = Base(insert_knots(b.surface, [], [knot]), "u0")
+        s_a, s_b = corresponding_samples(a, parted, snapped_seam(a, parted, matched))
+        assert len(s_a) == 35
+        assert (np.sort(np.abs(s_b - knot))[:2] < 0.001 * length).all()
 
 
 @pytest.mark.parametrize("degrees", [37.0, 200.0])
@@ -101,8 +108,10 @@ def test_an_edge_is_closed_by_its_own_extent_wherever_it_is(gap, closed):
 
 
 def test_one_closed_edge_has_no_shift():
-    rim, half = (Base(revolved(line((1, 0), (1, -1)), 30, end), "u0") for end in (390, 210))
-    for a, b in ((rim, half), (half, rim), (half, half)):
+    rim, half, almost = (
+        Base(revolved(line((1, 0), (1, -1)), start, end), "u0") for start, end in ((30, 390), (30, 210), (31, 390))
+    )
+    for a, b in ((rim, half), (half, rim), (half, half), (rim, almost), (almost, rim)):
         assert correspond(a, b).shift == 0
 
 
