@@ -109,6 +109,13 @@ def test_noise_of_rates_by_hand():
     assert noise_of(graph(x30=(5.0, 0, 0)), (1, 0))[0] == pytest.approx(4 * 5.0)
     # Of X_v, where only X_wwv is not zero, c: the plane of the section turns by d.
     assert noise_of(graph(x21=(0, 0, 5.0)), (0, 1))[0] == pytest.approx(3 * 5.0)
+    # With X_w = (1, 1/2, 0) and X_v = (0, g, 0): the normal tilts by (1/2 + 1) d / g, and of three steps of order 1, as
+    # much too long each, X_www makes three times that.
+    for g in (1.0, 2.0, 0.25):
+        slanted = graph(x10=(1.0, 0.5, 0), x01=(0, g, 0), x30=(5.0, 0, 0))
+        assert noise_of(slanted, (0, 1))[0] == pytest.approx((1 + 3) * 1.5 / g * 5.0)
+    # Twice as fast across.
+    assert noise_of(graph(x10=(2.0, 0, 0), x30=(40.0, 0, 0)), (1, 0))[0] == pytest.approx(4 * 5.0 / 2)
     # Of what is read directly.
     assert noise_of(graph(), (3, 0)) == pytest.approx([1, 0])
     assert noise_of(graph(), (4, 0)) == pytest.approx([0, 1])
