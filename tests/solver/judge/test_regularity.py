@@ -57,6 +57,13 @@ def test_nothing_is_proved_where_a_piece_has_no_mean_normal():
     assert measure_regularity(small).proved_area_ratio == pytest.approx(1)
 
 
+@pytest.mark.parametrize("heights", [(0, 0.5, 0.7), (0, 0.2, 0.7)])
+def test_the_bound_is_that_of_the_least_part(monkeypatch, heights):
+    monkeypatch.setattr(bezier_pieces, "_PIECES_AT_ONCE", 1)
+    net = [[[x, y, 0] for y in heights] for x in (0, 1)]
+    assert area_bound(BSplineSurface(1, 1, BEZIER_1, [0, 0, 1, 2, 2], net)) == pytest.approx(0.2)
+
+
 def by_referee(surface):
     """The measure from the referee, at the samples that `Regularity` promises: 8 in every span and the ends."""
     u, v = (
