@@ -184,3 +184,19 @@ def test_a_window_that_leaves_the_section_does_not_count():
     # Half-way between 0 and 50 degrees; from the other samples 3.5 is too far.
     assert turns == pytest.approx([25, -1, -1, -1, -1], abs=1e-9)
     assert along_a_line([0, 0, 0, 0, 50], 4.0)[0][0] == pytest.approx(50)
+
+
+def test_over_a_seam_a_window_reaches_all_samples_that_crowd_behind_it():
+    lengths, t = np.array([0, 0.1, 0.2, 0.3, 0.4, 0.5, 2]), np.radians([0, 10, 20, 30, 40, 50, 0])
+    normals = np.stack([np.zeros(7), np.sin(t), np.cos(t)], axis=-1)
+    points = lengths[:, None] * np.array([1.0, 0.0, 0.0])
+    (turns,), _ = _turns_of_sections(np.arange(7.0), points[None], normals[None], 0.45, True)
+    # The last sample is the first.
+    assert turns[-1] == pytest.approx(turns[0])
+    assert turns[0] == pytest.approx(45)
+
+
+def test_a_curve_has_no_turn():
+    k = [0, 0, 1, 1]
+    with pytest.raises(InputError, match="no tangent plane"):
+        measure_turn(BSplineSurface(1, 1, k, k, [[[0, 0, 0], [0, 0, 0]], [[1, 0, 0], [1, 0, 0]]]))
