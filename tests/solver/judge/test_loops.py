@@ -168,3 +168,9 @@ def test_ends_a_billionth_apart_have_no_chord(part, has_chord):
     loop = measure_loop(arch(360 - np.degrees(2 * part)))
     assert loop.turning_degrees == pytest.approx(360, abs=1e-5)
     assert loop.needed_degrees == pytest.approx(360 if has_chord else 0, abs=1e-3)
+
+
+def test_exits_square_to_each_other_lead_to_no_side():
+    net = [[[x, y + v, z] for v in (0, 1)] for x, y, z in ((0, 0, 0), (1, 1, 0), (2, 0, 1), (3, 0, 0))]
+    exits = measure_exits(BSplineSurface(3, 1, [0] * 4 + [1] * 4, [0, 0, 1, 1], net))
+    assert (exits.sides, exits.side_cosine) == (None, 0)

@@ -146,3 +146,11 @@ def test_boxes_that_touch_overlap():
     first, second = box_tree(low[:1], low[:1] + 1), box_tree(low[1:2], low[1:2] + 1)
     for a, b in ((first, second), (second, first)):
         assert [(i.tolist(), j.tolist()) for i, j in overlapping(a, b)] == [([0], [0])]
+
+
+def test_how_far_a_mesh_is_off():
+    """z = x^2 in one cell: 1/4 in the middle, where the corners have 1/2."""
+    net = [[[x, y, z] for y in (0, 1)] for x, z in ((0, 0), (0.5, 0), (1, 1))]
+    ends = np.array([0.0, 1.0])
+    mesh = grid_mesh(BSplineSurface(2, 1, [0, 0, 0, 1, 1, 1], K1, net), ends, ends, (False, False))
+    assert mesh.deflection == pytest.approx(0.25)
