@@ -44,6 +44,9 @@ def test_triangles_reach_a_plane_within_a_billionth_of_their_size(height, reache
     for side in (1, -1):
         above = FLOOR + np.array([0, 0, side * height])
         assert mesh_search._reaches(FLOOR[None], above[None]).tolist() == [reaches]
+        # On the other side of its first corner as well.
+        beyond = np.array([0, 0, side * height]) - FLOOR
+        assert mesh_search._reaches(FLOOR[None], beyond[None]).tolist() == [reaches]
 
 
 def overlap(q):
