@@ -37,13 +37,10 @@ class Part:
     v_widths : ndarray, shape (S,)
     rows : ndarray, shape (m + 1, 3 or 4, S, q + 1)
         Bezier points of all rows; homogeneous for a rational surface.
-    is_last : bool
-        The spans are the last ones.
     """
 
     v_widths: FloatArray
     rows: FloatArray
-    is_last: bool
 
 
 def parts_of(surface: Surface, cuts: int = 1) -> Iterator[Part]:
@@ -66,7 +63,7 @@ def parts_of(surface: Surface, cuts: int = 1) -> Iterator[Part]:
             own = points.transpose(2, 3, 0, 1)
             ends = np.repeat([0.0, 1.0], degree + 1)
             nets[group.rows] = own @ elevation_matrix(degree, ends, q).toarray().T if degree < q else own
-        yield Part(np.diff(breaks), nets, at + step >= len(v_breaks) - 1)
+        yield Part(np.diff(breaks), nets)
 
 
 def bezier_matrix(degree: int, knots: FloatArray, breaks: FloatArray) -> SparseMatrix:

@@ -22,6 +22,9 @@ def test_points_and_derivatives_are_the_referees(surface):
     # Inside of the spans: at a knot a derivative may jump.
     u, v = (np.concatenate([(x[:-1] + np.diff(x) * t) for t in (0.1, 0.5, 0.8)]) for x in surface.breakpoints)
     uu, vv = (x.ravel() for x in np.meshgrid(u, v, indexing="ij"))
+    # Points where nothing is said of an order.
+    assert np.array_equal(pieces.evaluate(uu, vv), pieces.evaluate(uu, vv, 0, 0))
+    assert np.array_equal(pieces.evaluate_grid(u, v), pieces.evaluate_grid(u, v, 0, 0))
     for du, dv in ORDERS:
         expected = surface_points(surface, uu, vv, du, dv)
         size = np.abs(expected).max()

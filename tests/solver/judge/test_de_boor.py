@@ -104,3 +104,21 @@ def test_one_curve_for_each_parameter():
 def test_derivatives_above_the_degree_vanish(order):
     found = curve_points(2, np.array([0.0, 0, 0, 1, 1, 1]), np.ones((3, 3)), np.array([0.5]), order)
     assert found.tolist() == [[0, 0, 0]]
+
+
+def test_points_where_no_order_is_asked_for_and_second_derivatives_along_an_edge():
+    # X = (u^2, v, u v) from X(0) = (0, 0, 0).
+    net = [[[0, 0, 0], [0, 1, 0]], [[0, 0, 0], [0, 1, 0.5]], [[1, 0, 0], [1, 1, 1]]]
+    surface = BSplineSurface(2, 1, [0, 0, 0, 1, 1, 1], [0, 0, 1, 1], net)
+    assert surface_points(surface, [0.5], [0.25]).tolist() == [[0.25, 0.25, 0.125]]
+    assert surface_points(surface, [0.5], [0.25], 1).tolist() == [[1, 0, 0.25]]
+    curves = edge_curves(surface, "u0")
+    keys = {(0, 0), (1, 0), (0, 1), (2, 0), (1, 1), (0, 2)}
+    for edge_points in (curves.points(np.array([0.25])), edge_curves(surface, "u0", 3).points(np.array([0.25]))):
+        assert set(edge_points) == keys
+    assert curves.points(np.array([0.25]))[2, 0].tolist() == [[2, 0, 0]]
+    # Rows of the net: as many as second differences read.
+    assert sum(row.control_points.shape[1] for row in curves.rows) == 3 * 3
+    cubic = BSplineSurface(3, 1, [0] * 4 + [1] * 4, [0, 0, 1, 1], [[[x, y, 0] for y in (0, 1)] for x in range(4)])
+    assert sum(row.control_points.shape[1] for row in edge_curves(cubic, "u0").rows) == 3 * 3
+    assert sum(row.control_points.shape[1] for row in edge_curves(cubic, "u0", 3).rows) == 4 * 3

@@ -45,6 +45,26 @@ def test_the_bound_is_exact_for_a_bilinear_patch():
     assert area_bound(BSplineSurface(1, 1, BEZIER_1, BEZIER_1, net)) == pytest.approx(1, rel=1e-14)
 
 
+def test_nothing_is_proved_where_a_piece_has_no_mean_normal():
+    # There and back: P_u = 2 - 4 u.
+    net = [[[x, v, 0.0] for v in (0, 1)] for x in (0, 1, 0)]
+    assert area_bound(BSplineSurface(2, 1, BEZIER_2, BEZIER_1, net)) == 0
+    # In the second of two pieces.
+    net = [[[x, v, 0.0] for v in (0, 1)] for x in (0, 1, 2, 3, 2)]
+    assert area_bound(BSplineSurface(2, 1, [0, 0, 0, 1, 1, 2, 2, 2], BEZIER_1, net)) == 0
+    # A bound below 1 is one as well.
+    small = BSplineSurface(1, 1, BEZIER_1, BEZIER_1, 0.1 * np.array([[[0, 0, 0], [0, 1, 0]], [[1, 0, 0], [1, 1, 0]]]))
+    assert area_bound(small) == pytest.approx(0.01)
+    assert measure_regularity(small).proved_area_ratio == pytest.approx(1)
+
+
+@pytest.mark.parametrize("heights", [(0, 0.5, 0.7), (0, 0.2, 0.7)])
+def test_the_bound_is_that_of_the_least_part(monkeypatch, heights):
+    monkeypatch.setattr(bezier_pieces, "_PIECES_AT_ONCE", 1)
+    net = [[[x, y, 0] for y in heights] for x in (0, 1)]
+    assert area_bound(BSplineSurface(1, 1, BEZIER_1, [0, 0, 1, 2, 2], net)) == pytest.approx(0.2)
+
+
 def by_referee(surface):
     """The measure from the referee, at the samples that `Regularity` promises: 8 in every span and the ends."""
     u, v = (

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from helpers.sweeps import examples
 from semispline import Base, BSplineCurve, BSplineSurface, SemiStructuredSurface
 from semispline.solver.judge.curvature_rates import curvature_rates
-from semispline.solver.judge.rounding import derivative_noises
+from semispline.solver.judge.rounding import derivative_noises, edge_noises
 
 KEYS = [(i, j) for i in range(5) for j in range(5 - i)]
 ORIGIN = np.zeros(3)
@@ -38,6 +38,18 @@ def test_factors_across_and_along():
     np.testing.assert_allclose(found[:, 0], ONE * np.array([1, 4 / 0.75, 4 / 0.75 * 2 / 0.75, 0, 0]), rtol=1e-13)
     found = derivative_noises(Base(surface, "v0"), ORIGIN, 4)
     np.testing.assert_allclose(found[:, 0], ONE * np.array([1, 60, 60 * 40, 60 * 40 * 20, 0]), rtol=1e-13)
+
+
+def test_up_to_second_order_where_none_is_asked_for():
+    base = Base(square(2, [0, 0, 0, 0.25, 1, 1, 1], 3, [0, 0, 0, 0, 0.5, 1, 1, 1, 1]), "u0")
+    np.testing.assert_array_equal(derivative_noises(base, ORIGIN), derivative_noises(base, ORIGIN, 2))
+    noises = edge_noises(base, ORIGIN)
+    np.testing.assert_array_equal(noises.derivatives, derivative_noises(base, ORIGIN, 2))
+    np.testing.assert_allclose(noises.along, [1, 6 / 0.5, 6 / 0.5 * 4 / 0.5])
+    # Where everything is zero nothing is rounded.
+    nothing = edge_noises(Base(BSplineSurface(1, 1, [0, 0, 1, 1], [0, 0, 1, 1], np.zeros((2, 2, 3))), "u0"), ORIGIN)
+    assert nothing.along.tolist() == [1, 1, 1]
+    assert not nothing.derivatives.any()
 
 
 def test_a_narrow_span_counts_only_where_one_divides_by_it():
@@ -107,6 +119,13 @@ def test_noise_of_rates_by_hand():
     assert noise_of(graph(x30=(5.0, 0, 0)), (1, 0))[0] == pytest.approx(4 * 5.0)
     # Of X_v, where only X_wwv is not zero, c: the plane of the section turns by d.
     assert noise_of(graph(x21=(0, 0, 5.0)), (0, 1))[0] == pytest.approx(3 * 5.0)
+    # With X_w = (1, 1/2, 0) and X_v = (0, g, 0): the normal tilts by (1/2 + 1) d / g, and of three steps of order 1, as
+    # much too long each, X_www makes three times that.
+    for g in (1.0, 2.0, 0.25):
+        slanted = graph(x10=(1.0, 0.5, 0), x01=(0, g, 0), x30=(5.0, 0, 0))
+        assert noise_of(slanted, (0, 1))[0] == pytest.approx((1 + 3) * 1.5 / g * 5.0)
+    # Twice as fast across.
+    assert noise_of(graph(x10=(2.0, 0, 0), x30=(40.0, 0, 0)), (1, 0))[0] == pytest.approx(4 * 5.0 / 2)
     # Of what is read directly.
     assert noise_of(graph(), (3, 0)) == pytest.approx([1, 0])
     assert noise_of(graph(), (4, 0)) == pytest.approx([0, 1])
