@@ -6,29 +6,29 @@ import argparse
 from collections import defaultdict, deque
 from pathlib import Path
 
-from mutants.choice import Table, measure, tests_of
-from mutants.records import Record, basis, read_accepted, read_records, report, still_holds, write_record
+from mutants.choice import Table, chosen_for, digest_of_test, measure
+from mutants.records import Record, basis, read_accepted, read_records, report, still_to_show, write_record
 from mutants.running import Job, Outcome, Slot, load_libraries, make_slots, run_all
 from mutants.sites import Mutant, mutants_of
 
 ROOT = Path(__file__).resolve().parents[2]
 FOLDER = ROOT / "build/mutants"
 ROOMS = ("solver/judge", "solver/blending", "solver/proof")
-SAMPLE = 300
+SAMPLE = 400
 # Processor time of the tests that one mutant is shown.
-BOUND = 30.0
+BOUND = 15.0
 # Who takes five times as long as usual, and ten seconds more for imports, never ends.
 _TIMES, _MORE = 5.0, 10.0
 _FIRST = 8
 
 
-def all_mutants(root: Path, rooms: tuple[str, ...], sample: int) -> list[Mutant]:
-    """Return the complete class and the sample of the rest."""
+def all_mutants(root: Path, rooms: tuple[str, ...], sample: int) -> tuple[list[Mutant], list[Mutant]]:
+    """Return the complete class with the sample of the rest, and what is left out."""
     found = []
     for path in sorted(p for room in rooms for p in (root / room).rglob("*.py")):
         found += mutants_of(path.relative_to(root).as_posix(), path.read_bytes())
     rest = sorted((m for m in found if not m.complete), key=lambda m: m.key)
-    return [m for m in found if m.complete] + sorted(rest[:sample], key=lambda m: (m.file, m.start))
+    return [m for m in found if m.complete] + sorted(rest[:sample], key=lambda m: (m.file, m.start)), rest[sample:]
 
 
 def decide(
@@ -40,8 +40,8 @@ def decide(
     for m in mutants:
         if (known := records.get(m.key)) and "::" in known.by:
             killers[m.file, m.function].append(known.by)
-    open_ones = [m for m in mutants if not still_holds(root, m, records.get(m.key), chosen[m.key])]
-    waiting = iter(open_ones)
+    to_show = {m.key: still_to_show(root, m, records.get(m.key), chosen[m.key]) for m in mutants}
+    waiting = iter([m for m in mutants if to_show[m.key] is not None])
     queue: deque[Job] = deque()
 
     def job(mutant: Mutant, tests: list[str], already: float) -> Job:
@@ -51,7 +51,7 @@ def decide(
 
     def next_one() -> None:
         for mutant in waiting:
-            tests = chosen[mutant.key]
+            tests = to_show[mutant.key]
             if tests:
                 queue.append(job(mutant, _first(tests, killers[mutant.file, mutant.function]), 0.0))
                 return
@@ -59,7 +59,8 @@ def decide(
 
     def keep(mutant: Mutant, verdict: str, by: str, seconds: float) -> None:
         tests = chosen[mutant.key]
-        write_record(results, mutant, Record(verdict, by, len(tests), seconds, basis(root, mutant, by, tests)))
+        shown = tuple(digest_of_test(root, t) for t in tests) if verdict == "survived" else ()
+        write_record(results, mutant, Record(verdict, by, len(tests), seconds, basis(root, mutant, by), shown))
         print(f"{verdict:9} {seconds:5.1f} s  {mutant.file}:{mutant.line}  {mutant.change}", flush=True)
 
     for _ in slots:
@@ -67,7 +68,7 @@ def decide(
     for done, outcome in run_all(queue, slots):
         mutant, tests, already = done.subject
         seconds = already + outcome.seconds
-        left = [t for t in chosen[mutant.key] if t not in tests] if not already else []
+        left = [t for t in to_show[mutant.key] or () if t not in tests] if not already else []
         if outcome.status == "passed" and left:
             queue.appendleft(job(mutant, left, seconds))
             continue
@@ -97,7 +98,8 @@ def main() -> int:
     parser.add_argument("--workers", type=int, default=2)
     parser.add_argument("--report", action="store_true", help="show what is known, run nothing")
     words = parser.parse_args()
-    wanted = [m for m in all_mutants(ROOT, ROOMS, SAMPLE) if any(Path(m.file).is_relative_to(p) for p in words.paths)]
+    taken, left_out = all_mutants(ROOT, ROOMS, SAMPLE)
+    wanted = [m for m in taken if any(Path(m.file).is_relative_to(p) for p in words.paths)]
     results = FOLDER / "results.jsonl"
     if not words.report:
         load_libraries()
@@ -105,9 +107,9 @@ def main() -> int:
         table = measure(ROOT, FOLDER / "coverage", slots)
         for test in table.failed:
             print(f"left out, fails without any mutant: {test}")
-        chosen = {m.key: tests_of(m, table, ROOT, BOUND) for m in wanted}
+        chosen = {m.key: chosen_for(m, table, ROOT, BOUND) for m in wanted}
         decide(ROOT, wanted, chosen, table, slots, results)
-    return report(wanted, read_records(results), read_accepted(Path(__file__).parent / "accepted.toml"))
+    return report(wanted, left_out, read_records(results), read_accepted(Path(__file__).parent / "accepted.toml"))
 
 
 if __name__ == "__main__":

@@ -155,12 +155,17 @@ def _joined(parts: list[dict[str, Any]]) -> Table:
     return Table(seconds, lines, failed)
 
 
-def tests_of(mutant: Mutant, table: Table, root: Path, bound: float) -> list[str]:
-    """Return the tests to show, most promising first, of `bound` seconds together (one at the least)."""
-    room = f"tests/{Path(mutant.file).parent.as_posix()}/"
+def chosen_for(mutant: Mutant, table: Table, root: Path, bound: float) -> list[str]:
+    """Return the tests to show, most promising first: those of the file, of its room, and others.
 
-    def rank(test: str) -> tuple[bool, float]:
-        return not test.startswith((room, f"semispline/{mutant.file}")), table.seconds[test]
+    They take `bound` seconds together (one test at the least, and the file's own doctests always).
+    """
+    path = Path(mutant.file)
+    room, doctests = f"tests/{path.parent.as_posix()}/", f"semispline/{mutant.file}"
+
+    def rank(test: str) -> tuple[int, float]:
+        is_of_file = test.startswith((f"{room}test_{path.stem}", doctests))
+        return 0 if is_of_file else 1 if test.startswith(room) else 2, table.seconds[test]
 
     direct = _running(mutant, table, root)
     files = {test.split("::")[0] for test in direct}
@@ -168,7 +173,7 @@ def tests_of(mutant: Mutant, table: Table, root: Path, bound: float) -> list[str
     chosen: list[str] = []
     total = 0.0
     for test in [*sorted(direct, key=rank), *sorted(same_files, key=rank)]:
-        if not chosen or total + table.seconds[test] <= bound:
+        if not chosen or total + table.seconds[test] <= bound or test.startswith(doctests):
             chosen.append(test)
             total += table.seconds[test]
     return chosen
@@ -232,6 +237,28 @@ def _statements(path: Path) -> list[tuple[Any, bool]]:
 
     visit(ast.parse(path.read_bytes()), False)
     return found
+
+
+@cache
+def texts_of_tests(path: Path) -> dict[str, str]:
+    """Return the code of the functions of a test file by their names, and its docstrings under no name."""
+    tree = ast.parse(path.read_bytes())
+    texts: dict[str, str] = defaultdict(str)
+    for node in ast.walk(tree):
+        if isinstance(node, ast.FunctionDef):
+            texts[node.name] += ast.unparse(node)
+        if isinstance(node, ast.FunctionDef | ast.ClassDef | ast.Module):
+            texts[""] += ast.get_docstring(node) or ""
+    return texts
+
+
+def digest_of_test(root: Path, test: str) -> str:
+    """Return a hash of a test's name and code; of a doctest, of the docstrings of its file."""
+    file, _, name = test.partition("::")
+    path = root / file
+    texts = texts_of_tests(path) if path.is_file() else {}
+    text = texts.get(name.partition("[")[0].rpartition("::")[2], texts.get("", ""))
+    return sha256(f"{test}\0{text}".encode()).hexdigest()[:8]
 
 
 def digest(root: Path, files: list[str]) -> str:

@@ -6,10 +6,11 @@ import json
 import tomllib
 from collections import Counter, defaultdict
 from dataclasses import dataclass
+from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
-from mutants.choice import digest
+from mutants.choice import digest_of_test
 from mutants.sites import Mutant
 
 KILLED = {"killed", "timeout"}
@@ -17,13 +18,17 @@ KILLED = {"killed", "timeout"}
 
 @dataclass(frozen=True)
 class Record:
-    """A verdict ("killed", "timeout", "survived" or "undecided") and what it rests on."""
+    """A verdict ("killed", "timeout", "survived" or "undecided") and what it rests on.
+
+    `rests_on` is a hash of the function (and of the test that killed); `shown` are those of the tests that passed.
+    """
 
     verdict: str
     by: str
     tests: int
     seconds: float
     rests_on: str
+    shown: tuple[str, ...] = ()
 
 
 def read_records(path: Path) -> dict[str, Record]:
@@ -34,7 +39,7 @@ def read_records(path: Path) -> dict[str, Record]:
             entry = json.loads(line)
         except json.JSONDecodeError:
             continue
-        found[entry["key"]] = Record(**{name: entry[name] for name in Record.__annotations__})
+        found[entry["key"]] = Record(**{name: entry[name] for name in Record.__annotations__ if name in entry})
     return found
 
 
@@ -48,18 +53,19 @@ def write_record(path: Path, mutant: Mutant, record: Record) -> None:
         file.write(b"\n" * (file.read(1) not in {b"", b"\n"}) + line.encode())
 
 
-def basis(root: Path, mutant: Mutant, by: str, chosen: list[str]) -> str:
-    """Return the hash of what a verdict rests on: the test that killed, or else all that did not."""
-    tests = [by] if by else chosen
-    files = sorted({test.split("::")[0] for test in tests if "::" in test} - {mutant.file})
-    return digest(root, [mutant.file, *files]) + ("" if by else digest(root, tests))
+def basis(root: Path, mutant: Mutant, by: str) -> str:
+    """Return the hash of what a verdict rests on: the broken function, and the test that killed."""
+    test = digest_of_test(root, by) if by else ""
+    return sha256(f"{mutant.around}\0{test}".encode()).hexdigest()[:16]
 
 
-def still_holds(root: Path, mutant: Mutant, record: Record | None, chosen: list[str]) -> bool:
-    """Say whether a verdict need not be found again."""
-    if record is None or record.verdict == "undecided":
-        return False
-    return record.rests_on == basis(root, mutant, record.by, chosen)
+def still_to_show(root: Path, mutant: Mutant, record: Record | None, chosen: list[str]) -> list[str] | None:
+    """Return the tests that a mutant has not passed yet, or None where its verdict holds."""
+    if record is None or record.verdict == "undecided" or record.rests_on != basis(root, mutant, record.by):
+        return chosen
+    if record.verdict in KILLED:
+        return None
+    return [test for test in chosen if digest_of_test(root, test) not in record.shown] or None
 
 
 def _reason(entries: list[dict[str, Any]], mutant: Mutant) -> dict[str, Any] | None:
@@ -83,9 +89,11 @@ def read_accepted(path: Path) -> list[dict[str, Any]]:
     return entries
 
 
-def report(mutants: list[Mutant], records: dict[str, Record], accepted: list[dict[str, Any]]) -> int:
-    """Print what survived, and return the exit status."""
-    used = []
+def report(
+    mutants: list[Mutant], left_out: list[Mutant], records: dict[str, Record], accepted: list[dict[str, Any]]
+) -> int:
+    """Print what survived, and return the exit status; what is said of mutants that are left out is not stale."""
+    used = [entry for mutant in left_out if (entry := _reason(accepted, mutant))]
     counts: dict[str, Counter[str]] = defaultdict(Counter)
     unexplained, undecided_files = 0, set()
     for mutant in mutants:

@@ -6,7 +6,7 @@ import ast
 import re
 from collections import Counter
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from hashlib import sha256
 from typing import Any
 
@@ -18,12 +18,15 @@ _ARITHMETIC = {"+": "-", "-": "+", "*": "/", "/": "*", "**": "*", "//": "/", "%"
 _UNTOUCHED = (ast.MatMult, ast.LShift, ast.RShift, ast.BitAnd, ast.BitOr, ast.BitXor)
 _SWAPS = [("min", "max"), ("minimum", "maximum"), ("argmin", "argmax"), ("any", "all"), ("floor", "ceil")]
 _SWAPPED = dict(_SWAPS) | {b: a for a, b in _SWAPS}
+_BOUNDING = {"min", "max", "minimum", "maximum"}
 _TRANSPARENT = {"min", "max", "minimum", "maximum", "abs", "sqrt"}
 _COMPARISON = re.compile(rb"<=|>=|==|!=|<|>|\bis\s+not\b|\bnot\s+in\b|\bis\b|\bin\b")
 _OPERATOR = re.compile(rb"\*\*|//|[-+*/%&|]")
 _BOOLEAN = re.compile(rb"\band\b|\bor\b")
 # What allows for rounding is a limit too, though no comparison stands beside it.
 _ALLOWANCE = re.compile(rb"tol|limit|round|noise|\beps\b|factor|thresh|allow", re.IGNORECASE)
+# Counts up to this many are broken by one, larger ones by a factor.
+_FEW = 10
 # A float below this, or one over it and more, is taken for a tolerance wherever it stands.
 _TINY = 1e-3
 
@@ -32,8 +35,9 @@ _TINY = 1e-3
 class Mutant:
     """One change of one file: `source[start:end]` becomes `new`.
 
-    `complete` tells limits, thresholds, comparisons and Boolean words from the rest, which is sampled.
-    `names` are the module's names that the changed statement defines, where it belongs to no function.
+    `complete` tells limits, thresholds and their comparisons from the rest, which is sampled.
+    `names` are the module's names that the changed statement defines, where it belongs to no function; `around` is the
+    code of the function, or of the statement, without its comments.
     """
 
     file: str
@@ -47,6 +51,7 @@ class Mutant:
     new: bytes
     lines: tuple[int, int]
     names: tuple[str, ...] = ()
+    around: str = field(default="", repr=False)
     occurrence: int = 0
 
     @property
@@ -70,16 +75,19 @@ def mutants_of(file: str, source: bytes) -> list[Mutant]:
     rows = source.decode().split("\n")
     place = _Place(source, offsets, parents)
     seen: Counter[tuple[str, ...]] = Counter()
+    texts: dict[ast.AST, str] = {}
     found = []
     for node in ast.walk(tree):
         if not hasattr(node, "lineno") or _is_left_alone(node, parents):
             continue
         function, lines, names = _where(node, parents)
+        scope = _scope(node, parents)
+        around = texts.get(scope) or texts.setdefault(scope, ast.unparse(scope))
         for start, end, new, complete in _edits(node, place):
             row = source.count(b"\n", 0, start)
             change = f"{_short(source[start:end])} -> {_short(new)}"
             text = rows[row].strip()
-            mutant = Mutant(file, function, row + 1, text, change, complete, start, end, new, lines, names)
+            mutant = Mutant(file, function, row + 1, text, change, complete, start, end, new, lines, names, around)
             seen[function, text, change] += 1
             found.append(replace(mutant, occurrence=seen[function, text, change]))
     return sorted(found, key=lambda m: (m.start, m.change))
@@ -157,6 +165,12 @@ def _where(node: ast.AST, parents: dict[ast.AST, ast.AST]) -> tuple[str, tuple[i
     return function, (0, 0), () if scopes else defined
 
 
+def _scope(node: ast.AST, parents: dict[ast.AST, ast.AST]) -> ast.AST:
+    """Return the outermost function around a node, or its statement."""
+    functions = [p for _, p in _ancestors(node, parents) if isinstance(p, ast.FunctionDef)]
+    return functions[-1] if functions else _statement(node, parents)
+
+
 Edit = tuple[int, int, bytes, bool]
 
 
@@ -181,21 +195,21 @@ def _of_operator(node: ast.Compare | ast.BoolOp | ast.BinOp | ast.UnaryOp, place
             for left, right in zip([node.left, *node.comparators[:-1]], node.comparators, strict=True):
                 start, end, operator = place.between(left, right, _COMPARISON)
                 for other in _COMPARISONS[operator]:
-                    yield start, end, other.encode(), operator[0] in "<>=!"
+                    yield start, end, other.encode(), operator[0] in "<>"
         case ast.BoolOp():
             for left, right in zip(node.values[:-1], node.values[1:], strict=True):
                 start, end, operator = place.between(left, right, _BOOLEAN)
-                yield start, end, b"or" if operator == "and" else b"and", True
+                yield start, end, b"or" if operator == "and" else b"and", False
         case ast.BinOp(op=ast.BitAnd() | ast.BitOr()):
             start, end, operator = place.between(node.left, node.right, _OPERATOR)
-            yield start, end, b"|" if operator == "&" else b"&", True
+            yield start, end, b"|" if operator == "&" else b"&", False
         case ast.BinOp(op=op) if not isinstance(op, _UNTOUCHED):
             start, end, operator = place.between(node.left, node.right, _OPERATOR)
             yield start, end, _ARITHMETIC[operator].encode(), False
         case ast.UnaryOp(op=ast.Not()):
-            yield place.start(node), place.start(node) + 3, b"", True
+            yield place.start(node), place.start(node) + 3, b"", False
         case ast.UnaryOp():
-            yield place.start(node), place.start(node) + 1, b"", isinstance(node.op, ast.Invert)
+            yield place.start(node), place.start(node) + 1, b"", False
 
 
 def _of_constant(node: ast.Constant, place: _Place) -> Iterator[Edit]:
@@ -211,7 +225,9 @@ def _of_constant(node: ast.Constant, place: _Place) -> Iterator[Edit]:
         if complete:
             news += [f"({value - 1})".encode()]
             news += [b"(" + text + b" * 1000)", b"(" + text + b" / 1000)"] if factor and value else []
-            news += [b"%d" % (10 * value)] if _names_a_module(node, place.parents) and value > 1 else []
+            if _names_a_module(node, place.parents) and value > 1:
+                # One more or less of many is no other limit; ten times as many, or a tenth, is.
+                news = [*(news if value <= _FEW else [b"%d" % (value // 10)]), b"%d" % (10 * value)]
     elif isinstance(value, float) and value == 0:
         news = [b"1e-3", b"(-1e-3)"] if complete else [b"1.0"]
     elif isinstance(value, float):
@@ -221,17 +237,18 @@ def _of_constant(node: ast.Constant, place: _Place) -> Iterator[Edit]:
 
 
 def _names_a_module(node: ast.AST, parents: dict[ast.AST, ast.AST]) -> bool:
-    """Say whether the number is (part of) the value of a module's own name."""
+    """Say whether the number is (part of) the value of a module's own name: no table, no grid, no formula's numbers."""
     for _, parent in _ancestors(node, parents):
-        if isinstance(parent, ast.Lambda | ast.FunctionDef | ast.ClassDef | ast.Subscript):
-            return False
         if isinstance(parent, ast.Assign | ast.AnnAssign):
             return isinstance(parents[parent], ast.Module)
+        names_several = isinstance(parent, ast.Tuple) and isinstance(parents[parent], ast.Assign)
+        if not (names_several or isinstance(parent, ast.BinOp | ast.UnaryOp)):
+            return False
     return False
 
 
 def _is_threshold(node: ast.Constant, parents: dict[ast.AST, ast.AST]) -> bool:
-    """Constants of the module, defaults, tiny floats, tolerances by name, and what stands in a comparison."""
+    """Constants of the module, defaults, tiny floats, tolerances by name, and what stands in a comparison of order."""
     is_tiny = isinstance(node.value, float) and 0 < node.value <= _TINY
     if isinstance(node.value, bool) or is_tiny or _names_a_module(node, parents):
         return not isinstance(node.value, bool)
@@ -246,8 +263,13 @@ def _is_threshold(node: ast.Constant, parents: dict[ast.AST, ast.AST]) -> bool:
             case ast.AnnAssign():
                 return isinstance(parents[parent], ast.ClassDef)
             case _:
-                return isinstance(parent, ast.Compare | ast.arguments)
+                return isinstance(parent, ast.arguments) or _is_of_order(parent)
     return False
+
+
+def _is_of_order(node: ast.AST) -> bool:
+    """Say whether the node compares by order: `==` asks for a kind (`ndim == 2`), not for a limit."""
+    return isinstance(node, ast.Compare) and any(isinstance(op, ast.Lt | ast.LtE | ast.Gt | ast.GtE) for op in node.ops)
 
 
 def _is_allowance(node: ast.Constant, place: _Place) -> bool:
@@ -269,9 +291,22 @@ def _of_call(node: ast.Call, place: _Place) -> Iterator[Edit]:
     name = _called(node)
     end = place.end(node.func)
     if name in _SWAPPED:
-        yield end - len(name), end, _SWAPPED[name].encode(), True
+        is_limit = name in _BOUNDING and any(_holds_a_limit(argument) for argument in node.args)
+        yield end - len(name), end, _SWAPPED[name].encode(), is_limit
     if name in {"abs", "fabs"} and len(node.args) == 1:
-        yield place.start(node.func), end, b"", True
+        yield place.start(node.func), end, b"", False
+
+
+def _holds_a_limit(node: ast.AST) -> bool:
+    """Say whether a module's constant, a tolerance by name or a tiny float stands in an expression."""
+    for inner in ast.walk(node):
+        match inner:
+            case ast.Name(id=name) | ast.Attribute(attr=name):
+                if (name.isupper() and len(name) > 1) or _ALLOWANCE.search(name.encode()):
+                    return True
+            case ast.Constant(value=float(value)) if 0 < value <= _TINY:
+                return True
+    return False
 
 
 def _of_statement(node: ast.stmt, place: _Place) -> Iterator[Edit]:

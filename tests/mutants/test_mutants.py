@@ -8,6 +8,8 @@ from pathlib import Path
 
 import pytest
 
+from mutants.choice import Table, chosen_for, digest_of_test, texts_of_tests
+from mutants.records import Record, basis, still_to_show
 from mutants.sites import mutants_of
 
 TOOL = Path(__file__).parent
@@ -21,14 +23,18 @@ def changes(source, *, complete):
     ("source", "expected"),
     [
         ("LIMIT = 1e-9", {"1e-9 -> (1e-9 * 1000)", "1e-9 -> (1e-9 / 1000)"}),
-        ("MOST = 20", {"20 -> 21", "20 -> (19)", "20 -> 200"}),
+        ("MOST = 20", {"20 -> 2", "20 -> 200"}),
+        ("MOST, FEW = 20, 2", {"20 -> 2", "20 -> 200", "2 -> 3", "2 -> (1)", "2 -> 20"}),
+        ("TABLE = {2: ((1, 1),)}", set()),
+        ("GRID, FINER = (40, 30), (4, 3)", set()),
+        ("LIMITS = {'gap': (1e-6, 1e-5)}", {f"1e-{n} -> (1e-{n} {by} 1000)" for n in (5, 6) for by in "*/"}),
         ("def f(x): return x < y", {"< -> <=", "< -> >="}),
-        ("def f(x): return x == y", {"== -> !="}),
+        ("def f(x): return x == 2", set()),
         ("def f(x): return 0 <= (x)", {"<= -> <", "<= -> >", "0 -> 1", "0 -> (-1)"}),
-        ("def f(x): return abs(x)", {"abs -> "}),
-        ("def f(x): return np.abs(x).max()", {"np.abs -> ", "max -> min"}),
-        ("def f(x): return a and b or not c", {"and -> or", "or -> and", "not -> "}),
-        ("def f(x): return a & ~b", {"& -> |", "~ -> "}),
+        ("def f(x): return np.abs(x).max()", set()),
+        ("def f(x): return max(x, LEAST)", {"max -> min"}),
+        ("def f(x): return np.minimum(x, y.limit)", {"minimum -> maximum"}),
+        ("def f(x): return a and b or not c", set()),
         ("def f(x, most=3): pass", {"3 -> 4", "3 -> (2)"}),
         ("def f(x): return g(x, tol=0.5)", {"0.5 -> (0.5 * 1000)", "0.5 -> (0.5 / 1000)"}),
         ("def f(x): return x + 1e-14", {"1e-14 -> (1e-14 * 1000)", "1e-14 -> (1e-14 / 1000)"}),
@@ -37,7 +43,7 @@ def changes(source, *, complete):
         ("def f(x: 'a < b'): raise E(f'{x < 1}', x < 1)", set()),
     ],
 )
-def test_limits_comparisons_and_boolean_words_are_complete(source, expected):
+def test_limits_and_their_comparisons_are_complete(source, expected):
     assert changes(source, complete=True) == expected
 
 
@@ -50,10 +56,14 @@ def test_limits_comparisons_and_boolean_words_are_complete(source, expected):
         ("def f(x): x -= 0.5", {"x -= 0.5 -> pass", "- -> +", "0.5 -> (0.5 * 2)"}),
         ("def f(x): raise E(1)", {"raise E(1) -> pass"}),
         ("def f(x): return x is None", {"return x is None -> return None", "is -> is not"}),
+        ("def f(x): return x == 2", {"return x == 2 -> return None", "== -> !=", "2 -> 3"}),
+        ("def f(x): return np.abs(x).max()", {"return np.abs(x).max() -> return None", "np.abs -> ", "max -> min"}),
+        ("def f(x): return a & ~b", {"return a & ~b -> return None", "& -> |", "~ -> "}),
+        ("def f(x): g.y = a and b or not c", {"g.y = a and b or not c -> pass", "and -> or", "or -> and", "not -> "}),
         ("def f(x):\n  if x: g.y = True", {"x -> (not (x))", "g.y = True -> pass", "True -> False"}),
     ],
 )
-def test_the_rest_is_arithmetic_numbers_results_and_statements(source, expected):
+def test_the_rest_is_words_kinds_arithmetic_numbers_results_and_statements(source, expected):
     assert changes(source, complete=False) == expected
 
 
@@ -65,6 +75,46 @@ def test_a_mutant_changes_one_place_and_keeps_its_key_when_other_lines_move():
     assert first.key != second.key
     moved = [m.key for m in mutants_of("f.py", b"import os\n\n" + source) if m.change == "< -> <="]
     assert moved == [first.key, second.key]
+
+
+def test_the_tests_of_a_file_come_first_then_those_of_its_room_and_its_doctest_is_never_left_out():
+    (mutant,) = mutants_of("solver/judge/gauge.py", b"def f(x):\n    x.y = a\n")
+    seconds = {
+        "tests/solver/io/test_read.py::test_quick": 0.1,
+        "tests/solver/judge/test_other.py::test_quick": 0.2,
+        "tests/solver/judge/test_gauge_limits.py::test_slow": 9.0,
+        "tests/solver/judge/test_gauge.py::test_quick": 0.5,
+        "semispline/solver/judge/gauge.py::semispline.solver.judge.gauge.f": 1.5,
+        "tests/solver/judge/test_gauge.py::test_of_another_line": 0.1,
+    }
+    *direct, _ = seconds
+    table = Table(seconds, {"solver/judge/gauge.py": {2: set(direct)}}, [])
+    other, near, slow, quick, doctest, beside = seconds
+    assert chosen_for(mutant, table, Path(), 100.0) == [quick, doctest, slow, near, other, beside]
+    assert chosen_for(mutant, table, Path(), 1.0) == [quick, doctest]
+
+
+def test_a_survivor_is_shown_what_is_new_and_a_killed_one_rests_on_its_function_and_its_killer(tmp_path):
+    tests = tmp_path / "test_f.py"
+    tests.write_text("def test_a():\n    assert f(1)\n\n\ndef test_b():\n    assert f(2)\n")
+    names = [f"test_f.py::test_{letter}" for letter in "abc"]
+    mutant, *_ = mutants_of("f.py", b"def f(x):\n    return x < 1  # why\n\n\ndef g(x): pass\n")
+    (moved, *_), (other, *_) = (
+        mutants_of("f.py", source) for source in (b"A = B\ndef f(x):\n    return x < 1", b"def f(x):\n    return x < 2")
+    )
+    shown = tuple(digest_of_test(tmp_path, name) for name in names[:2])
+    survived = Record("survived", "", 2, 0.1, basis(tmp_path, mutant, ""), shown)
+    assert still_to_show(tmp_path, moved, survived, names[:2]) is None
+    assert still_to_show(tmp_path, moved, survived, names) == names[2:]
+    assert still_to_show(tmp_path, other, survived, names[:2]) == names[:2]
+    killed = Record("killed", names[0], 2, 0.1, basis(tmp_path, mutant, names[0]))
+    assert still_to_show(tmp_path, moved, killed, names) is None
+    assert still_to_show(tmp_path, other, killed, names) == names
+    assert still_to_show(tmp_path, mutant, Record("undecided", "", 2, 0.1, survived.rests_on), names) == names
+    tests.write_text("def test_a():\n    assert f(3)\n\n\ndef test_b():\n    assert f(2)\n")
+    texts_of_tests.cache_clear()
+    assert still_to_show(tmp_path, mutant, killed, names) == names
+    assert still_to_show(tmp_path, mutant, survived, names[:2]) == names[:1]
 
 
 GAUGE = '''
