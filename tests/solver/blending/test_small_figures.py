@@ -38,14 +38,14 @@ def test_the_three_lowest_wells_are_starts_and_the_lowest_comes_first():
     ("edges", "cells", "nodes"), [(("u1", "u0"), 6, 20), (("u0", "u1"), 8, 40)], ids=["facing", "U-turn"]
 )
 def test_u_turns_are_scanned_in_more_cells_and_places(monkeypatch, edges, cells, nodes):
-    class Enough(Exception):
+    class EnoughError(Exception):
         pass
 
     def scan(objective, count):
-        raise Enough(count, len(objective.table.across.weights))
+        raise EnoughError(count, len(objective.table.across.weights))
 
     monkeypatch.setattr(fair_search, "_scan", scan)
-    with pytest.raises(Enough) as asked:
+    with pytest.raises(EnoughError) as asked:
         fair_search.solve_fair(state_problem(*strips(*edges)).problem)
     assert asked.value.args == (cells, nodes)
 
