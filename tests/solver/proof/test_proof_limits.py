@@ -110,3 +110,28 @@ def test_the_proof_finds_the_well_that_the_search_has_missed(monkeypatch, start)
     proof = least_point(TILTED, BOX, 1e-10)
     check_certificate(proof)
     assert -1.1 < proof.point[0] < -1
+
+
+@pytest.mark.parametrize(
+    ("xx", "xy", "yy", "is_convex"),
+    [
+        # A square of a sum is convex, if only just; so is what is flat.
+        (1, 2, 1, True),
+        (1, -2, 1, True),
+        (4, 4, 1, True),
+        (1, 3, 1, False),
+        (1, -3, 1, False),
+        (0, 0, 1, True),
+        (1, 0, 0, True),
+        (0, 0, 0, True),
+        (0, 1, 1, False),
+        (-1, 0, 1, False),
+        (1, 0, -1, False),
+        (-1, 0, -1, False),
+    ],
+)
+def test_a_net_that_is_just_convex(xx, xy, yy, is_convex):
+    # Four times the Bernstein coefficients over the unit square of xx x^2 + xy x y + yy y^2.
+    line, square = (0, 1, 2), (0, 0, 4)
+    net = [[xx * square[i] + xy * line[i] * line[j] + yy * square[j] for j in range(3)] for i in range(3)]
+    assert box_search._is_convex(net) is is_convex
