@@ -20,7 +20,7 @@ def strip(start, end, across):
 def test_a_gap_that_opens_steeply_has_its_mean(slope):
     # Of sqrt(1 + (slope v)^2): no polynomial, and bent sharply at v = 0.
     a, b = strip([0, 0, 0], [0, 1, 0], [-2, 0, 0]), strip([1, 0, 0], [1, 1, slope], [3, 0, 0])
-    problem = state_problem(Base(a, "u0"), Base(b, "u0")).problem
+    problem = state_problem(Base(a, "u0"), Base(b, "u0"), flip="no").problem
     found = measure_facing(problem.a, problem.b)
     mean = (np.sqrt(1 + slope**2) + np.arcsinh(slope) / slope) / 2
     # Coordinates of size 1: speeds are 2 and 3.
