@@ -6,6 +6,7 @@ import pytest
 from semispline import Base, BSplineSurface
 from semispline.solver.blending import fair_search
 from semispline.solver.blending.fairness_grid import across, along, rough_along
+from semispline.solver.blending.fairness_table import FairnessTable
 from semispline.solver.blending.linear_problem import gap_ratio, with_linear_alpha
 from semispline.solver.blending.pipeline import state_problem
 from semispline.solver.splines import Basis
@@ -111,3 +112,55 @@ def test_contact_of_high_order_takes_more_nodes_across(monkeypatch, continuity, 
     assert fair_search.solve_fair(problem).value == pytest.approx(0, abs=1e-9)
     # A rough look, the search, and half as fine again.
     assert asked == [20, nodes, 2 * nodes]
+
+
+def test_a_cluster_among_narrow_spans_is_found_at_every_tenth():
+    # Twenty spans of 0.002, together too wide for one cluster, and a narrower one among them.
+    inner = np.sort([*(0.5 + 0.002 * np.arange(21)), 0.51005])
+    row = Basis(3, np.concatenate([np.zeros(4), inner, np.ones(4)]))
+    assert along((row,), 1, 0.02).lines.T.tolist() == [pytest.approx([0.51, 0.51005])]
+
+
+def test_unless_it_is_asked_for_no_span_is_narrow():
+    row = Basis(3, np.array([0, 0, 0, 0, 0.5, 0.5001, 1, 1, 1, 1]))
+    assert along((row,)).lines.size == 0
+    for grid in (along((row,)), rough_along((row,))):
+        assert grid.weights.sum() == pytest.approx(1, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("degrees", "inner", "is_line"),
+    [
+        # Where some row is C1 or less: degree less multiplicity is 1.
+        ((3, 3), (0.5,), False),
+        ((2, 3), (0.5,), True),
+        ((1, 3), (0.5,), True),
+        ((3, 3), (0.5, 0.5), True),
+        ((4, 3), (0.5, 0.5), False),
+        ((4, 3), (0.5, 0.5, 0.5), True),
+    ],
+)
+def test_lines_across_which_curvature_may_jump(degrees, inner, is_line):
+    rows = tuple(
+        Basis(degree, np.array([0.0] * (degree + 1) + list(knots) + [1.0] * (degree + 1)))
+        for degree, knots in zip(degrees, (inner, ()), strict=True)
+    )
+    assert along(rows).lines.shape[1] == is_line
+
+
+def test_a_row_without_the_knot_makes_no_line():
+    rows = (spans(1, degree=1), spans(2, degree=3))
+    assert along(rows).lines.size == 0
+    assert along((spans(2, degree=1), spans(1, degree=3))).lines.T.tolist() == [[0.5, 0.5]]
+
+
+@pytest.mark.parametrize(
+    ("continuity", "is_kept"), [("G1", True), (("G2", "C1"), True), (("G0", "G1"), False), (("G1", "C0"), False)]
+)
+def test_the_turn_that_exits_need_is_kept_where_no_candidate_changes_them(continuity, is_kept):
+    problem = state_problem(*strips(), continuity=continuity, alpha="fair").problem
+    layers, _ = problem.shape_layers()
+    table = FairnessTable(problem, layers, across(problem.form.u, 40), along(problem.rows))
+    assert table.least_cosine == 0.5
+    table.measure(np.ones((3, len(layers))))
+    assert (table._needed is not None) is is_kept

@@ -38,6 +38,9 @@ def test_middle_curves_have_all_knots_of_both(corners):
             assert np.abs(inner - knot).min() < 1e-9
     assert problem.seam_order_of(3) == 0
     assert [problem.seam_order_of(row) for row in problem.free_rows] == [0] * 3
+    rows = np.split(problem.control_points(*problem.start), problem.form.offsets[1:-1])
+    for row in rows:
+        np.testing.assert_allclose(row[0], row[-1], atol=1e-12)
 
 
 def test_a_triangle_of_three_points_gets_a_middle_curve_that_may_bend():

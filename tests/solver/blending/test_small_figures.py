@@ -109,7 +109,7 @@ def test_steps_are_at_most_a_third_of_alpha_and_twice_the_size_of_p2(monkeypatch
     ("spans", "across_and_between"), [(1, [20, 40, 80]), (25, [20, 40, 80]), (26, [20, 40, 20, 80])]
 )
 def test_a_grid_of_more_than_2000_nodes_has_one_between(monkeypatch, spans, across_and_between):
-    asked, tolerances = [], []
+    asked, tolerances, cosines = [], [], []
 
     def told(u, count):
         asked.append(count)
@@ -117,6 +117,7 @@ def test_a_grid_of_more_than_2000_nodes_has_one_between(monkeypatch, spans, acro
 
     def descended(objective, start, tolerance):
         tolerances.append(tolerance)
+        cosines.append(objective.table.least_cosine)
         return start
 
     monkeypatch.setattr(fair_search, "across", told)
@@ -133,6 +134,8 @@ def test_a_grid_of_more_than_2000_nodes_has_one_between(monkeypatch, spans, acro
     # Each start roughly, on each grid but the last roughly as well, then to the end.
     assert tolerances == [0.02] * (len(tolerances) - 1) + [1e-4]
     assert len(tolerances) == len(asked) - 1
+    # Normals of neighbours may turn by 60 degrees, and for a rough look by 90.
+    assert cosines == [0.0] + [0.5] * (len(cosines) - 1)
 
 
 @dataclass
