@@ -184,3 +184,36 @@ def test_a_billionth_from_an_end_of_its_window_is_at_the_end(y, at_end):
     assert fair_search._is_at_end(unknowns, np.array([y, 0.5]), 0) is at_end
     # Without a window there is no end.
     assert fair_search._is_at_end(unknowns, np.array([y, 0.5]), 1) is False
+
+
+class Wells:
+    """A stand-in for an objective with two wells; a rough look takes the wrong one for the deeper."""
+
+    def __init__(self, unknowns, table):
+        self.unknowns, self.table, self.tried = unknowns, table, 0
+        self.refused = {"folds": 0, "loops": 0}
+        self.depths = (1.0, 0.5) if table.least_cosine == 0 else (0.5, 1.0)
+
+    def values(self, y):
+        left, right = ((y[:, 0] - side) ** 2 - depth for side, depth in zip((-1.1, 1.1), self.depths, strict=True))
+        return np.minimum(left, right) + y[:, 2] ** 2
+
+    def point(self, y):
+        return Point(y, float(self.values(y[None])[0]), np.zeros(len(y)), np.eye(len(y)))
+
+    def at(self, point):
+        return self.point(point.x)
+
+
+def test_of_the_ends_of_two_starts_the_finer_grid_says_which_is_best(monkeypatch):
+    found = []
+    monkeypatch.setattr(fair_search, "FairObjective", Wells)
+    monkeypatch.setattr(fair_search, "_descended", lambda objective, start, tolerance: start)
+
+    def solution(problem, unknowns, point, *_):
+        found.append(point.x)
+        return fair_search.FairSolution(1.0, 1.0, (0.0, 0.0), 0.0, 0.0, 1, {})
+
+    monkeypatch.setattr(fair_search, "_solution", solution)
+    fair_search.solve_fair(state_problem(*strips()).problem)
+    assert found[0][0] > 1
