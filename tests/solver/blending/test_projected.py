@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from semispline.solver.blending.projected import Point, convex, descend, unbound
+from semispline.solver.blending.projected import Point, _updated, convex, descend, unbound
 
 WIDE = np.full(2, -np.inf), np.full(2, np.inf)
 
@@ -95,3 +95,95 @@ def test_convex_keeps_what_is_convex():
     matrix = np.array([[2.0, 1], [1, 3]])
     np.testing.assert_allclose(convex(matrix), matrix)
     assert np.linalg.eigvalsh(convex(np.diag([-1.0, 2.0]))) == pytest.approx([1.0, 2.0])
+
+
+FREE = np.array([-np.inf]), np.array([np.inf])
+
+
+def counted(function):
+    """The function, and where it was called."""
+    places = []
+
+    def called(x):
+        places.append(x[0])
+        return function(x)
+
+    return called, places
+
+
+def test_sixty_steps_are_taken_at_most():
+    # Down a slope without end, by the longest step each time.
+    function, places = counted(lambda x: (-x[0], np.array([-1.0])))
+    end = descend(function, Point(np.zeros(1), 0.0, np.array([-1.0]), np.eye(1)), *FREE, np.array([0.5]), 1e-9)
+    assert end.x == pytest.approx([30.0])
+    assert len(places) == 60
+
+
+@pytest.mark.parametrize(("value", "calls"), [(1.0, 12), (np.inf, 6), (np.nan, 6)])
+def test_a_step_is_halved_twelve_times_or_refused_five_times(value, calls):
+    function, places = counted(lambda x: (value, np.array([-1.0])))
+    start = Point(np.zeros(1), 0.0, np.array([-1.0]), np.eye(1))
+    assert descend(function, start, *FREE, np.ones(1), 1e-9) is not start
+    assert places == [0.5**k for k in range(calls)]
+
+
+@pytest.mark.parametrize(("gain", "taken"), [(0.9e-4, False), (1.1e-4, True), (-1.0, False)])
+def test_a_step_gains_a_ten_thousandth_of_what_the_slope_promises(gain, taken):
+    function, places = counted(lambda x: (-gain * x[0], np.array([0.0])))
+    end = descend(function, Point(np.zeros(1), 0.0, np.array([-1.0]), np.eye(1)), *FREE, np.ones(1), 1e-9)
+    assert end.x[0] == (1.0 if taken else 0.0)
+    assert len(places) == (1 if taken else 12)
+
+
+def test_a_model_is_a_millionth_as_convex_as_in_its_most_convex_direction_at_least():
+    for least, expected in ((0.0, 1e-6), (0.9e-6, 1e-6), (1.1e-6, 1.1e-6), (-0.5, 0.5)):
+        assert np.linalg.eigvalsh(convex(np.diag([1.0, least]))) == pytest.approx([expected, 1.0], rel=1e-9)
+    assert np.linalg.eigvalsh(convex(np.diag([-1.0, 0.0]))) == pytest.approx([1e-6, 1.0], rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("change", "expected"),
+    [
+        # Along the step the model has the curvature that was met; where the slope falls nothing is learnt.
+        ([3.0, 0.0], [[3, 0], [0, 1]]),
+        ([2.0, 2.0], [[2, 2], [2, 3]]),
+        ([-3.0, 0.0], [[1, 0], [0, 1]]),
+        ([0.0, 1.0], [[1, 0], [0, 1]]),
+        ([0.9e-12, 1.0], [[1, 0], [0, 1]]),
+    ],
+)
+def test_the_model_learns_from_a_step(change, expected):
+    found = _updated(np.eye(2), np.array([1.0, 0.0]), np.array(change))
+    np.testing.assert_allclose(found, expected, atol=1e-12)
+
+
+def test_what_is_hardly_convex_along_a_step_is_learnt_all_the_same():
+    found = _updated(np.eye(2), np.array([1.0, 0.0]), np.array([1.1e-12, 1.0]))
+    assert found[1, 1] == pytest.approx(1 + 1 / 1.1e-12)
+    # Unless the model itself has no curvature there.
+    assert _updated(np.zeros((2, 2)), np.array([1.0, 0.0]), np.array([1.0, 0.0])).tolist() == [[0, 0], [0, 0]]
+    assert _updated(-np.eye(2), np.array([1.0, 0.0]), np.array([1.0, 0.0])).tolist() == [[-1, 0], [0, -1]]
+
+
+@pytest.mark.parametrize(
+    ("x", "gradient", "is_free"),
+    [
+        (0.0, 1.0, False),
+        (0.0, -1.0, True),
+        (1.0, -1.0, False),
+        (1.0, 1.0, True),
+        (0.5, 1.0, True),
+        (0.5, -1.0, True),
+        (-0.1, 1.0, False),
+        (1.1, -1.0, False),
+        (0.0, 0.0, True),
+        (1.0, 0.0, True),
+    ],
+)
+def test_a_bound_holds_back_what_would_pass_it(x, gradient, is_free):
+    assert len(unbound(np.array([x]), np.array([gradient]), np.zeros(1), np.ones(1))) == is_free
+
+
+def test_what_has_no_room_is_held_whatever_the_slope():
+    for gradient in (-1.0, 0.0, 1.0):
+        assert len(unbound(np.ones(1), np.array([gradient]), np.ones(1), np.ones(1))) == 0

@@ -159,8 +159,8 @@ def test_five_hundred_random_rational_pairs(first):
             check_pair(seed)
         except ContactError as error:
             # G4 on weights of the fifth power: the bound on rounding is too wide to tell, and says so; 2 of the 500.
-            assert "G4" in random_pair(seed)[2], seed
-            assert "rounding alone may change second_rate" in str(error)
+            if "G4" not in random_pair(seed)[2] or "rounding alone may change second_rate" not in str(error):
+                raise
             untold.append(seed)
     assert len(untold) <= 1
 

@@ -7,7 +7,7 @@ import pytest
 
 from helpers.polynomials import polynomial
 from semispline import ComputationError
-from semispline.solver.proof import check_certificate
+from semispline.solver.proof import box_search, check_certificate
 from semispline.solver.proof.box_search import best_of_grid, least_point
 
 # (x^2 - 1)^2 + x / 4 + y^2: two wells, the left one lower.
@@ -92,3 +92,46 @@ def test_the_search_finds_the_lower_of_two_wells():
 def test_the_search_leaves_a_saddle():
     # x y over a square: two corners are lowest.
     assert sorted(best_of_grid(polynomial(x1y1=1), ((-1.0, 1.0), (-1.0, 1.0)))) == [-1.0, 1.0]
+
+
+@pytest.mark.parametrize("at", [(0.0, 0.0), (0.3, -0.7), (5.0, 0.25), (0.5, -3.0)])
+def test_a_bowl_is_proved_by_its_tangent_in_one_part(at):
+    a, b = at
+    table = polynomial(x2y0=1, x1y0=-2 * a, x0y2=1, x0y1=-2 * b, x0y0=a * a + b * b)
+    proof = least_point(table, BOX, 1e-10)
+    check_certificate(proof)
+    (leaf,) = proof.leaves
+    assert leaf.tangent_at == pytest.approx([(np.clip(a, -2, 2) + 2) / 4, (np.clip(b, -1, 1) + 1) / 2])
+
+
+@pytest.mark.parametrize("start", [(0.96, 0.0), (2.0, 1.0), (0.03, 0.0)])
+def test_the_proof_finds_the_well_that_the_search_has_missed(monkeypatch, start):
+    monkeypatch.setattr(box_search, "best_of_grid", lambda table, box: start)
+    proof = least_point(TILTED, BOX, 1e-10)
+    check_certificate(proof)
+    assert -1.1 < proof.point[0] < -1
+
+
+@pytest.mark.parametrize(
+    ("xx", "xy", "yy", "is_convex"),
+    [
+        # A square of a sum is convex, if only just; so is what is flat.
+        (1, 2, 1, True),
+        (1, -2, 1, True),
+        (4, 4, 1, True),
+        (1, 3, 1, False),
+        (1, -3, 1, False),
+        (0, 0, 1, True),
+        (1, 0, 0, True),
+        (0, 0, 0, True),
+        (0, 1, 1, False),
+        (-1, 0, 1, False),
+        (1, 0, -1, False),
+        (-1, 0, -1, False),
+    ],
+)
+def test_a_net_that_is_just_convex(xx, xy, yy, is_convex):
+    # Four times the Bernstein coefficients over the unit square of xx x^2 + xy x y + yy y^2.
+    line, square = (0, 1, 2), (0, 0, 4)
+    net = [[xx * square[i] + xy * line[i] * line[j] + yy * square[j] for j in range(3)] for i in range(3)]
+    assert box_search._is_convex(net) is is_convex

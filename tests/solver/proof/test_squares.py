@@ -141,3 +141,31 @@ def test_what_the_search_in_floats_finds_is_believed_only_where_it_is_definite(m
     assert not isinstance(gram_matrices(table), NoSquares)
     monkeypatch.setattr(proof_squares, "_definite", lambda start: [fmpq(0)] * 18)
     assert gram_matrices(table) == NoSquares((0.0, 0.0))
+
+
+def quartic(**coefficients):
+    """A table of exact numbers, by names such as x2y1."""
+    table = fmpq_mat(5, 5)
+    for name, value in coefficients.items():
+        table[int(name[1]), int(name[3])] = fmpq(value)
+    return table
+
+
+@pytest.mark.parametrize(
+    "negative", [quartic(x0y0=-1, x2y0=-1), quartic(x0y0=-3, x4y0=-1, x0y4=-1), quartic(x0y0=-1, x0y2=-2, x2y2=-1)]
+)
+def test_what_is_negative_everywhere_is_no_sum_of_squares(negative):
+    assert isinstance(gram_matrices(negative), NoSquares)
+    assert not isinstance(gram_matrices(negative * -1), NoSquares)
+
+
+@pytest.mark.parametrize(
+    ("table", "lowest"),
+    [
+        # 2 (x - 1/4)^2 + (y + 1/2)^2 less than it takes; and where a box stops it.
+        (quartic(x0y0=-1, x1y0=-1, x2y0=2, x0y1=1, x0y2=1), (0.25, -0.5)),
+        (quartic(x0y0=-9, x1y0=-8, x2y0=2, x0y1=8, x0y2=1), (1.0, -1.0)),
+    ],
+)
+def test_where_there_are_no_squares_the_lowest_point_is_known_to_ten_digits(table, lowest):
+    assert gram_matrices(table).lowest == pytest.approx(lowest, abs=5e-11)

@@ -1,0 +1,61 @@
+"""When a linear alpha^2 is taken: what the two searches came to, made up."""
+
+import re
+
+import pytest
+
+from semispline import Base, BSplineSurface
+from semispline.solver.blending import linear_problem
+from semispline.solver.blending.fair_search import FairSolution
+from semispline.solver.blending.linear_problem import try_linear_alpha
+from semispline.solver.blending.pipeline import state_problem
+
+LINE = [0.0, 0.0, 1.0, 1.0]
+
+
+def strips(ratio=2.0):
+    """Two flat strips whose gap grows along v by a factor."""
+    near, far = (
+        BSplineSurface(1, 1, LINE, LINE, [[[x + turned * y, y, 0] for y in (0, 1)] for x in places])
+        for places, turned in (((-1, 0), 0.0), ((1, 2), ratio - 1))
+    )
+    return state_problem(Base(near, "u1"), Base(far, "u0")).problem
+
+
+def solution(value, *condoned):
+    return FairSolution(1.0, 1.0, (0.0, 0.0), value, 0.0, 1, {}, condoned)
+
+
+@pytest.mark.parametrize(
+    ("constant", "linear", "taken", "said"),
+    [
+        (solution(1.0), solution(0.69), True, "fairness is 0.69 of"),
+        (solution(1.0), solution(0.71), False, "fairness is 0.71 of .* 0.7 would pay"),
+        (solution(0.01), solution(0.0069), True, "fairness is 0.69 of"),
+        # Nothing of nothing is all of it.
+        (solution(0.0), solution(0.0), False, "fairness is 1 of"),
+        # What is refused less often comes first, however fair.
+        (solution(1.0), solution(0.1, "folds"), False, "every candidate is refused .folds."),
+        (solution(1.0, "folds"), solution(9.0), True, "fairness is 9 of"),
+        (solution(1.0, "folds"), solution(0.71, "folds"), False, "fairness is 0.71 of"),
+        (solution(1.0, "folds"), solution(0.69, "folds"), True, "fairness is 0.69 of"),
+        (solution(1.0, "folds"), solution(0.1, "folds", "loops"), False, "refused .folds and loops."),
+    ],
+)
+def test_what_is_taken(monkeypatch, constant, linear, taken, said):
+    asked = []
+    monkeypatch.setattr(linear_problem, "solve_fair", lambda problem, known: asked.append((problem, known)) or linear)
+    trial = try_linear_alpha(strips(), constant)
+    assert trial.taken is taken
+    assert trial.solution is linear
+    assert asked == [(trial.problem, constant)]
+    assert re.search(said, trial.verdict)
+    # Where it is asked for it is taken, unless every candidate is refused.
+    assert try_linear_alpha(strips(), constant, always=True).taken is ("refused" not in said)
+
+
+def test_what_is_even_is_not_tried_unless_asked(monkeypatch):
+    monkeypatch.setattr(linear_problem, "solve_fair", lambda problem, known: solution(0.1))
+    assert try_linear_alpha(strips(1.4), solution(1.0)).problem is None
+    assert try_linear_alpha(strips(1.4), solution(1.0), always=True).taken
+    assert try_linear_alpha(strips(1.6), solution(1.0)).taken

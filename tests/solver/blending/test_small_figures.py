@@ -1,0 +1,219 @@
+"""Figures of the search and of the pipeline that a blend hardly shows: each by itself, from both sides."""
+
+from dataclasses import dataclass, replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from semispline import Base, BSplineSurface, blend
+from semispline.solver.blending import fair_search, pipeline
+from semispline.solver.blending.fairness_grid import across
+from semispline.solver.blending.pipeline import state_problem
+from semispline.solver.blending.projected import Point
+from semispline.solver.splines import clamped
+
+LINE = [0.0, 0.0, 1.0, 1.0]
+
+
+def strip(x, width=1.0, z=0.0):
+    """A flat strip from x on, one long."""
+    return BSplineSurface(1, 1, LINE, LINE, [[[at, y, z] for y in (0, 1)] for at in (x, x + width)])
+
+
+def strips(edge_a="u1", edge_b="u0"):
+    """Two strips, 2 apart."""
+    return Base(strip(0), edge_a), Base(strip(3, z=0.5), edge_b)
+
+
+def test_the_three_lowest_wells_are_starts_and_the_lowest_comes_first():
+    values = np.array([[9, 3, 9, 1, 9, 2, 9, 0, 9.0]])
+    cells = np.arange(9.0)[:, None]
+    assert fair_search._starts(cells, values)[:, 0].tolist() == [7, 3, 5]
+    # Of wells that are equally deep the first ones.
+    assert fair_search._starts(cells, np.minimum(values, 3.5) // 3)[:, 0].tolist() == [3, 5, 7]
+
+
+@pytest.mark.parametrize(
+    ("edges", "cells", "nodes"), [(("u1", "u0"), 6, 20), (("u0", "u1"), 8, 40)], ids=["facing", "U-turn"]
+)
+def test_u_turns_are_scanned_in_more_cells_and_places(monkeypatch, edges, cells, nodes):
+    class EnoughError(Exception):
+        pass
+
+    def scan(objective, count):
+        raise EnoughError(count, len(objective.table.across.weights), objective.table.least_cosine)
+
+    monkeypatch.setattr(fair_search, "_scan", scan)
+    with pytest.raises(EnoughError) as asked:
+        fair_search.solve_fair(state_problem(*strips(*edges)).problem)
+    # There normals of neighbours may turn by a right angle.
+    assert asked.value.args == (cells, nodes, 0.0)
+
+
+@pytest.mark.parametrize(("less", "chosen"), [(0.0, 0), (0.0009, 0), (0.0011, 1), (-1.0, 0), (1.0, 1)])
+def test_blends_that_turn_alike_to_a_thousandth_of_a_degree_turn_equally(monkeypatch, less, chosen):
+    results = [
+        SimpleNamespace(shape=SimpleNamespace(turn=SimpleNamespace(degrees=x)), warnings=()) for x in (30, 30 - less)
+    ]
+    monkeypatch.setattr(pipeline, "blend", lambda a, b, options: results[("no", "yes").index(options.flip)])
+    options = pipeline.named_options(None, {})
+    assert pipeline._less_turning(*strips(), ("no", "yes"), options) is results[chosen]
+
+
+@pytest.mark.parametrize("continuity", [("G0", "G1"), ("G1", "C0"), ("G1", "C1"), ("C1", "G1"), ("C0", "G0")])
+def test_a_side_without_a_tangent_has_no_shape_parameter(continuity):
+    result = blend(*strips(), continuity=continuity, alpha="natural")
+    for value, wanted in zip((result.alpha2, result.beta2), continuity, strict=True):
+        if wanted[1] == "0":
+            assert value is None
+        else:
+            assert value == pytest.approx(1.0 if wanted == "C1" else np.sqrt(4.25), rel=1e-12)
+
+
+def refused_beyond(limit):
+    """A stand-in for a grid that refuses what is below a limit, and the places that it was asked for."""
+    places = []
+
+    def at(point):
+        places.append(point.x[0])
+        return replace(point, value=0.0 if point.x[0] >= limit else np.inf)
+
+    return SimpleNamespace(at=at), places
+
+
+@pytest.mark.parametrize(("limit", "tried"), [(-1.0, 1), (0.01, 2), (0.3, 6), (0.95, 8), (2.0, 8)])
+def test_what_a_finer_grid_refuses_goes_back_towards_its_start(limit, tried):
+    # From 0 to the start at 1.
+    grid, places = refused_beyond(limit)
+    end = Point(np.zeros(1), 5.0, np.zeros(1), np.eye(1))
+    found = fair_search._admitted(grid, end, np.ones(1))
+    assert places == pytest.approx([0.0, 0.02, 0.05, 0.1, 0.2, 0.4, 0.7, 1.0][:tried])
+    assert (found is None) is (limit > 1)
+
+
+def test_steps_are_at_most_a_third_of_alpha_and_twice_the_size_of_p2(monkeypatch):
+    asked = []
+    monkeypatch.setattr(fair_search, "descend", lambda *words: asked.append(words))
+    unknowns = SimpleNamespace(logarithmic=np.array([True, False]), low=np.zeros(2), high=np.ones(2))
+    grid = SimpleNamespace(unknowns=unknowns)
+    fair_search._descended(grid, "start", 0.5)
+    ((function, start, low, high, longest, tolerance),) = asked
+    assert (function, start, tolerance) == (grid, "start", 0.5)
+    assert longest.tolist() == [0.35, 2.0]
+    assert low.tolist() == [0, 0]
+    assert high.tolist() == [1, 1]
+
+
+@pytest.mark.parametrize(
+    ("spans", "across_and_between"), [(1, [20, 40, 80]), (25, [20, 40, 80]), (26, [20, 40, 20, 80])]
+)
+def test_a_grid_of_more_than_2000_nodes_has_one_between(monkeypatch, spans, across_and_between):
+    asked, tolerances, cosines = [], [], []
+
+    def told(u, count):
+        asked.append(count)
+        return across(u, count)
+
+    def descended(objective, start, tolerance):
+        tolerances.append(tolerance)
+        cosines.append(objective.table.least_cosine)
+        return start
+
+    monkeypatch.setattr(fair_search, "across", told)
+    monkeypatch.setattr(fair_search, "_descended", descended)
+    # Smooth rows: no line is crossed.
+    knots = clamped(np.arange(1, spans) / spans, 3, 0.0, 1.0)
+    y = [knots[i : i + 3].mean() for i in range(1, spans + 4)]
+    a, b = (
+        Base(BSplineSurface(1, 3, LINE, knots, [[[at, place, 0] for place in y] for at in (x, x + 1)]), edge)
+        for x, edge in ((0, "u1"), (3, "u0"))
+    )
+    fair_search.solve_fair(state_problem(a, b).problem)
+    assert asked == across_and_between
+    # Each start roughly, on each grid but the last roughly as well, then to the end.
+    assert tolerances == [0.02] * (len(tolerances) - 1) + [1e-4]
+    assert len(tolerances) == len(asked) - 1
+    # Normals of neighbours may turn by 60 degrees, and for a rough look by 90.
+    assert cosines == [0.0] + [0.5] * (len(cosines) - 1)
+
+
+@dataclass
+class Large:
+    """A stand-in for a grid of so many nodes, on which nothing ever settles."""
+
+    size: int
+    value: float
+
+    @property
+    def table(self):
+        return SimpleNamespace(size=self.size)
+
+    unknowns = SimpleNamespace(logarithmic=np.array([True]), low=np.array([0.0]), high=np.array([0.0]))
+
+    def values(self, x):
+        return np.full(len(x), self.value)
+
+    def at(self, point):
+        return replace(point, value=self.value)
+
+    def point(self, x):
+        return Point(x, self.value, np.zeros(1), np.eye(1))
+
+
+@pytest.mark.parametrize(("size", "grids"), [(100, 4), (29_999, 4), (30_000, 4), (30_001, 1), (40_000, 1)])
+def test_a_grid_that_would_have_more_than_60000_nodes_is_not_gone_to(size, grids):
+    made = []
+
+    def finer(times):
+        made.append(times)
+        return Large(size, float(times))
+
+    start = Point(np.zeros(1), 0.0, np.zeros(1), np.eye(1))
+    _, settled = fair_search._settled(start, np.zeros(1), finer, np.zeros((1, 1)))
+    assert not settled
+    assert made == [2, 4, 8, 16][:grids]
+
+
+@pytest.mark.parametrize(
+    ("y", "at_end"),
+    [(0.0, True), (0.9e-9, True), (1.1e-9, False), (0.5, False), (1 - 1.1e-9, False), (1 - 0.9e-9, True), (1.0, True)],
+)
+def test_a_billionth_from_an_end_of_its_window_is_at_the_end(y, at_end):
+    unknowns = SimpleNamespace(ends=(slice(0, 1), slice(1, 2)), low=np.array([0.0, 0.5]), high=np.array([1.0, 0.5]))
+    assert fair_search._is_at_end(unknowns, np.array([y, 0.5]), 0) is at_end
+    # Without a window there is no end.
+    assert fair_search._is_at_end(unknowns, np.array([y, 0.5]), 1) is False
+
+
+class Wells:
+    """A stand-in for an objective with two wells; a rough look takes the wrong one for the deeper."""
+
+    def __init__(self, unknowns, table):
+        self.unknowns, self.table, self.tried = unknowns, table, 0
+        self.refused = {"folds": 0, "loops": 0}
+        self.depths = (1.0, 0.5) if table.least_cosine == 0 else (0.5, 1.0)
+
+    def values(self, y):
+        left, right = ((y[:, 0] - side) ** 2 - depth for side, depth in zip((-1.1, 1.1), self.depths, strict=True))
+        return np.minimum(left, right) + y[:, 2] ** 2
+
+    def point(self, y):
+        return Point(y, float(self.values(y[None])[0]), np.zeros(len(y)), np.eye(len(y)))
+
+    def at(self, point):
+        return self.point(point.x)
+
+
+def test_of_the_ends_of_two_starts_the_finer_grid_says_which_is_best(monkeypatch):
+    found = []
+    monkeypatch.setattr(fair_search, "FairObjective", Wells)
+    monkeypatch.setattr(fair_search, "_descended", lambda objective, start, tolerance: start)
+
+    def solution(problem, unknowns, point, *_):
+        found.append(point.x)
+        return fair_search.FairSolution(1.0, 1.0, (0.0, 0.0), 0.0, 0.0, 1, {})
+
+    monkeypatch.setattr(fair_search, "_solution", solution)
+    fair_search.solve_fair(state_problem(*strips()).problem)
+    assert found[0][0] > 1
