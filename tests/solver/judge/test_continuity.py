@@ -156,6 +156,7 @@ def test_measured_in_parts_as_measured_at_once(monkeypatch, at_once, edges):
         places = [contact.pop(f"{name}_at") for name in ("gap", "angle", "curvature", "rate", "second_rate")]
         rounding = contact.pop("rounding") | {f"{name} allowed": x for name, x in contact.pop("allowed").items()}
         assert contact.pop("no_normal") == ()
+        assert contact.pop("corresponds") == "affine"
         found.append((rounding, contact, [(p["parameter"], *p["point"]) for p in places]))
     (rounding, measures, places), (other_rounding, others, other_places) = found
     # The same arithmetic: what differs is at most how the processor takes the last few numbers of an array.

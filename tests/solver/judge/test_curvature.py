@@ -2,10 +2,11 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from helpers.splines import semistructured_surfaces
+from helpers.sweeps import examples
 from semispline import insert_row_knot
 from semispline.solver.errors import InputError
 from semispline.solver.judge.curvature import (
@@ -163,7 +164,7 @@ def test_a_paraboloid_at_its_vertex():
     close(np.abs(geometry.principal_directions[0]), np.array([[1, 0, 0], [0, 1, 0]]))
 
 
-@settings(max_examples=30, deadline=None)
+@examples(30)
 @given(semistructured_surfaces(degrees=(2, 5), most=1), st.integers(0, 2**32 - 1))
 def test_curvature_belongs_to_the_shape_not_to_its_form(surface, seed):
     rng = np.random.default_rng(seed)

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from helpers.splines import (
@@ -14,6 +14,7 @@ from helpers.splines import (
     scale,
     semistructured_surfaces,
 )
+from helpers.sweeps import examples
 from semispline import BSplineSurface
 from semispline.solver.judge.de_boor import curve_points, edge_curves, surface_points
 
@@ -22,7 +23,7 @@ from semispline.solver.judge.de_boor import curve_points, edge_curves, surface_p
 TOLERANCE = 1e-13
 
 
-@settings(max_examples=60, deadline=None)
+@examples(60)
 @given(curves(domain=(-2.0, 3.5)), st.integers(0, 2**32 - 1))
 def test_curves_and_all_their_derivatives_are_those_of_the_definition(curve, seed):
     x = parameters(np.random.default_rng(seed), (-2.0, 3.5), curve.knots, count=2)
@@ -45,7 +46,7 @@ def _factor(curve, order):
     return factor
 
 
-@settings(max_examples=25, deadline=None)
+@examples(25)
 @given(st.one_of(bspline_surfaces(degrees=(1, 3), most=1), semistructured_surfaces(degrees=(1, 3), most=1)), st.data())
 def test_surfaces_are_those_of_the_definition(surface, data):
     (u0, u1), (v0, v1) = surface.domain
@@ -56,7 +57,7 @@ def test_surfaces_are_those_of_the_definition(surface, data):
         assert np.abs(found - exact).max() <= 10 * TOLERANCE * scale(surface, du, dv)
 
 
-@settings(max_examples=25, deadline=None)
+@examples(25)
 @given(
     st.one_of(bspline_surfaces(degrees=(1, 3), most=1), semistructured_surfaces(degrees=(1, 3), most=1)),
     st.sampled_from(["u0", "u1", "v0", "v1"]),

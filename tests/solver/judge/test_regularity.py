@@ -2,11 +2,12 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 
 from helpers.bases import facing_pair
 from helpers.papers_set import blend
 from helpers.splines import surfaces
+from helpers.sweeps import examples
 from semispline import BSplineCurve, BSplineSurface, SemiStructuredSurface, measure_regularity, revolve
 from semispline.solver.judge import bezier_pieces, regularity
 from semispline.solver.judge.de_boor import surface_points
@@ -75,7 +76,7 @@ def by_referee(surface):
     return area.min() / area.mean()
 
 
-@settings(max_examples=40, deadline=None)
+@examples(40)
 @given(surfaces())
 def test_the_measure_is_that_of_the_referee_at_every_sample(surface):
     with np.errstate(all="ignore"):
@@ -89,13 +90,13 @@ def test_the_measure_is_that_of_the_referee_at_every_sample(surface):
     assert found.least_area_ratio == pytest.approx(least, rel=1e-6)
 
 
-def test_a_rational_surface_is_measured_and_nothing_proved():
+def test_a_rational_surface_is_measured_and_proved():
     profile = BSplineCurve(2, BEZIER_2, [[2, 0, 0], [3, 0, 1], [2, 0, 2]])
     vase = revolve(profile, [0, 0, 0], [0, 0, 1], 90)
     found = measure_regularity(vase)
     assert found.least_area_ratio == pytest.approx(by_referee(vase), rel=1e-12)
-    assert found.proved_area_ratio is None
-    assert area_bound(vase) <= 0
+    assert 0.4 * found.least_area_ratio < found.proved_area_ratio <= found.least_area_ratio
+    assert area_bound(vase) > 0
 
 
 def long_strip(spans, dent=(0, 0), depth=0.0):
