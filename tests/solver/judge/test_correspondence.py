@@ -9,11 +9,11 @@ from semispline.solver.judge.correspondence import (
     Correspondence,
     correspond,
     corresponding,
-    corresponding_samples,
     is_closed,
     snapped_seam,
     tied_directions,
 )
+from semispline.solver.judge.pairs import affine_pairs
 
 K1 = [0, 0, 1, 1]
 
@@ -71,7 +71,8 @@ def test_rims_turned_by_one_piece(on_a, on_b, backwards):
     assert matched.flipped is backwards
     assert matched.shift == pytest.approx((0.25 if backwards else 0.75) * length, abs=1e-9 * length)
     # All spans are in common: seven samples in each, all inside, and what corresponds is one above the other.
-    s_a, s_b = corresponding_samples(a, b, snapped_seam(a, b, matched))
+    pairs = affine_pairs(a, b, snapped_seam(a, b, matched))
+    s_a, s_b = pairs.s_a, pairs.s_b
     assert len(s_a) == len(s_b) == 28
     assert on_a[0] < s_a.min() < s_a.max() < on_a[1]
     assert b.derivative(s_b, 0, 0) == pytest.approx(a.derivative(s_a, 0, 0) + np.array([0, 0, 1]), abs=1e-9)
@@ -81,7 +82,8 @@ def test_rims_turned_by_one_piece(on_a, on_b, backwards):
     for part in (0.05, 0.8):
         knot = on_b[0] + part * length
         parted = Base(insert_knots(b.surface, [], [knot]), "u0")
-        s_a, s_b = corresponding_samples(a, parted, snapped_seam(a, parted, matched))
+        pairs = affine_pairs(a, parted, snapped_seam(a, parted, matched))
+        s_a, s_b = pairs.s_a, pairs.s_b
         assert len(s_a) == 35
         assert (np.sort(np.abs(s_b - knot))[:2] < 0.001 * length).all()
 
