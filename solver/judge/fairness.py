@@ -19,13 +19,15 @@ from semispline.solver.splines import gauss_rule
 # zero, since a visible shape has 1 and more.
 SETTLED, _NOTHING = 0.01, 1e-8
 # Gauss points in u and in v altogether, and the least on each span, for the first grid and for the second, which tells
-# whether the first settled it: the integrand is no polynomial. Then the second on spans halved again and again.
-_FIRST, _SECOND = ((24, 10), (6, 2)), ((36, 14), (9, 3))
+# whether the first settled it: the integrand is no polynomial. Along v, where a span has few points, the second has
+# twice as many: two and three points may be off alike. Then the second on spans halved again and again.
+_FIRST, _SECOND = ((24, 10), (6, 3)), ((32, 20), (9, 6))
 # How often every span is halved before the meter gives up; what a grid may hold in all, and what is worked on at once.
 _HALVINGS, _MOST, _AT_ONCE = 5, 2**21, 2**13
 # Spans of a cluster of knots along v are below this fraction of the mean one, and the cluster is narrower than the
-# second figure, in windows: over it H may change as much as over a jump.
-_CLUSTERED, _CLUSTER = 1 / 20, 1 / 4
+# second figure, in gaps: over it H may change as much as over a jump. A gap is at least so large, in windows: the ends
+# of a surface that closes across have none.
+_CLUSTERED, _CLUSTER, _LEAST_GAP = 1 / 20, 1 / 200, 1.0
 # Parts of the domain; knots closer than that are refused, or one.
 _TIGHTEST = 1e-13
 _GRIDS = ((_FIRST, 0), *((_SECOND, halvings) for halvings in range(_HALVINGS)))
@@ -57,8 +59,8 @@ def measure_fairness(surface: ParametricSurface) -> Fairness:
     """Measure how mean curvature varies over a surface, by Gauss points on every span, refined until it settles.
 
     H is the mean curvature, A the area, and h is 1/50 of the mean length of the sections v = const. H may jump across
-    lines of knots, and across the seam of a closed surface. Knots along v closer than a quarter of h are one line:
-    what is between them counts as a jump.
+    lines of knots, and across the seam of a closed surface. Knots along v closer than 1/200 of the mean straight gap
+    between the ends of these sections are one line: what is between them counts as a jump.
 
     Parameters
     ----------
@@ -81,7 +83,7 @@ def measure_fairness(surface: ParametricSurface) -> Fairness:
     """
     scaled = _Scaled(surface, turn_window(surface))
     seams = closed_directions(surface)
-    wide = _wide_spans(surface.breakpoints[1], _length_along(scaled))
+    wide = _wide_spans(surface.breakpoints[1], _length_along(scaled), _CLUSTER * max(_gap(scaled), _LEAST_GAP))
     before: Fairness | None = None
     for rules in (_rules(surface, wide, *grid) for grid in _GRIDS):
         if before is not None and rules[0].points.size * rules[1].points.size > _MOST:
@@ -134,17 +136,24 @@ def _length_along(surface: _Scaled) -> float:
     return float(of_u.T.ravel() @ speed @ of_v.T.ravel()) / float(of_u.sum() * of_v.sum())
 
 
-def _wide_spans(breaks: FloatArray, length: float) -> NDArray[np.bool_]:
-    """Tell which spans of v belong to no cluster of knots; `length` is that of all, in windows.
+def _gap(surface: _Scaled) -> float:
+    """Return the mean distance between both ends of the sections v = const, in windows."""
+    v, of_v = (part.T.ravel() for part in gauss_rule(surface.surface.breakpoints[1], 7))
+    first, last = surface.derivative(np.array(surface.surface.domain[0]), v, 0, 0).transpose(1, 0, 2)
+    return float(np.sqrt(((last - first) ** 2).sum(axis=0)) @ of_v) / float(of_v.sum())
+
+
+def _wide_spans(breaks: FloatArray, length: float, cluster: float) -> NDArray[np.bool_]:
+    """Tell which spans of v belong to no cluster of knots; `length` is that of all, in the unit of `cluster`.
 
     Examples
     --------
-    >>> _wide_spans(np.array([0, 0.5, 0.5001, 0.5002, 1.0]), 100.0).tolist()
+    >>> _wide_spans(np.array([0, 0.5, 0.5001, 0.5002, 1.0]), 100.0, 0.25).tolist()
     [True, False, False, True]
     """
     at = (breaks - breaks[0]) / (breaks[-1] - breaks[0])
     widths = np.diff(at)
-    most = _CLUSTER / max(length, np.finfo(float).tiny)
+    most = cluster / max(length, np.finfo(float).tiny)
     wide = np.ones(len(widths), dtype=bool)
     limit = min(most, _CLUSTERED / len(widths))
     # From the loosest clusters to the tightest: one that is too wide may hold others.
