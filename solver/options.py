@@ -63,7 +63,9 @@ class BlendOptions:
     alpha_v : {"auto", "constant", "linear"}
         Whether a searched alpha^2 is one number or linear in v.
     p2 : "auto", "zero", or a pair of numbers
-        The second shape parameter of each side, P_uu = alpha^4 R_ww + p2 R_w, where contact is geometric.
+        The second shape parameter of each side, P_uu = alpha^4 R_ww + p2 R_w, where contact is geometric. "auto" is
+        searched beside alpha for G2 and in step with alpha^2 for G3 and G4. For G2 it is zero where alpha is given or
+        natural, where the ends of the box are equal, and where energy is minimised.
     bulge : float or a pair of floats
         Multiplies the alpha^2 that was chosen, and p2 by its square: above 1 the blend stays longer with the base.
     box : (float, float), optional
@@ -214,13 +216,15 @@ class BlendOptions:
                 raise OptionError(f"bulge: found {self.bulges[i]:g} at {side}, expected 1: {name} has no alpha")
             if not isinstance(self.p2, str) and self.p2[i] != 0 and not (has_alpha and order > 1):
                 raise OptionError(f"p2: found {self.p2[i]:g} at {side}, expected 0: {name} has no p2")
-        searched = [
-            alpha is None or alpha == "fair"
-            for alpha, name in zip(self.alphas, self.continuities, strict=True)
-            if name[0] == "G" and name != "G0"
-        ]
-        if self.alpha_v == "linear" and not any(searched):
+        if self.alpha_v == "linear" and not self._wants_fair_alpha():
             raise OptionError("alpha_v: found linear, but no alpha is searched; give alpha as X:Y, or leave it out")
+
+    def _wants_fair_alpha(self) -> bool:
+        """Tell whether a side has an alpha and leaves it to the fairest shape."""
+        return any(
+            alpha in (None, "fair") and name[0] == "G" and name != "G0"
+            for alpha, name in zip(self.alphas, self.continuities, strict=True)
+        )
 
     def decided(self, minimises_energy: str = "") -> BlendOptions:
         """Return the options with nothing unsaid: the set of the fairest shape, or the paper's where (11) is minimised.
@@ -245,14 +249,18 @@ class BlendOptions:
         (('energy', 'energy'), 3, 1, 'paper')
         """
         papers = self._is_papers_set(minimises_energy)
+        # A box with equal ends leaves nothing to search.
+        nothing_searched = not self._wants_fair_alpha() or (self.box is not None and self.box[0] == self.box[1])
+        # G3 and G4 have a p2 in step with alpha^2, however that was found.
+        without_p2 = papers or (nothing_searched and max(self.orders) <= 2)
         # Without a middle curve and inner knots: all that the contacts prescribe, and no more.
         across = sum(max(ROWS_PER_SIDE, order + 1) for order in self.orders) - 1
         unsaid = {
             "alpha": tuple(("energy" if papers else "fair") if x is None else x for x in self.alphas),
             "middle_curves": int(papers) if self.middle_curves == "auto" else self.middle_curves,
             "degree_u": (3 if papers else across) if self.degree_u == "auto" else self.degree_u,
-            "alpha_v": "constant" if papers else self.alpha_v,
-            "p2": "zero" if papers else self.p2,
+            "alpha_v": "constant" if papers or (self.alpha_v == "auto" and nothing_searched) else self.alpha_v,
+            "p2": "zero" if self.p2 == "auto" and without_p2 else self.p2,
             "v_scale": self.v_scale or ("paper" if papers else "length"),
             "middle_knots": ("paper" if papers else "fourth") if self.middle_knots is None else self.middle_knots,
         }

@@ -170,9 +170,34 @@ def test_what_is_unsaid_is_decided_by_what_is_minimised():
     assert BlendOptions().decided("generated C") == papers
     assert fair.decided() == fair
     assert papers.decided("generated C") == papers
-    # A number leaves the set as it is: it is that of the method.
-    assert BlendOptions(alpha=0.5).decided() == replace(fair, alpha=0.5)
+    # A number leaves the set as it is: it is that of the method. With it there is nothing to search.
+    assert BlendOptions(alpha=0.5).decided() == replace(fair, alpha=0.5, alpha_v="constant", p2="zero")
     assert BlendOptions(alpha=0.5, method="casadi").decided() == replace(papers, alpha=0.5, method="casadi")
+
+
+@pytest.mark.parametrize(
+    ("said", "decided"),
+    [
+        ({"alpha": "natural"}, ("constant", "zero")),
+        ({"alpha": ((0.3, 0.4), 0.5)}, ("constant", "zero")),
+        ({"alpha": ("natural", 0.5), "p2": (0.1, 0.2)}, ("constant", (0.1, 0.2))),
+        ({"box": (1.0, 1.0)}, ("constant", "zero")),
+        ({"box": (1.0, 1.0), "alpha_v": "linear"}, ("linear", "zero")),
+        ({"continuity": "C2"}, ("constant", "zero")),
+        # One side is searched.
+        ({"box": (1.0, 1.01)}, ("auto", "auto")),
+        ({"alpha": ("fair", 0.5)}, ("auto", "auto")),
+        ({"continuity": ("C2", "G2")}, ("auto", "auto")),
+        # In step with alpha^2, whatever that is.
+        ({"alpha": 0.5, "continuity": ("G1", "G3")}, ("constant", "auto")),
+        ({"alpha": "natural", "continuity": "G4"}, ("constant", "auto")),
+        ({"alpha": "natural", "continuity": "G4", "p2": "zero"}, ("constant", "zero")),
+    ],
+)
+def test_what_is_not_searched_is_constant_and_zero(said, decided):
+    options = BlendOptions(**said).decided()
+    assert (options.alpha_v, options.p2) == decided
+    assert options.decided() == options
 
 
 @pytest.mark.parametrize(

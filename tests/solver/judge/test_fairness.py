@@ -127,7 +127,7 @@ def test_blends_against_differences_of_the_mean_curvature():
 
 @pytest.mark.parametrize(("family", "seed"), [("facing", 140), ("facing", 253), ("u-turn", 98)])
 def test_what_settles_is_the_integral(family, seed):
-    # Two and three points on a span of v are off alike on the first two; the third has narrow spans that are no cluster.
+    # Two and three points on a span of v are off alike on the first two; narrow spans of the third are no cluster.
     problem = shape_problem(family, seed)
     surface = blend(problem.a, problem.b).surface
     found = measure_fairness(surface)
@@ -253,7 +253,7 @@ def test_the_limit_of_a_cluster_is_a_quarter_of_the_window():
     ("way", "gap"), [(90, 2 * np.sqrt(2) / np.pi), (270, 2 * np.sqrt(2) / 3 / np.pi), (360, 1 / 50)]
 )
 def test_a_cluster_is_narrow_by_the_gap_and_not_by_the_way_round(way, gap):
-    """An arc of length 1 across, which closes at last, pulled along a line of length 1 with two knots that are close."""
+    """An arc of length 1 across, which closes at last, pulled along a length of 1 with two knots that are close."""
     for share, is_line in ((0.99, True), (1.01, False)):
         found = measure_fairness(pulled(arc((0, 0), 1 / np.radians(way), 0, way), 0.6, 0.6 + share * gap / 200))
         assert (found.jumps > 1e-3) is is_line
