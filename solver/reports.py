@@ -255,7 +255,8 @@ def _quadrature(result: BlendResult) -> str:
 def _objective(result: BlendResult) -> str:
     objective = result.objective
     value = "" if objective.value is None else f", {objective.value:.6g}"
-    return f"{objective.name}{value}: {objective.known}"
+    before = " before the bulge" if value and result.options.bulges != (1.0, 1.0) else ""
+    return f"{objective.name}{value}{before}: {objective.known}"
 
 
 def _figures(contact: Contact, asked: Continuity | None) -> Iterator[str]:

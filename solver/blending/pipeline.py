@@ -24,6 +24,7 @@ from semispline.solver.blending.warnings import (
     fairness_warning,
     remedy,
     seam_warning,
+    strained_by,
 )
 from semispline.solver.errors import ComputationError, ContactError, FoldError, InputError
 from semispline.solver.judge import (
@@ -43,7 +44,7 @@ from semispline.solver.judge import (
     tied_directions,
     untold,
 )
-from semispline.solver.options import BlendOptions, Continuity, Flip, named_options
+from semispline.solver.options import BlendOptions, Flip, named_options
 from semispline.solver.proof import check_certificate
 from semispline.solver.splines import BSplineCurve, SemiStructuredSurface, euclidean
 
@@ -109,7 +110,7 @@ def blend(
     seconds = time.perf_counter() - started
     rounding = measure_energy_rounding(problem, found, surface, frame, energy)
     # What came out, judged by code that knows nothing of the above.
-    contact_a, contact_b = _checked_contacts(a, b, surface, chosen.continuities, matched, found)
+    contact_a, contact_b = _checked_contacts(a, b, surface, chosen, matched, found)
     if found.certificate is not None:
         check_certificate(found.certificate)
     seam = _seam(surface, problem)
@@ -117,12 +118,12 @@ def blend(
     creases = measure_creases(surface)
     shape = _measured_shape(surface, a, b, chosen)
     warnings = (
-        shape_warnings(shape, regularity, creases, is_fair=found.fairness is not None, cures=problem.cures)
+        shape_warnings(shape, regularity, creases, options=chosen, cures=problem.cures)
         + bound_warnings(problem, layout.found)
         + (fairness_warning(found.fairness, shape.fairness.value) if chosen.bulges == (1.0, 1.0) else ())
         + rounding_warning(rounding, surface, energy)
         + seam_warning(a, b)
-        + contact_warnings((a, b), surface, (contact_a, contact_b), chosen.continuities, found)
+        + contact_warnings((a, b), surface, (contact_a, contact_b), chosen, found)
     )
     result = BlendResult(
         surface=surface,
@@ -288,7 +289,7 @@ def _less_turning(a: Base, b: Base, directions: tuple[Flip, ...], options: Blend
 def _strictly(result: BlendResult, strict: bool) -> BlendResult:
     """Return the result, refused if it has warnings and is to have none."""
     if strict and result.warnings:
-        raise FoldError(f"{'; '.join(result.warnings)}; try other middle curves, alpha='natural', or without strict")
+        raise FoldError(f"{'; '.join(result.warnings)}; look at the warnings, or blend without strict")
     return result
 
 
@@ -324,36 +325,39 @@ def _checked_contacts(
     a: Base,
     b: Base,
     surface: SemiStructuredSurface,
-    continuity: tuple[Continuity, Continuity],
+    options: BlendOptions,
     matched: Correspondence,
     found: Found,
 ) -> tuple[Contact, Contact]:
     """Let the referee measure both contacts, and refuse a result that misses its limits."""
-    order = max(2, *(int(wanted[1]) for wanted in continuity))
+    continuity = options.continuities
+    order = max(2, *options.orders)
     contact_a = measure_contact(a, Base(surface, "u0"), correspondence=Correspondence(flipped=False), order=order)
     contact_b = measure_contact(Base(surface, "u1"), b, correspondence=matched, order=order)
-    for name, base, contact, wanted, shape in (
-        ("a", a, contact_a, continuity[0], float(np.min(found.a))),
-        ("b", b, contact_b, continuity[1], float(np.min(found.b))),
+    for index, (name, base, contact, wanted, shape) in enumerate(
+        (
+            ("a", a, contact_a, continuity[0], float(np.min(found.a))),
+            ("b", b, contact_b, continuity[1], float(np.min(found.b))),
+        )
     ):
+        strained = strained_by(options, found, index)
         measured = required_limits(contact, wanted)
         if any(np.isnan(value) for _, value, _ in measured):
             check_regular_edge(base)
             raise ContactError(
                 f"contact {name}: the blend is degenerate where it meets the base, its shape parameter is "
-                f"{shape:.1e}; try a larger alpha, or a box that begins higher"
+                f"{shape:.1e}; {strained or 'try a larger alpha, or a box that begins higher'}"
             )
         hidden = untold(contact, wanted)
         if hidden:
-            said = remedy(
-                base, surface, bare_places(contact, name), shape if wanted[0] == "G" else None, int(wanted[1])
-            )
+            shown = shape if wanted[0] == "G" else None
+            said = remedy(base, surface, bare_places(contact, name), shown, int(wanted[1]), strained)
             raise ContactError(f"contact {name}: {'; '.join(hidden)} for {wanted}; {said}")
         for measure, value, limit in measured:
             if not value <= limit:
                 raise ContactError(
                     f"contact {name}: {measure} is {value:.3g}, expected at most {limit:.3g} for {wanted}; "
-                    "try fewer middle curves, or bases whose knots are not so close"
+                    + (strained or "try fewer middle curves, or bases whose knots are not so close")
                 )
     return contact_a, contact_b
 

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 
 from semispline.solver.blending.representative import Cure
 from semispline.solver.judge import FOLD_DEGREES, LOOP_DEGREES, Crease, Regularity, ShapeReport
+from semispline.solver.options import BlendOptions
 
 # A normal that turns this far within one window is well on its way to a fold.
 STEEP_DEGREES = 60.0
@@ -28,22 +29,33 @@ def shape_warnings(
     regularity: Regularity,
     creases: Sequence[Crease],
     *,
-    is_fair: bool = False,
+    options: BlendOptions | None = None,
     cures: tuple[Cure | None, Cure | None] = (None, None),
 ) -> tuple[str, ...]:
     """Return a warning for each thing that a surface modeller would not keep without a look.
 
-    What is the fairest already is not advised to become it.
+    Options, where they are known, tell what to try first: what was asked for and may be the cause, and alpha fair only
+    where it is not that already.
     """
-    fair = "" if is_fair else "alpha fair, "
+    cause = "" if options is None else _asked_for(options)
+    fair = cause + ("alpha fair, " if options is None or set(options.decided().alphas) != {"fair"} else "")
     return (
         *_turns(shape, max((crease.angle_degrees for crease in creases), default=0.0), fair),
         *_pinches(shape, regularity, fair),
         *_exits(shape, fair),
-        *_meetings(shape),
+        *_meetings(shape, cause),
         *_creased([crease for crease in creases if crease.angle_degrees >= SHARP], cures),
         *_bent([crease for crease in creases if crease.angle_degrees < SHARP]),
     )
+
+
+def _asked_for(options: BlendOptions) -> str:
+    """Return what to try first where a bulge or p2 was given."""
+    least, most = min(options.bulges), max(options.bulges)
+    tries = ["a smaller bulge"] if most > 1 else ["a larger bulge"] if least < 1 else []
+    if not isinstance(options.p2, str) and any(options.p2):
+        tries.append("p2 nearer to zero")
+    return "".join(f"{one}, " for one in tries)
 
 
 def _turns(shape: ShapeReport, crease: float, fair: str) -> Iterator[str]:
@@ -98,9 +110,9 @@ def _exits(shape: ShapeReport, fair: str) -> Iterator[str]:
         )
 
 
-def _meetings(shape: ShapeReport) -> Iterator[str]:
+def _meetings(shape: ShapeReport, cause: str) -> Iterator[str]:
     for meeting in shape.meets.found[:_NAMED]:
-        yield f"the blend {meeting}; try a smaller alpha, or edges with more room between them"
+        yield f"the blend {meeting}; try {cause}a smaller alpha, or edges with more room between them"
     if (more := len(shape.meets.found) - _NAMED) > 0:
         yield f"the blend meets itself or its bases in {more} more place(s)"
 

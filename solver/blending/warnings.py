@@ -9,7 +9,7 @@ import numpy as np
 from semispline.solver.blending.problem import BlendProblem
 from semispline.solver.blending.shape_parameters import Found, alpha_bounds, p2_ends, shape_unknowns
 from semispline.solver.judge import Base, Contact, NoNormal, doubtful, is_closed, model_size
-from semispline.solver.options import Continuity
+from semispline.solver.options import BlendOptions
 from semispline.solver.splines import SemiStructuredSurface, bounding_box
 
 _NAMED = 5
@@ -17,6 +17,8 @@ _NAMED = 5
 _FAR = 1e3
 # A span beside the edge below this fraction of the base makes its second derivatives round by 1e6 times as much.
 _NARROW = 1e-3
+# A p2 so many times alpha^2 is beyond all that a search finds, and derivatives round by it.
+_STRAINED = 100.0
 # Fairness that was minimised and fairness that is measured may differ by this fraction; what is below the second figure
 # is not what the search goes by.
 _UNTOLD, _FLAT = 0.1, 0.1
@@ -73,8 +75,27 @@ def seam_warning(a: Base, b: Base) -> tuple[str, ...]:
     return (f"contact curve {which} is closed, the other is open: the blend is open along the seam of {which}",)
 
 
+def strained_by(options: BlendOptions, found: Found, index: int) -> str:
+    """Return what was asked for that makes p2 of a side too large to be told, and what to try; or nothing."""
+    second, shape = float(np.abs(found.p2[index]).max()), float(np.min((found.a, found.b)[index]))
+    if second <= _STRAINED * shape:
+        return ""
+    side, bulge = "ab"[index], options.bulges[index]
+    if not isinstance(options.p2, str):
+        return (
+            f"p2 of side {side} is {options.p2[index]:.3g}, which is far beyond its alpha^2, {shape:.3g}: try one "
+            "nearer to zero, or leave it out"
+        )
+    return f"bulge of side {side} is {bulge:g}: try one nearer to 1" if bulge > 1 else ""
+
+
 def remedy(
-    base: Base, surface: SemiStructuredSurface, bare: list[NoNormal], shape: float | None, order: int = 2
+    base: Base,
+    surface: SemiStructuredSurface,
+    bare: list[NoNormal],
+    shape: float | None,
+    order: int = 2,
+    strained: str = "",
 ) -> str:
     """Say what makes rounding too large to tell how a blend meets its base, and what to try.
 
@@ -89,6 +110,8 @@ def remedy(
         The shape parameter; None where contact has none.
     order : int
         Of contact.
+    strained : str
+        What was asked for that may be the cause, and what to try.
     """
     distance = float(np.abs(bounding_box(surface)).max()) / model_size(surface)
     if distance > _FAR:
@@ -103,8 +126,10 @@ def remedy(
             f"knots_{across} of the base leave a span of {width:.1e} beside the edge, across which derivatives round: "
             "remove these knots or take them further apart, or ask for a lower continuity"
         )
-    if order > 2:
-        return f"derivatives of order {order} round: ask for G2, or work in coordinates nearer to the origin"
+    if strained or order > 2:
+        return (
+            strained or f"derivatives of order {order} round: ask for G2, or work in coordinates nearer to the origin"
+        )
     if shape is None:
         return "derivatives across the edge round: try bases of similar size, or a lower continuity"
     return (
@@ -122,21 +147,20 @@ def contact_warnings(
     bases: tuple[Base, Base],
     surface: SemiStructuredSurface,
     contacts: tuple[Contact, Contact],
-    continuity: tuple[Continuity, Continuity],
+    options: BlendOptions,
     found: Found,
 ) -> tuple[str, ...]:
     """Return where contact is confirmed less than it seems: rounding hides a part, or a base has no normal there."""
     warnings = []
-    for name, base, contact, wanted, shape in zip(
-        ("a", "b"), bases, contacts, continuity, (found.a, found.b), strict=True
+    for index, (name, base, contact, wanted, shape) in enumerate(
+        zip(("a", "b"), bases, contacts, options.continuities, (found.a, found.b), strict=True)
     ):
         bare = bare_places(contact, name)
         least = float(np.min(shape))
         geometric = wanted[0] == "G" and wanted != "G0"
         for text in doubtful(contact, wanted):
-            warnings.append(
-                f"contact {name}: {text}; {remedy(base, surface, bare, least if geometric else None, int(wanted[1]))}"
-            )
+            shown, strained = least if geometric else None, strained_by(options, found, index)
+            warnings.append(f"contact {name}: {text}; {remedy(base, surface, bare, shown, int(wanted[1]), strained)}")
         if geometric:
             warnings += [f"base {name}: {place}; {wanted} says nothing there" for place in bare[:_NAMED]]
     return tuple(warnings)

@@ -5,12 +5,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+import semispline
 from helpers.bases import facing_pair
 from helpers.cases import CASES
 from helpers.papers_set import blend
 from helpers.shapes import arc, extruded, line, revolved, sheets, torus
 from semispline import (
     Base,
+    BlendOptions,
     BSplineCurve,
     BSplineSurface,
     ComputationError,
@@ -22,6 +24,7 @@ from semispline import (
     read_surface,
     swap_directions,
 )
+from semispline.papers.reproduction.families.suite import shape_problem
 from semispline.solver.blending.shape_warnings import shape_warnings
 from semispline.solver.judge import Crease, measure_creases
 
@@ -273,6 +276,37 @@ def test_a_blend_that_is_no_surface_is_refused():
     ]
     with pytest.raises(ComputationError, match="the blend is no surface: surface: has no tangent plane anywhere"):
         blend(Base(strips[0], "u0"), Base(strips[1], "u0"), continuity="G0")
+
+
+@pytest.mark.parametrize("degrees", [70.0, 100.0])
+@pytest.mark.parametrize(
+    ("asked", "first"),
+    [
+        ({}, "a smaller alpha"),
+        ({"box": (1.0, 1.0)}, "a smaller alpha"),
+        ({"alpha": "natural"}, "alpha fair, a smaller alpha"),
+        ({"alpha": ("fair", 0.5)}, "alpha fair, a smaller alpha"),
+        ({"bulge": 2}, "a smaller bulge, a smaller alpha"),
+        ({"bulge": (0.5, 1.1)}, "a smaller bulge, a smaller alpha"),
+        ({"bulge": (0.5, 1.0)}, "a larger bulge, a smaller alpha"),
+        ({"bulge": 2, "alpha": 0.5}, "a smaller bulge, alpha fair, a smaller alpha"),
+        ({"p2": (0.0, -3.0)}, "p2 nearer to zero, a smaller alpha"),
+        ({"p2": (0.0, 0.0)}, "a smaller alpha"),
+    ],
+)
+def test_what_was_asked_for_is_tried_first(asked, first, degrees):
+    report, regular = measure_shape(sheets(1, 1)[0]), measure_regularity(sheets(1, 1)[0])
+    report = replace(report, turn=replace(report.turn, degrees=degrees))
+    for options in (BlendOptions(**asked), BlendOptions(**asked).decided()):
+        (said,) = shape_warnings(report, regular, (), options=options)
+        assert f"; try {first}, " in said
+
+
+def test_a_bulge_that_folds_is_said_to_be_too_large():
+    problem = shape_problem("facing", 7)
+    said = semispline.blend(problem.a, problem.b, bulge=2).warnings
+    assert any(text.startswith("the blend folds") for text in said)
+    assert all("; try a smaller bulge, " in text for text in said)
 
 
 @pytest.mark.parametrize("section", ["u", "v"])

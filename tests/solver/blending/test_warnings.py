@@ -8,10 +8,13 @@ import pytest
 
 from helpers.bases import turned
 from helpers.papers_set import blend
-from semispline import Base, BSplineSurface, ContactError, FoldError
+from semispline import Base, BlendOptions, BSplineSurface, ContactError, FoldError
+from semispline import blend as blend_by_default
+from semispline.papers.reproduction.families.suite import shape_problem
 from semispline.solver.blending.shape_parameters import Found
-from semispline.solver.blending.warnings import contact_warnings, remedy
+from semispline.solver.blending.warnings import contact_warnings, remedy, strained_by
 from semispline.solver.judge import NoNormal
+from semispline.solver.reports import print_result
 from semispline.solver.splines import greville
 from semispline.solver.splines.operations import all_control_points
 
@@ -114,6 +117,46 @@ def test_five_places_without_a_normal_are_named(places, named):
     bare = tuple(NoNormal("b", i / 8, (2.0, i / 8, 1.0), "the derivative vanishes", 1e-9) for i in range(places))
     contacts = result.contact_a, replace(result.contact_b, no_normal=bare)
     found = Found(1.69, 1.69, "linear")
-    said = contact_warnings((FLOOR, WALL), result.surface, contacts, ("G1", "G1"), found)
+    said = contact_warnings((FLOOR, WALL), result.surface, contacts, BlendOptions(continuity="G1"), found)
     assert ["base b: " in text and "G1 says nothing there" in text for text in said] == [True] * named
-    assert not contact_warnings((FLOOR, WALL), result.surface, contacts, ("G1", "C1"), found)
+    assert not contact_warnings((FLOOR, WALL), result.surface, contacts, BlendOptions(continuity=("G1", "C1")), found)
+
+
+def facing(seed, **options):
+    problem = shape_problem("facing", seed)
+    return blend_by_default(problem.a, problem.b, **options)
+
+
+@pytest.mark.parametrize("given", [1e6, -1e6])
+def test_a_p2_beyond_all_bounds_is_named_as_the_cause(given):
+    with pytest.raises(ContactError, match=r"p2 of side a is -?1e\+06, which is far beyond its alpha\^2") as refused:
+        facing(8, p2=(given, given))
+    assert "alpha, or" not in str(refused.value)
+    assert "degenerate" not in str(refused.value)
+
+
+@pytest.mark.parametrize(
+    ("times", "said"), [(99.0, ""), (-99.0, ""), (101.0, "p2 of side b"), (-101.0, "p2 of side b")]
+)
+def test_what_strains_is_a_hundred_alpha_squared(times, said):
+    found = Found(1.0, (2.0, 3.0), "reduced", p2=(0.0, (0.0, 2.0 * times)))
+    assert strained_by(BlendOptions(p2=(0.0, 2.0 * times)), found, 0) == ""
+    assert strained_by(BlendOptions(p2=(0.0, 2.0 * times)), found, 1).startswith(said)
+    # By a bulge, or by the search itself.
+    by_bulge = strained_by(BlendOptions(bulge=(1.0, 20.0)), found, 1)
+    assert by_bulge == ("bulge of side b is 20: try one nearer to 1" if said else "")
+    assert strained_by(BlendOptions(), found, 1) == ""
+
+
+def test_strict_does_not_advise_what_is_worse():
+    with pytest.raises(FoldError, match=r"; look at the warnings, or blend without strict$") as refused:
+        facing(7, bulge=2, strict=True)
+    assert "natural" not in str(refused.value)
+    assert "the blend folds: " in str(refused.value)
+
+
+def test_what_was_minimised_is_before_the_bulge(capsys):
+    for bulge in (1.0, (1.0, 1.2)):
+        print_result(facing(7, bulge=bulge))
+        (line,) = (line for line in capsys.readouterr().out.splitlines() if line.startswith("minimised"))
+        assert (" before the bulge: least of" in line) is (bulge != 1.0)
