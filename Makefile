@@ -4,6 +4,8 @@ VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 LEFT_OUT := compiler or browser or slow
+# Half of the files each, so that what a file shares is made once; who is done first takes from the other.
+PYTEST := $(BIN)/python -m pytest -n 2 --dist worksteal --quiet
 # Rooms whose tests take about a minute on two cores, less the files that take ten seconds and more each; not derivations,
 # pictures, commands, and papers but their engine.
 LONG := io/test_io_foreign io/test_face_boundary io/test_io_cad judge/test_de_boor \
@@ -24,19 +26,18 @@ report: $(STAMP)
 	$(BIN)/semispline reproduce lin2014 --out build/report
 
 test: $(STAMP)
-	$(BIN)/python -m pytest -n 2 --quiet -m 'not ($(LEFT_OUT))'
-	@echo "Left out here, run by .ci/run: tests marked compiler (a C compiler), browser (Chromium) or slow (long sweeps):"
-	@$(BIN)/python -m pytest --collect-only --quiet -m '$(LEFT_OUT)' 2>/dev/null | tail -n 1
+	$(PYTEST) -m 'not ($(LEFT_OUT))'
+	@echo "Left out here, run by .ci/run: tests marked compiler (a C compiler), browser (Chromium) or slow (long sweeps); and most examples of the sweeps"
 
 # The loop while working.
 check: lint types layers quick
 
 quick: $(STAMP)
-	$(BIN)/python -m pytest -n 2 --quiet -m 'not ($(LEFT_OUT))' $(QUICK)
+	$(PYTEST) -m 'not ($(LEFT_OUT))' $(QUICK)
 
-# pytest leaves with 5 when nothing carries these marks.
+# With all examples of the sweeps. pytest leaves with 5 when nothing carries these marks.
 test-left-out: $(STAMP)
-	$(BIN)/python -m pytest -n 2 --quiet -m '$(LEFT_OUT)' || [ $$? -eq 5 ]
+	SEMISPLINE_SWEEPS=whole $(PYTEST) -m '$(LEFT_OUT) or sweep or hypothesis' || [ $$? -eq 5 ]
 
 # Under each kernel of OpenBLAS that the processor has; KERNELS=another takes any one that is not the default.
 test-kernels: $(STAMP)

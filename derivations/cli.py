@@ -27,6 +27,8 @@ NAMES = (
     "fairness",
     "gram-block",
     "gram-entries",
+    "homogeneous-conditions",
+    "homogeneous-last",
     "linear-power",
     "linear-product",
     "shape-conditions",

@@ -8,7 +8,7 @@ from typing import Any, Literal
 
 from sympy import Add, Eq, Expr, Mul, Poly, Symbol, collect, expand, factor, latex, sstr, sympify
 
-from semispline.derivations import contact, energy, fairness, linear_alpha, shape, splines
+from semispline.derivations import contact, energy, fairness, homogeneous, linear_alpha, shape, splines
 from semispline.derivations.codegen import catalogue
 from semispline.derivations.codegen.c_backend import c_function
 from semispline.derivations.codegen.expressions import expression_text
@@ -172,6 +172,25 @@ def _shape_conditions(request: Request) -> Result:
     return Result(tuple((_derivative_name("P", "u", d), value) for d, value in enumerate(conditions)))
 
 
+def _homogeneous_conditions(request: Request) -> Result:
+    order = request.order
+    names = [tuple(_derivative_name(letter, "w", k) for k in range(order + 1)) for letter in ("X", "omega")]
+    conditions = homogeneous.homogeneous_conditions(order, *names)
+    return Result(
+        tuple(
+            (_derivative_name(letter, "u", k), value)
+            for k, row in enumerate(conditions)
+            for letter, value in zip(("Y", "W"), row, strict=True)
+        )
+    )
+
+
+def _last_rung(request: Request) -> Result:
+    jets, weights = homogeneous.last_rung(request.order)
+    equations = [(Symbol(f"Y_{k}"), value) for k, value in enumerate(jets)]
+    return Result((*equations, *((Symbol(f"W_{k}"), value) for k, value in enumerate(weights))))
+
+
 def _contact_rows(request: Request) -> Result:
     routine = catalogue.contact_routine(request.order, request.degree, request.base_degree)
     points = [Symbol(f"R_{j}") for j in range(request.order + 1)]
@@ -310,6 +329,12 @@ RESULTS: dict[str, _Entry] = {
     "fairness": _Entry("mean curvature, and |grad H|^2 per du dv", _fairness),
     "gram-block": _Entry("block of the quadratic form in one-dimensional integrals", _gram_block),
     "gram-entries": _Entry("integrals of products of basis derivatives, of two bases", _gram),
+    "homogeneous-conditions": _Entry(
+        "contact of order n with a rational base (X, om): derivatives (Y, W) of the blend", _homogeneous_conditions
+    ),
+    "homogeneous-last": _Entry(
+        "jets (Y, W) of a rational base whose weight is om^(n+1), and 0 beyond the contact", _last_rung
+    ),
     "linear-power": _Entry("a^n for a linear along the contact, from a0 to a1", _linear_power),
     "linear-product": _Entry("a spline times a linear function, as a spline", _linear_product),
     "shape-conditions": _Entry("G^n contact for p1 = -a and p2, the rest zero", _shape_conditions),

@@ -37,6 +37,30 @@ def finite_array(values: ArrayLike, ndim: int | None, name: str, error: type[Inp
     return array
 
 
+def space_points(values: ArrayLike, ndim: int, name: str, error: type[InputError]) -> FloatArray:
+    """Return points as a read-only array, shape (..., 3); those of two coordinates lie in the plane z = 0.
+
+    Raises
+    ------
+    InputError
+        Of the class `error`: as `finite_array`, or another number of coordinates.
+
+    Examples
+    --------
+    >>> space_points([[1, 2], [3, 4]], 2, "points", InputError)
+    array([[1., 2., 0.],
+           [3., 4., 0.]])
+    """
+    points = finite_array(values, ndim, name, error)
+    if points.shape[-1] == 3:
+        return points
+    if points.shape[-1] != 2:
+        raise error(f"{name}: {points.shape[-1]} coordinate(s), expected 3, or 2 for what lies in the plane z = 0")
+    points = np.concatenate([points, np.zeros((*points.shape[:-1], 1))], axis=-1)
+    points.setflags(write=False)
+    return points
+
+
 def real_array(values: ArrayLike, name: str, error: type[InputError], ndim: int | None = None) -> FloatArray:
     """Return a float64 copy of `values`, refused if they are not real numbers in a rectangular array."""
     try:

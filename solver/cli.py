@@ -58,9 +58,9 @@ def blend_command(
     from semispline.solver.io import (
         atomic_path,
         check_surface_output,
+        face_warnings,
         read_surfaces,
         to_text,
-        trim_warnings,
         write_surface,
     )
 
@@ -69,7 +69,7 @@ def blend_command(
     _check_outputs({"--out": out, "--report": report}, [a, b])
     with _progress("reading"):
         first, second = read_surfaces([a, b])
-    trims = trim_warnings((a, edge_a, first), (b, edge_b, second), strict=options.strict)
+    trims = face_warnings((a, edge_a, first), (b, edge_b, second), strict=options.strict)
     with _progress("blending"):
         from semispline.solver.blending import blend
         from semispline.solver.judge import Base
@@ -100,7 +100,7 @@ def check_command(
     ] = None,
 ) -> None:
     """Measure how an edge of A and an edge of B meet: gap, angle, jumps of curvature and its rates, and where."""
-    from semispline.solver.io import read_surfaces, trim_warnings
+    from semispline.solver.io import face_warnings, read_surfaces
     from semispline.solver.judge import Base, measure_contact
 
     _check_edges(edge_a, edge_b)
@@ -113,7 +113,7 @@ def check_command(
         contact = measure_contact(*bases, order=4)
     misses = _misses(contact, required)
     doubts = _doubts(contact, required, misses)
-    warnings = trim_warnings((a, edge_a, first), (b, edge_b, second))
+    warnings = face_warnings((a, edge_a, first), (b, edge_b, second))
     if json_file is not None:
         record = {"a": a, "edge_a": edge_a, "b": b, "edge_b": edge_b, "unit": first.unit, **contact_record(contact)}
         record["warnings"] = list(warnings)
@@ -191,13 +191,15 @@ def convert_command(
     ],
 ) -> None:
     """Write a surface in another format: exactly, or as a mesh."""
-    from semispline.solver.io import check_surface_output, read_surfaces, write_surface
+    from semispline.solver.io import approximation_warning, check_surface_output, read_surfaces, write_surface
 
     check_surface_output(target)
     _check_outputs({"OUT": target}, [source])
     with _progress("converting"):
         (loaded,) = read_surfaces([source])
         write_surface(target, loaded.surface, loaded.unit)
+    warning = approximation_warning(source, loaded)
+    print_warnings([warning] if warning else [])
 
 
 def _check_edges(edge_a: str, edge_b: str) -> None:

@@ -40,7 +40,7 @@ class ContactError(ComputationError):
 
 
 class TrimError(ComputationError):
-    """A named edge that lies outside of its trimmed face, where that was not allowed."""
+    """An edge outside of its trimmed face, or a face that is only approximated, where that was not allowed."""
 
 
 class FoldError(ComputationError):

@@ -46,6 +46,9 @@ def report_record(result: BlendResult) -> dict[str, Any]:
         "candidates": [asdict(candidate) for candidate in result.candidates],
         "energy": result.energy,
         "energy_rounding": result.energy_rounding,
+        "quadrature_error": result.quadrature_error,
+        "cures": [None if cure is None else asdict(cure) for cure in result.cures],
+        "weights": None if result.weights == (None, None) else [asdict(w) for w in result.weights if w is not None],
         "alpha2": result.alpha2,
         "beta2": result.beta2,
     }
@@ -151,12 +154,17 @@ def print_contact(contact: Contact, unit: str | None) -> None:
             allowed = "see below" if limit is None else f"{limit:.3g}"
         rows.append((name, f"{value:.3g}", allowed, in_unit, f"{place.parameter:.5g}", f"({point})"))
     _print_table(rows)
+    if contact.corresponds == "foot points":
+        typer.echo(
+            "the edges are one curve with two parametrisations: each point is compared with its foot on the other"
+        )
     for bare in contact.no_normal:
         typer.echo(f"{bare.surface.upper()}: {bare}")
 
 
 def print_result(result: BlendResult) -> None:
     """Print what a blend came to."""
+    from semispline.solver.judge import worst_inside
 
     def shape(value: LinearInV | None, bounds: tuple[LinearInV, LinearInV] | None) -> str:
         if value is None:
@@ -174,7 +182,9 @@ def print_result(result: BlendResult) -> None:
         ("layout", f"degree {result.options.degree_u} across, {result.options.middle_curves} middle curve(s)"),
         ("minimised", _objective(result)),
         ("free rows", result.objective.rows),
-        ("energy (11)", f"{result.energy:.6g}"),
+        ("energy (11)", f"{result.energy:.6g}" + _quadrature(result)),
+        *((f"weights of {name}", str(weights)) for name, weights in zip("AB", result.weights, strict=True) if weights),
+        *((f"cured {name}", cure.words) for name, cure in zip("AB", result.cures, strict=True) if cure and cure.words),
         ("alpha\u00b2", shape(result.alpha2, result.alpha2_bounds)),
         ("beta\u00b2", shape(result.beta2, result.beta2_bounds)),
         ("active bounds", ", ".join(result.active_bounds) or "none"),
@@ -195,6 +205,8 @@ def print_result(result: BlendResult) -> None:
     rows.append(("contact B", ", ".join(_figures(result.contact_b, at_b))))
     if result.seam is not None:
         rows.append(("seam", ", ".join(_figures(result.seam, None))))
+    if (worst := worst_inside(result.creases)) is not None:
+        rows.append(("inside", str(worst)))
     rows += _shape_rows(result.shape)
     _print_table(rows)
     print_warnings(result.warnings)
@@ -233,6 +245,13 @@ def _shape_rows(shape: ShapeReport) -> Iterator[tuple[str, str]]:
         yield "meets", sentence
 
 
+def _quadrature(result: BlendResult) -> str:
+    """Say how well the energy of a rational blend is known."""
+    if result.quadrature_error is None:
+        return ""
+    return f", by quadrature, relative error {result.quadrature_error / max(result.energy, 1e-300):.1e}"
+
+
 def _objective(result: BlendResult) -> str:
     objective = result.objective
     value = "" if objective.value is None else f", {objective.value:.6g}"
@@ -255,6 +274,8 @@ def _figures(contact: Contact, asked: Continuity | None) -> Iterator[str]:
             continue
         limit = f" ({allowed[name]:.2g} allowed)" if name in allowed else ""
         yield f"{words} {getattr(contact, name):.2g}{unit}{limit}"
+    if contact.corresponds == "foot points":
+        yield "by foot points"
 
 
 def print_warnings(warnings: Sequence[str]) -> None:
@@ -283,10 +304,13 @@ def print_entries(entries: Sequence[SurfaceEntry], others: Mapping[str, int]) ->
         flags = (word(entry.rational, "rational"), word(entry.trimmed, "trimmed"), closed or "-")
         rows.append((str(entry.number), entry.kind, degrees, count, *flags))
         if entry.problem:
-            notes.append(entry.problem)
+            notes.append(f"cannot be used: {entry.problem}")
+        if entry.deviation is not None:
+            off = f"up to {entry.deviation:.3g} off, in the unit of the file"
+            notes.append(f"#{entry.number} has no exact B-spline form: the surface taken for it is {off}")
     _print_table(rows)
     for note in notes:
-        typer.echo(f"cannot be used: {note}")
+        typer.echo(note)
     if others:
         typer.echo(f"cannot be used: {counted(others)}")
 

@@ -8,8 +8,10 @@ from pathlib import Path
 import pytest
 from hypothesis import settings
 
+from helpers.sweeps import IS_WHOLE, examples
+
 # The clock decides nothing here, and the same examples are tried at every run: a red test can be repeated.
-settings.register_profile("repeatable", deadline=None, derandomize=True, print_blob=True)
+settings.register_profile("repeatable", examples(), deadline=None, derandomize=True, print_blob=True)
 settings.load_profile("repeatable")
 
 NO_SHARED = "shared files not found; set SEMISPLINE_SHARED"
@@ -55,14 +57,39 @@ def pytest_collection_modifyitems(config, items):
         items[:] = reordered(items, seed)
 
 
+@pytest.fixture
+def whole():
+    """Whether all cases of a sweep are asked for, or a few of each kind."""
+    return IS_WHOLE
+
+
 def pytest_itemcollected(item):
-    """Mark the tests that ask for the folder, so that `-m shared` finds them."""
-    if "shared" in getattr(item, "fixturenames", ()):
-        item.add_marker(pytest.mark.shared)
+    """Mark the tests that ask for the folder, or for the size of their sweep, so that `-m` finds them."""
+    asked = getattr(item, "fixturenames", ())
+    for name, mark in (("shared", pytest.mark.shared), ("whole", pytest.mark.sweep)):
+        if name in asked:
+            item.add_marker(mark)
+
+
+# pytest-xdist has only its workers count what was left out, and says nothing of it.
+LEFT_OUT = pytest.StashKey()
+
+
+def pytest_deselected(items):
+    output = getattr(items[0].config, "workeroutput", {})
+    output["left_out"] = output.get("left_out", 0) + len(items)
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_testnodedown(node):
+    node.config.stash[LEFT_OUT] = getattr(node, "workeroutput", {}).get("left_out", 0)
 
 
 def pytest_terminal_summary(terminalreporter):
-    """Say aloud how many tests had no files to work on."""
+    """Say aloud how many tests were left out, and how many had no files to work on."""
+    left_out = terminalreporter.config.stash.get(LEFT_OUT, 0)
+    if left_out:
+        terminalreporter.write_line(f"{left_out} tests left out by their marks")
     skipped = [r for r in terminalreporter.stats.get("skipped", []) if NO_SHARED in str(r.longrepr)]
     if skipped:
         terminalreporter.write_line(f"{len(skipped)} tests skipped: {NO_SHARED}", yellow=True)

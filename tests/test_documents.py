@@ -1,5 +1,6 @@
 """What the documents name is there."""
 
+import importlib
 import re
 from functools import cache
 from pathlib import Path
@@ -63,6 +64,30 @@ def test_each_target_of_make_is_there(document):
     named = set(re.findall(r"(?m)^ {4}make ([\w-]+)", text)) | set(re.findall(r"`make ([\w-]+)`", text))
     assert named
     assert named <= set(re.findall(r"(?m)^([\w-]+):", read("Makefile")))
+
+
+def test_each_target_of_make_that_nothing_else_runs_is_named():
+    makefile = read("Makefile")
+    targets = set(re.findall(r"(?m)^([\w-]+):", makefile))
+    run_by_others = set(re.findall(r"(?m)^make ([\w-]+)", read(".ci/run")))
+    run_by_others |= set(re.search(r"(?m)^check: (.*)$", makefile)[1].split())
+    assert len(targets) > len(run_by_others) > 5
+    for target in targets - run_by_others - {"clean"}:
+        assert re.search(rf"(?m)^ {{4}}make {target}\b", read("CONTRIBUTING.md") + read("README.md")), target
+
+
+def test_the_aims_of_the_benchmarks_are_those_that_the_readme_states(monkeypatch):
+    monkeypatch.syspath_prepend(ROOT / "benchmarks")
+    sizes = importlib.import_module("paper_sizes")
+    table = read("README.md").partition("## How fast, how large")[2]
+    aims = [line.split(" | ")[1] for line in table.splitlines() if line.startswith("| ")]
+    for aim in (
+        f"< {1e3 * sizes.REDUCED_LIMIT:g} ms",
+        f"< {1e3 * sizes.CASADI_LIMIT:g} ms",
+        f"{sizes.SPEED_UP} times faster",
+        "{:g} times in the median, {:g} at most".format(*sizes.FAIR_LIMITS),
+    ):
+        assert aim in aims
 
 
 @pytest.mark.parametrize(

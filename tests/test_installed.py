@@ -45,7 +45,7 @@ def wheel(checkout, tmp_path_factory):
     return build("build_wheel", unpacked, out)
 
 
-@pytest.fixture(scope="module", params=["wheel", "editable"])
+@pytest.fixture(scope="module", params=["wheel", pytest.param("editable", marks=pytest.mark.slow)])
 def programs(request, tmp_path_factory):
     """Return the folder of programs of an environment with this package alone, beside what it depends on."""
     folder = tmp_path_factory.mktemp(request.param)

@@ -5,6 +5,7 @@ import importlib
 import re
 import subprocess
 import sys
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -39,7 +40,10 @@ def imports(name):
             yield from ((source, alias.name) for alias in node.names)
 
 
-IMPORTS = [(name, *found) for name in FILES for found in imports(name)]
+@cache
+def all_imports():
+    """(importing module, module, imported name or None) of each import; not made at collection."""
+    return [(name, *found) for name in FILES for found in imports(name)]
 
 
 def within(name, room):
@@ -92,7 +96,7 @@ def test_imports_run_one_way(capsys):
 def test_the_files_of_each_hall_are_seen():
     assert {name.split(".")[1] for name in FILES} == set(HALLS)
     assert {"semispline.solver.judge", "semispline.solver.blending", "semispline.papers.ledger"} <= set(FACES)
-    assert ("semispline.solver.blending.pipeline", "semispline.solver.judge", "Base") in IMPORTS
+    assert ("semispline.solver.blending.pipeline", "semispline.solver.judge", "Base") in all_imports()
 
 
 def test_imports_inside_functions_say_why_they_wait():
@@ -134,18 +138,18 @@ def test_other_rooms_enter_by_the_face_and_the_room_itself_does_not(face):
     assert [what for _, what in stub_entries(face) if f"{face}.{what}" in modules] == [], "named like a module"
     past = [
         (name, source, what)
-        for name, source, what in IMPORTS
+        for name, source, what in all_imports()
         if not within(name, face) and (source in modules or (source == face and f"{source}.{what}" in modules))
     ]
     assert past == [], "import from the face"
-    round_about = [(name, what) for name, source, what in IMPORTS if within(name, face) and source == face]
+    round_about = [(name, what) for name, source, what in all_imports() if within(name, face) and source == face]
     assert round_about == [], "inside a room import the module"
 
 
 @pytest.mark.parametrize("face", FACES)
 def test_each_name_of_a_face_exists_and_is_used(face):
     public = set(stub_entries("semispline"))
-    asked_for = {what for name, source, what in IMPORTS if source == face}
+    asked_for = {what for name, source, what in all_imports() if source == face}
     entries = stub_entries(face)
     assert [e for e in entries if not hasattr(importlib.import_module(e[0]), e[1])] == []
     assert [e for e in entries if e[1] not in asked_for and e not in public] == [], "no other room asks for it"

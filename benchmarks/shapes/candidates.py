@@ -54,6 +54,6 @@ def shape_with(problem: ShapeProblem, options: dict[str, Any]) -> dict[str, Any]
     return {
         "fairness": measure_fairness(result.surface).value,
         "points": n_u * n_v,
-        "at_bound": bool(result.active_bounds),
+        "at_bound": any(name.startswith(("alpha2", "beta2")) for name in result.active_bounds),
         "turn": measure_turn(result.surface).degrees,
     }

@@ -32,7 +32,10 @@ What is counted:
 - *waist*: least distance of opposite points over that of the straight rulings; closed rims only
 - *A · GH*: area times the integral of |grad H|², and the jumps of H; below {invisible:g} it is what the eye takes for
   flat or for a cylinder, and counts as {invisible:g}
-- *time*: processor time of one thread for the whole of `blend`, all its checks included
+- *time*: processor time of one thread for the whole of `blend`, all its checks included but the search for meetings
+  on a mesh, which runs only where it is asked for
+- *mesh search*: in how many pairs no direction shows that the fair blend meets nothing, so that a mesh was searched
+  here; its time over that of the blend
 """
 _COUNTS = {
     "refused": "refused",
@@ -167,6 +170,7 @@ def _ratios(rows: Sequence[Row]) -> str:
             for row in of
             if isinstance(row.fair, Shape) and isinstance(row.energy, Shape)
         ]
+        searches = _searches(of)
         losing = sum((row.quotient or 0) > 1 for row in of)
         shown = [f"{x:.3g}" for x in quotients(of)]
         lines.append(
@@ -179,10 +183,21 @@ def _ratios(rows: Sequence[Row]) -> str:
                 str(losing),
                 f"{np.median(times):.2f}",
                 f"{max(times):.2f}",
+                str(len(searches)),
+                *((f"{np.median(searches):.2f}", f"{max(searches):.2f}") if searches else ("–", "–")),
             )
         )
     head = ("fair over energy", "pairs", "A · GH, median", "10 %", "90 %", "above 1", "time, median", "time, most")
-    return _table(head, lines)
+    return _table((*head, "mesh searched in", "mesh search over blend, median", "mesh search, most"), lines)
+
+
+def _searches(rows: Sequence[Row]) -> list[float]:
+    """Return the time of each search on a mesh over that of the fair blend; none where no mesh was searched."""
+    return [
+        row.fair.search_seconds / row.fair.seconds
+        for row in rows
+        if isinstance(row.fair, Shape) and row.fair.search_seconds is not None
+    ]
 
 
 def _wants(rows: Sequence[Row]) -> str:

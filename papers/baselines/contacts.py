@@ -117,7 +117,7 @@ def on_common_knots(a: ContactSide, b: ContactSide) -> tuple[ContactSide, Contac
     count = len(a.surface.control_points)
     refined = [
         replace(s.surface, degree_v=same.degree, knots_v=same.knots, control_points=net)
-        for s, net in zip(sides, (same.control_points[:count], same.control_points[count:]), strict=True)
+        for s, net in zip(sides, (same.homogeneous[:count], same.homogeneous[count:]), strict=True)
     ]
     first, second = (
         replace(s, surface=r, along=basis, outwards=_outwards(r)) for s, r in zip(sides, refined, strict=True)

@@ -68,6 +68,8 @@ def _one(pieces: list[BSplineSurface]) -> BSplineSurface:
     first, second = sorted(pieces, key=lambda piece: piece.knots_v[0])
     if first.knots_v[-1] != second.knots_v[0] or not np.array_equal(first.knots_u, second.knots_u):
         raise NotApplicableError("smlibpy gave faces that do not follow each other along v")
+    if first.is_rational or second.is_rational:
+        raise NotApplicableError("smlibpy gave rational faces, expected polynomial ones to put together")
     # Continuous only, as far as the knots tell: what the faces are in fact is measured.
     knots = np.concatenate([first.knots_v[:-1], second.knots_v[second.degree_v + 1 :]])
     net = np.concatenate([first.control_points, second.control_points[:, 1:]], axis=1)

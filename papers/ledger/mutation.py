@@ -127,9 +127,15 @@ def explained(formula: Formula, same: Mapping[Any, Any], reason: str) -> Formula
     """
     wanted = formula.relation.rhs.xreplace(same)
     found = {m.text: m.relation.rhs.xreplace(same) for m in mutants(formula)}
-    return replace(
-        formula, equivalent={text: reason for text, right in found.items() if sp.cancel(right - wanted) == 0}
-    )
+    return replace(formula, equivalent={text: reason for text, right in found.items() if _same(right, wanted)})
+
+
+def _same(one: Any, other: Any) -> bool:
+    """Whether two rational expressions are the same: what differs at one rational point is not, and is told at once."""
+    letters = sorted(one.free_symbols | other.free_symbols, key=str)
+    point = {letter: sp.Rational(sp.prime(i + 5), sp.prime(i + 2)) for i, letter in enumerate(letters)}
+    apart = one.xreplace(point) - other.xreplace(point)
+    return not (apart.is_Rational and apart != 0) and bool(sp.cancel(one - other) == 0)
 
 
 def try_mutants(part: Part) -> MutationResult:

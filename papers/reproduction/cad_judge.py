@@ -7,7 +7,7 @@ from importlib.util import find_spec
 import numpy as np
 
 from semispline.solver.io import occ_surface
-from semispline.solver.judge import Base
+from semispline.solver.judge import Base, Correspondence, corresponding_points
 from semispline.solver.splines import BSplineSurface, reverse_v
 
 # Limits of the kernel's own analysis: a length, and an angle in radians.
@@ -21,7 +21,7 @@ def cad_verdict(a: Base, b: Base, *, flipped: bool = False) -> str:
     Parameters
     ----------
     a, b : Base
-        Parameters along the edges correspond affinely; semi-structured surfaces are converted exactly.
+        Points along the edges correspond as the referee has it; semi-structured surfaces are converted exactly.
     flipped : bool
         Whether b's edge runs against a's.
 
@@ -33,8 +33,10 @@ def cad_verdict(a: Base, b: Base, *, flipped: bool = False) -> str:
     if find_spec("OCP") is None:
         return "not installed"
     g0, g1, g2 = 0, 0, 0
-    for s in _SAMPLES:
-        done, first, second = _analyse(a, float(s), b, float(1 - s if flipped else s))
+    (a_0, a_1), (b_0, b_1) = a.range_along, b.range_along
+    along_b = corresponding_points(a, b, Correspondence(flipped), a_0 + _SAMPLES * (a_1 - a_0))
+    for s, t in zip(_SAMPLES.tolist(), ((along_b - b_0) / (b_1 - b_0)).tolist(), strict=True):
+        done, first, second = _analyse(a, s, b, t)
         g0, g1, g2 = g0 + done, g1 + first, g2 + second
     total = len(_SAMPLES)
     return f"touches at {g0}, G1 at {g1}, G2 at {g2} of {total} points"

@@ -41,6 +41,7 @@ class Shape:
         Degree across, middle curves, and whether alpha^2 is constant or linear along v.
     alpha2, beta2 : float, (float, float) or None
     at_bound : tuple of str
+        Bounds of alpha^2 and beta^2.
     warnings : tuple of str
     turn_degrees : float
     fairness : float
@@ -53,6 +54,9 @@ class Shape:
         Closed rims: least distance of opposite points over that of the straight rulings.
     meets : tuple of str
         What it was found to meet: itself, a, b.
+    search_seconds : float or None
+        Processor time of the search for that, on a mesh; None where none was searched, as a direction shows that it
+        meets nothing.
     points_stored, points_converted : int
         Control points of its rows, and of the B-spline surface that other programs read.
     seconds : float
@@ -72,6 +76,7 @@ class Shape:
     must_loop: bool
     waist: float | None
     meets: tuple[str, ...]
+    search_seconds: float | None
     points_stored: int
     points_converted: int
     seconds: float
@@ -135,11 +140,14 @@ def shape_of(result: BlendResult, a: Base, b: Base, seconds: float) -> Shape:
     surface, options = result.surface, result.options
     fairness, exits, waist = measure_fairness(surface), measure_exits(surface), measure_waist(surface)
     n_u, n_v = surface.to_bspline().control_points.shape[:2]
+    started = time.process_time()
+    meets = measure_meets(surface, a, b)
+    search_seconds = time.process_time() - started
     return Shape(
         layout=f"degree {options.degree_u}, {options.middle_curves} middle, {options.alpha_v} alpha",
         alpha2=result.alpha2,
         beta2=result.beta2,
-        at_bound=result.active_bounds,
+        at_bound=tuple(name for name in result.active_bounds if name.startswith(("alpha2", "beta2"))),
         warnings=result.warnings,
         turn_degrees=measure_turn(surface).degrees,
         fairness=fairness.value,
@@ -148,7 +156,8 @@ def shape_of(result: BlendResult, a: Base, b: Base, seconds: float) -> Shape:
         is_u_turn=exits.is_u_turn,
         must_loop=exits.must_loop,
         waist=None if waist is None else waist.distance / waist.of_rulings,
-        meets=tuple(sorted({meeting.what for meeting in measure_meets(surface, a, b).found})),
+        meets=tuple(sorted({meeting.what for meeting in meets.found})),
+        search_seconds=search_seconds if meets.searched else None,
         points_stored=surface.n_control_points,
         points_converted=n_u * n_v,
         seconds=seconds,

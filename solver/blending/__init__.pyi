@@ -1,5 +1,5 @@
-from .gram import thin_plate_energy as thin_plate_energy
 from .linear_alpha import LinearInV as LinearInV
+from .measured_energy import thin_plate_energy as thin_plate_energy
 from .nlp import ConstrainedProblem as ConstrainedProblem
 from .nlp import casadi_matrix as casadi_matrix
 from .nlp import constrained_problem as constrained_problem

@@ -10,16 +10,14 @@ from dataclasses import dataclass, replace
 from typing import cast
 
 from semispline.solver.blending.linear_problem import WIDER, gap_ratio, try_linear_alpha
-from semispline.solver.blending.problem import BlendProblem, make_problem
-from semispline.solver.blending.shape_parameters import Found, active_bounds, find_shape_parameters, found_fair
+from semispline.solver.blending.problem import LOWER, BlendProblem, make_problem
+from semispline.solver.blending.shape_parameters import Found, alpha_bounds, find_shape_parameters, found_fair
 from semispline.solver.blending.sides import Side
 from semispline.solver.errors import ComputationError, OptionError
 from semispline.solver.options import AlphaV, BlendOptions
 
 # A middle curve is tried where gap / |R_w| varies by this factor along a contact and alpha is constant all the same.
 MIDDLE_RATIO = 2.0
-# Where a window's lower end stops the search it begins at this part of it: bases that bend much want little alpha.
-LOWER = 1 / 2
 
 
 @dataclass(frozen=True)
@@ -87,7 +85,7 @@ def find_layout(a: Side, b: Side, said: BlendOptions) -> tuple[Layout, tuple[Can
         return best, ()
     if best is not None and first.box is None and _wants_less(best):
         best = _fairer(best, attempt(best.options, LOWER))
-    doubtful = best is None or best.found.condoned or active_bounds(best.problem, best.found)
+    doubtful = best is None or best.found.condoned or alpha_bounds(best.problem, best.found)
     if doubtful and said.degree_u == "auto" and first.degree_u == 5:
         best = _fairer(best, attempt(replace(first, degree_u=4, alpha_v="constant")))
     if best is None:
@@ -95,6 +93,7 @@ def find_layout(a: Side, b: Side, said: BlendOptions) -> tuple[Layout, tuple[Can
     best, linear = _with_linear_alpha(best, first.alpha_v)
     # What a linear alpha would follow, a middle curve follows less well; closed rims it would pull together.
     varies = best.options.alpha_v == "constant" and gap_ratio(best.problem) >= MIDDLE_RATIO
+    varies = varies and best.problem.has_constant_weights
     if said.middle_curves == "auto" and varies:
         best = cast("Layout", _fairer(best, attempt(replace(first, middle_curves=1, alpha_v="constant"))))
     return best, (*(_candidate(options, result, best) for options, result in tried), *linear)
@@ -103,7 +102,7 @@ def find_layout(a: Side, b: Side, said: BlendOptions) -> tuple[Layout, tuple[Can
 def _with_linear_alpha(constant: Layout, alpha_v: AlphaV) -> tuple[Layout, tuple[Candidate, ...]]:
     """Try alpha linear in v in the place of a constant one, and return what is taken, and the candidate if tried."""
     fair = constant.found.fair
-    if fair is None or alpha_v == "constant":
+    if fair is None or alpha_v == "constant" or not constant.problem.has_constant_weights:
         return constant, ()
     if alpha_v == "linear" and constant.problem.seam_order >= 0:
         raise OptionError("alpha_v: found linear on closed contacts, expected auto or constant")
@@ -121,7 +120,7 @@ def _with_linear_alpha(constant: Layout, alpha_v: AlphaV) -> tuple[Layout, tuple
 
 def _wants_less(layout: Layout) -> bool:
     """Tell whether the lower end of a window stopped the search; U-turns end there for want of a better shape."""
-    active = active_bounds(layout.problem, layout.found)
+    active = alpha_bounds(layout.problem, layout.found)
     return not layout.problem.exits.u_turn and any("lower" in name for name in active)
 
 

@@ -30,11 +30,12 @@ def seam_order(along: Basis, rows: FloatArray, largest: float) -> int:
     Parameters
     ----------
     along : Basis
-    rows : ndarray, shape (K, n, 3)
+    rows : ndarray, shape (K, n, 3) or (K, n, 4)
     largest : float
         Largest coordinate that the rows were given in, whatever origin they are counted from now.
     """
     order = -1
+    factor = end_factor(rows)
     rounding = _ROUNDINGS * np.finfo(float).eps * largest
     for d in range(along.degree):
         # The first and the last control point of a derivative are its values at the ends.
@@ -42,7 +43,7 @@ def seam_order(along: Basis, rows: FloatArray, largest: float) -> int:
         largest = max(float(np.abs(points).max()), float(np.ptp(rows, axis=1).max()))
         # A narrow span at an end amplifies the rounding of the control points.
         amplified = rounding * np.abs(derivative_matrix(along.degree, along.knots, d)[[0, -1]]).sum(axis=1).max()
-        if np.abs(points[0] - points[-1]).max() > SEAM_TOLERANCE * largest + amplified:
+        if np.abs(factor * points[0] - points[-1]).max() > SEAM_TOLERANCE * largest + amplified:
             break
         order = d
     return order
@@ -56,7 +57,7 @@ def reseamed(along: Basis, rows: FloatArray, shift: float, largest: float) -> tu
     Parameters
     ----------
     along : Basis
-    rows : ndarray, shape (K, n, 3)
+    rows : ndarray, shape (K, n, 3) or (K, n, 4)
     shift : float
         Between 0 and the length of the domain.
     largest : float
@@ -69,7 +70,8 @@ def reseamed(along: Basis, rows: FloatArray, shift: float, largest: float) -> tu
     rows : ndarray, shape (K, n', 3)
     """
     start, end = float(along.knots[0]), float(along.knots[-1])
-    curves = [_joined(BSplineCurve(along.degree, along.knots, row), start, end, start + shift) for row in rows]
+    factor = end_factor(rows)
+    curves = [_joined(_curve(along, row), start, end, start + shift, factor) for row in rows]
     for order in range(seam_order(along, rows, largest), 0, -1):
         try:
             # Each row on its own would do, but all must keep one knot vector.
@@ -78,16 +80,27 @@ def reseamed(along: Basis, rows: FloatArray, shift: float, largest: float) -> tu
             continue
         curves = smooth
         break
-    return replace(along, knots=curves[0].knots), np.stack([curve.control_points for curve in curves])
+    return replace(along, knots=curves[0].knots), np.stack([curve.homogeneous for curve in curves])
 
 
-def _joined(curve: BSplineCurve, start: float, end: float, at: float) -> BSplineCurve:
+def end_factor(rows: FloatArray) -> float:
+    """Return by which factor homogeneous rows are larger at their end than at their start; 1 for three columns."""
+    return 1.0 if rows.shape[2] == 3 else float(rows[0, -1, 3] / rows[0, 0, 3])
+
+
+def _curve(along: Basis, row: FloatArray) -> BSplineCurve:
+    if row.shape[1] == 3:
+        return BSplineCurve(along.degree, along.knots, row)
+    return BSplineCurve(along.degree, along.knots, row[:, :3] / row[:, 3:], row[:, 3])
+
+
+def _joined(curve: BSplineCurve, start: float, end: float, at: float, factor: float) -> BSplineCurve:
     """Return the piece from `at` to the end, followed by the piece from the start, joined continuously."""
     first, second = restrict_curve(curve, at, end), restrict_curve(curve, start, at)
     p = curve.degree
     knots = np.concatenate([first.knots[:-1], second.knots[p + 1 :] + (end - start)])
-    points = np.concatenate([first.control_points, second.control_points[1:]])
-    return BSplineCurve(p, knots, points)
+    points = np.concatenate([first.homogeneous, factor * second.homogeneous[1:]])
+    return _curve(Basis(p, knots), points)
 
 
 def periodic_points(basis: Basis, order: int) -> SparseMatrix:

@@ -8,7 +8,6 @@ import numpy as np
 
 from semispline.solver.arrays import FloatArray
 from semispline.solver.blending.sides import Side
-from semispline.solver.splines import basis_matrix
 
 # Beyond it an arc grows without limit.
 _MOST_TURN = np.radians(150.0)
@@ -48,9 +47,9 @@ def measure_exits(a: Side, b: Side) -> Exits:
     start, end = a.along.knots[0], a.along.knots[-1]
     curves, exits = [], []
     for side in (a, b):
-        values = basis_matrix(side.along.degree, side.along.knots, start + (end - start) * _PLACES)
-        curves.append(values @ side.rows[0])
-        exits.append(_unit(values @ (side.rows[0] - side.rows[1])))
+        points, inwards = side.edge(start + (end - start) * _PLACES)
+        curves.append(points)
+        exits.append(_unit(-inwards))
     chord = _unit(curves[1] - curves[0])
     cosines = np.concatenate([np.sum(exits[0] * chord, axis=1), -np.sum(exits[1] * chord, axis=1)])
     sines = np.concatenate([np.linalg.norm(np.cross(exit_, chord), axis=1) for exit_ in exits])

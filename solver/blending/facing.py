@@ -9,7 +9,7 @@ import numpy as np
 from semispline.solver.arrays import FloatArray
 from semispline.solver.blending.sides import Side
 from semispline.solver.errors import EdgeError
-from semispline.solver.splines import basis_matrix, breakpoints, derivative_points, gauss_rule, merge_breakpoints
+from semispline.solver.splines import breakpoints, gauss_rule, merge_breakpoints
 
 # Lengths below this fraction of the model count as zero.
 VANISHING = 1e-10
@@ -41,12 +41,10 @@ def measure_facing(a: Side, b: Side) -> Facing:
     domain = float(breaks[-1] - breaks[0])
     curves, lengths, speeds = [], [], []
     for name, side in (("a", a), ("b", b)):
-        degree, knots = side.along.degree, side.along.knots
-        values = basis_matrix(degree, knots, x)
-        along = basis_matrix(degree - 1, knots[1:-1], x) @ derivative_points(degree, knots, side.rows[0])
-        across = values @ (side.rows[1] - side.rows[0]) * (side.degree / side.spans[0])
-        curves.append(values @ side.rows[0])
-        lengths.append(float(weights @ np.linalg.norm(along, axis=1)))
+        points, inwards = side.edge(x)
+        across = inwards * (side.degree / side.spans[0])
+        curves.append(points)
+        lengths.append(float(weights @ np.linalg.norm(side.tangents(x), axis=1)))
         speeds.append(float(weights @ np.linalg.norm(across, axis=1)) / domain)
         if lengths[-1] < VANISHING:
             raise EdgeError(f"base {name}: the contact curve has zero length; choose another edge")
@@ -59,7 +57,7 @@ def measure_facing(a: Side, b: Side) -> Facing:
 def _coincide(a: Side, b: Side) -> bool:
     start, end = a.along.knots[0], a.along.knots[-1]
     x = start + (end - start) * np.arange(129) / 128
-    curves = [basis_matrix(side.along.degree, side.along.knots, x) @ side.rows[0] for side in (a, b)]
+    curves = [side.edge(x)[0] for side in (a, b)]
     return _largest_distance(curves[0], curves[1], b) < VANISHING
 
 
@@ -68,15 +66,13 @@ def _largest_distance(points: FloatArray, samples: FloatArray, side: Side) -> fl
 
     From the nearest sample on, Gauss-Newton on the parameter finds the foot; far curves need no more than samples.
     """
-    degree, knots = side.along.degree, side.along.knots
+    knots = side.along.knots
     distances = np.linalg.norm(points[:, None] - samples, axis=2)
     if distances.min(axis=1).max() > np.linalg.norm(np.diff(samples, axis=0), axis=1).max():
         return float(distances.min(axis=1).max())
     x = knots[0] + (knots[-1] - knots[0]) * distances.argmin(axis=1) / (len(samples) - 1)
-    slopes = derivative_points(degree, knots, side.rows[0])
     for _ in range(8):
-        off = basis_matrix(degree, knots, x) @ side.rows[0] - points
-        slope = basis_matrix(degree - 1, knots[1:-1], x) @ slopes
+        off, slope = side.edge(x)[0] - points, side.tangents(x)
         squared = np.maximum(np.sum(slope**2, axis=1), np.finfo(float).tiny)
         x = np.clip(x - np.sum(off * slope, axis=1) / squared, knots[0], knots[-1])
-    return float(np.linalg.norm(basis_matrix(degree, knots, x) @ side.rows[0] - points, axis=1).max())
+    return float(np.linalg.norm(side.edge(x)[0] - points, axis=1).max())

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from semispline.solver.arrays import FloatArray
 from semispline.solver.blending.fairness_table import LOOPS, FairnessTable
-from semispline.solver.blending.problem import BlendProblem
+from semispline.solver.blending.problem import BlendProblem, second_weight
 from semispline.solver.blending.projected import Point
 
 # What is flat or a cylinder has J = 0 for every alpha: then the nearest to the arc's is taken. J of a visible shape is
@@ -84,15 +84,10 @@ def make_unknowns(problem: BlendProblem, exponents: list[FloatArray]) -> Unknown
         logarithmic[p2] = False
         # Where it is tied to alpha^2, and where contact needs none, no monomial has it.
         if powers[:, -1].any():
-            most = problem.exits.arc / _second_weight(problem, side)
+            # A change by an arc's length.
+            most = problem.exits.arc / second_weight(problem.form.u.degree, problem.contacts[side][2])
             low[p2], high[p2] = -most, most
     return Unknowns(table, logarithmic, (ends_of[0], ends_of[1]), low, high, wanted)
-
-
-def _second_weight(problem: BlendProblem, side: int) -> float:
-    """Return by how much p2 moves the third row of a contact, in |R_w|; that may be an arc's length."""
-    degree, (first, second) = problem.form.u.degree, problem.contacts[side][2][:2]
-    return first * second / (degree * (degree - 1))
 
 
 class FairObjective:
@@ -137,6 +132,13 @@ class FairObjective:
         """Return a place on another grid, with the model of the Hessian that is known."""
         value, gradient = self(point.x)
         return Point(point.x, value, gradient, point.hessian)
+
+    def refusal(self, y: FloatArray) -> str:
+        """Return why a place has no value: "fold" or "loop"; nothing where it has one."""
+        measured = self.table.measure(self.unknowns.monomials(y[None])[0])
+        if int(measured.refused[0]) == LOOPS:
+            return "loop"
+        return "" if measured.refused[0] == 0 and np.isfinite(measured.values[0]) else "fold"
 
     def j(self, y: FloatArray, value: float) -> float:
         """Return J of a candidate whose value is known."""

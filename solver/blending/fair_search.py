@@ -74,6 +74,10 @@ class FairSolution:
         What is no longer refused, because every candidate was: "folds", then "loops" too.
     at_end : (bool, bool)
         Whether alpha^2 and beta^2 are at an end of their window.
+    p2_ends : (str, str)
+        "lower" or "upper" where a searched p2 is at that end of its range, else empty.
+    stopped_by : str
+        "fold" or "loop" where the last step was stopped by one, which is refused; the slope is then not small.
     settled : bool
         A finer grid changed J at the end by at most 1 %.
     """
@@ -87,6 +91,8 @@ class FairSolution:
     refused: dict[str, int]
     condoned: tuple[str, ...] = ()
     at_end: tuple[bool, bool] = (False, False)
+    p2_ends: tuple[str, str] = ("", "")
+    stopped_by: str = ""
     settled: bool = True
 
 
@@ -194,7 +200,9 @@ def _solved(problem: BlendProblem, refusable: tuple[int, ...], known: FairSoluti
     if found is None:
         raise _AllRefusedError({name: refused[name] + finer(_FINER[0]).refused[name] for name in refused})
     solution = _solution(problem, unknowns, found[0], search, sum(objective.tried for objective in grids), refused)
-    return replace(solution, settled=found[1])
+    # The finest of the grids that refuse the place says why.
+    shut = [] if found[0].shut is None else [objective.refusal(found[0].shut) for objective in reversed(grids)]
+    return replace(solution, settled=found[1], stopped_by=next(filter(None, shut), ""))
 
 
 def _scan(objective: FairObjective, cells: int) -> tuple[FloatArray, FloatArray]:
@@ -290,6 +298,7 @@ def _solution(
         tried,
         refused,
         at_end=(_is_at_end(unknowns, found.x, 0), _is_at_end(unknowns, found.x, 1)),
+        p2_ends=(_p2_end(unknowns, found.x, 0), _p2_end(unknowns, found.x, 1)),
     )
 
 
@@ -298,6 +307,15 @@ def _is_at_end(unknowns: Unknowns, y: FloatArray, side: int) -> bool:
     low, high = unknowns.low[ends], unknowns.high[ends]
     # 1e-9: what `active_bounds` takes for rounding.
     return bool(np.any((low < high) & ((y[ends] <= low + 1e-9) | (y[ends] >= high - 1e-9))))
+
+
+def _p2_end(unknowns: Unknowns, y: FloatArray, side: int) -> str:
+    p2 = unknowns.ends[side].stop
+    low, high = unknowns.low[p2], unknowns.high[p2]
+    if low == high:
+        return ""
+    # 1e-9: as of alpha^2.
+    return "lower" * bool(y[p2] <= low + 1e-9) or "upper" * bool(y[p2] >= high - 1e-9)
 
 
 def _side_values(problem: BlendProblem, unknowns: Unknowns, y: FloatArray, side: int) -> tuple[LinearInV, LinearInV]:

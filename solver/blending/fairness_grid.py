@@ -64,12 +64,15 @@ class Across:
     weights : ndarray, shape (G,)
     bases : tuple of ndarray
         For each order by v, derivatives of the orders by u that go with it, one below the other.
+    values : ndarray, shape (G, n)
+        The basis functions themselves.
     ends : ndarray, shape (2, n)
         First derivatives at both ends.
     """
 
     weights: FloatArray
     bases: tuple[FloatArray, ...]
+    values: FloatArray
     ends: FloatArray
 
 
@@ -145,9 +148,10 @@ def _across(degree: int, buffer: bytes, nodes: int) -> Across:
     ends = basis.knots[[0, -1]][None]
     at_ends = _values(basis, identity, ends, first_on_spans(basis, breaks)[[0, -1]])[1].T
     bases = tuple(np.ascontiguousarray(np.concatenate([tables[i] for i in orders])) for orders in ORDERS_U)
-    for table in (*bases, at_ends):
+    values = np.ascontiguousarray(tables[0])
+    for table in (*bases, values, at_ends):
         table.setflags(write=False)
-    return Across(weights.T.ravel(), bases, at_ends)
+    return Across(weights.T.ravel(), bases, values, at_ends)
 
 
 def derivatives_along(points: list[FloatArray], rows: tuple[Basis, ...], v: Along) -> FloatArray:

@@ -2,7 +2,7 @@
 
 Control points are polynomials in the shape parameters: P = sum_k m_k Z_k. What the sections v = const take of each Z_k
 is tabled once, so that a blend costs a product of its monomials with the table and one with the bases in u; its
-gradient one reverse sweep.
+gradient one reverse sweep. Homogeneous control points are in no way different, but for a quotient in between.
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ from semispline.solver.blending.fairness_grid import HIGHEST, ORDERS_U, Across, 
 from semispline.solver.blending.problem import BlendProblem
 from semispline.solver.blending.refusals import LOOP, folds, needed_turn, turned
 from semispline.solver.generated.fairness_numpy import fairness, fairness_pullback
+from semispline.solver.generated.quotient_numpy import quotient, quotient_pullback
 
 # Orders of the nine derivatives by u and v, in the order of the generated program.
 _ORDERS = ((1, 0), (0, 1), (2, 0), (1, 1), (0, 2), (3, 0), (2, 1), (1, 2), (0, 3))
@@ -55,7 +56,7 @@ class FairnessTable:
     Parameters
     ----------
     problem : BlendProblem
-    layers : ndarray, shape (K, N, 3)
+    layers : ndarray, shape (K, N, 3 or 4)
         Z_k.
     across : Across
     along : Along
@@ -78,12 +79,13 @@ class FairnessTable:
         self._refusable = refusable
         self.least_cosine = least_cosine
         offsets = problem.form.offsets
-        count, rows = len(layers), len(problem.rows)
-        points = [layers[:, low:high].transpose(0, 2, 1).reshape(3 * count, -1) for low, high in pairwise(offsets)]
+        count, rows, d = len(layers), len(problem.rows), layers.shape[2]
+        points = [layers[:, low:high].transpose(0, 2, 1).reshape(d * count, -1) for low, high in pairwise(offsets)]
         table = derivatives_along(points, problem.rows, along)
-        self._shape = 3, rows, table.shape[-1]
-        # Shape (K, 4, 3, rows, columns), flat but for the first.
-        table = table.reshape(HIGHEST + 1, count, 3, rows, -1).swapaxes(0, 1)
+        self._is_rational = d == 4
+        self._shape = d, rows, table.shape[-1]
+        # Shape (K, 4, d, rows, columns), flat but for the first.
+        table = table.reshape(HIGHEST + 1, count, d, rows, -1).swapaxes(0, 1)
         self._table = np.ascontiguousarray(table).reshape(count, -1)
         self._nodes, self._lines = along.nodes.size, along.lines.shape[1]
         # Weights of the nodes; what belongs to lines has none.
@@ -119,32 +121,42 @@ class FairnessTable:
     def _measure(self, monomials: FloatArray) -> Measured:
         rows, planes = self._planes(monomials)
         with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+            if self._is_rational:
+                planes = list(quotient(planes))
             return Measured(self._parts(fairness(planes)).value, self._refused(rows, planes))
 
     def _with_gradient(self, monomials: FloatArray) -> tuple[Measured, FloatArray]:
         rows, planes = self._planes(monomials)
         with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+            if self._is_rational:
+                found, through_quotient = quotient_pullback(planes)
+                planes = list(found)
             outputs, pullback = fairness_pullback(planes)
             parts = self._parts(outputs)
-            gradient = self._gradient(pullback(self._seeds(parts)))
+            adjoints = pullback(self._seeds(parts))
+            gradient = self._gradient(through_quotient(adjoints) if self._is_rational else adjoints)
         return Measured(parts.value, self._refused(rows, planes)), gradient
 
     def _planes(self, monomials: FloatArray) -> tuple[FloatArray, list[FloatArray]]:
-        """Return derivatives by v of the rows, and those of the surface.
+        """Return derivatives by v of the rows, and those of the surface, the homogeneous surface itself first.
 
         Returns
         -------
-        ndarray, shape (4, 3, rows, B, columns)
+        ndarray, shape (4, d, rows, B, columns)
         list of ndarray, each of shape (nodes in u * B * columns,)
             Contiguous: this halves the time.
         """
+        d = self._shape[0]
         rows = (monomials @ self._table).reshape(len(monomials), HIGHEST + 1, *self._shape)
         rows = np.ascontiguousarray(rows.transpose(1, 2, 3, 0, 4))
         grids = []
         for bases, orders, row in zip(self.across.bases, ORDERS_U, rows, strict=True):
-            columns = row.reshape(3, self._shape[1], -1)
-            grids.append((bases @ columns).reshape(3, len(orders), -1))
-        return rows, [grids[j][c, ORDERS_U[j].index(i)] for i, j in _ORDERS for c in range(3)]
+            columns = row.reshape(d, self._shape[1], -1)
+            grids.append((bases @ columns).reshape(d, len(orders), -1))
+        planes = [grids[j][c, ORDERS_U[j].index(i)] for i, j in _ORDERS for c in range(d)]
+        if self._is_rational:
+            planes = [*(self.across.values @ rows[0].reshape(d, self._shape[1], -1)).reshape(d, -1), *planes]
+        return rows, planes
 
     def _parts(self, outputs: FloatArray) -> _Parts:
         rough, element, mean, speed = outputs.reshape(len(outputs), len(self.across.weights), -1, self._shape[-1])
@@ -178,11 +190,15 @@ class FairnessTable:
         return seeds.reshape(4, -1)
 
     def _gradient(self, adjoints: FloatArray) -> FloatArray:
-        adjoints = adjoints.reshape(len(_ORDERS), 3, len(self.across.weights), -1)
-        rows = np.empty((HIGHEST + 1, 3, self._shape[1], adjoints.shape[-1]))
+        d = self._shape[0]
+        adjoints = adjoints.reshape(-1, d, len(self.across.weights), adjoints.shape[-1] // len(self.across.weights))
+        of_values, adjoints = adjoints[: -len(_ORDERS)], adjoints[-len(_ORDERS) :]
+        rows = np.empty((HIGHEST + 1, d, self._shape[1], adjoints.shape[-1]))
         for j, (bases, orders) in enumerate(zip(self.across.bases, ORDERS_U, strict=True)):
             chosen = adjoints[[_ORDERS.index((i, j)) for i in orders]].swapaxes(0, 1)
-            rows[j] = bases.T @ chosen.reshape(3, -1, chosen.shape[-1])
+            rows[j] = bases.T @ chosen.reshape(d, -1, chosen.shape[-1])
+        for values in of_values:
+            rows[0] += self.across.values.T @ values
         by_candidate = rows.reshape(*rows.shape[:3], -1, self._shape[-1]).transpose(3, 0, 1, 2, 4)
         return np.asarray(by_candidate.reshape(len(by_candidate), -1) @ self._table.T)
 
@@ -195,12 +211,15 @@ class FairnessTable:
         normal = np.stack([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx])
         normal = normal.reshape(shape)[..., : self._nodes].swapaxes(1, 2)
         along = rows[0, ..., : self._nodes].transpose(0, 2, 1, 3)
-        ends = self.across.ends @ along
+        ends, borders = self.across.ends @ along, along[..., [0, -1], :]
+        if self._is_rational:
+            borders, weights = borders[:3] / borders[3], borders[3]
+            ends = (ends[:3] - ends[3] * borders) / weights
         inside = np.stack(planes[:3]).reshape(shape)[..., : self._nodes].swapaxes(1, 2)
         turns = turned(np.concatenate([ends[..., :1, :], inside, ends[..., 1:, :]], axis=-2))
         needed = self._needed
         if needed is None:
-            needed = needed_turn(ends[..., 0, :], ends[..., 1, :], along[..., -1, :] - along[..., 0, :])
+            needed = needed_turn(ends[..., 0, :], ends[..., 1, :], borders[..., 1, :] - borders[..., 0, :])
             if self._ends_given:
                 self._needed = needed = needed[:1]
         loops = np.any(turns - needed > LOOP, axis=-1)

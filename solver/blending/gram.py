@@ -14,13 +14,10 @@ import numpy as np
 import scipy.sparse as sp
 
 from semispline.solver.arrays import FloatArray, SparseMatrix
-from semispline.solver.errors import InputError
 from semispline.solver.generated.energy_numpy import gram_block
 from semispline.solver.splines import (
     Basis,
-    BSplineSurface,
     Samples,
-    Surface,
     breakpoints,
     derivative_matrix,
     derivative_points,
@@ -363,33 +360,3 @@ def _sums(degree: int, knots: FloatArray, points: FloatArray, order: int) -> Flo
     # Differences of alternating signs are sums, and alternate again.
     signs = (-1.0) ** np.arange(len(points)).reshape((-1,) + (1,) * (points.ndim - 1))
     return np.abs(derivative_points(degree, knots, signs * points, order))
-
-
-def thin_plate_energy(surface: Surface) -> float:
-    """Return the thin-plate energy (11), span by span; exact up to rounding.
-
-    It is a sum of squares of second derivatives, which keeps its accuracy where the quadratic form p'Hp cancels.
-
-    Raises
-    ------
-    InputError
-        The surface is rational: its energy is no polynomial integral.
-
-    Source: equation (11).
-
-    Examples
-    --------
-    >>> saddle = BSplineSurface(1, 1, [0, 0, 1, 1], [0, 0, 1, 1], [[[0, 0, 0], [0, 1, 0]], [[1, 0, 0], [1, 1, 1]]])
-    >>> round(thin_plate_energy(saddle), 12)
-    2.0
-    """
-    u = Basis(surface.degree_u, surface.knots_u)
-    if isinstance(surface, BSplineSurface):
-        if surface.weights is not None:
-            raise InputError("surface: rational, but the thin-plate energy is computed for polynomial surfaces only")
-        form = EnergyForm(u, (Basis(surface.degree_v, surface.knots_v),) * len(surface.control_points))
-        points = surface.control_points.reshape(1, -1, 3)
-    else:
-        form = EnergyForm(u, tuple(Basis(c.degree, c.knots) for c in surface.control_curves))
-        points = np.concatenate([c.control_points for c in surface.control_curves])[None]
-    return float(form.products(points)[0, 0])

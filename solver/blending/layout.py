@@ -26,6 +26,7 @@ from semispline.solver.splines import (
 MOST_MIDDLE_CURVES = 1000
 # Below it second derivatives in u vanish: creases across would cost nothing, and free rows would be undetermined.
 _LEAST_DEGREE = 2
+_CUBIC = 3
 
 
 def blend_u_basis(
@@ -106,10 +107,11 @@ def middle_bases(
     OptionError
         Given knots that are not one list of inner knots for each middle curve.
     """
+    degree = middle_degree(a, b)
     if isinstance(given, str):
         if closed:
             merged = merge_breakpoints(breakpoints(a.knots), breakpoints(b.knots))
-            return [Basis(a.degree, clamped(merged[1:-1], a.degree, merged[0], merged[-1]))] * count
+            return [Basis(degree, clamped(merged[1:-1], degree, merged[0], merged[-1]))] * count
         return [middle_basis(a, b) if given == "paper" else fourth_basis(a, b)] * count
     if len(given) != count:
         raise OptionError(
@@ -120,8 +122,13 @@ def middle_bases(
     for i, inner in enumerate(given):
         name = f"middle_knots[{i}]"
         values = np.sort(finite_array(inner, 1, name, OptionError))
-        bases.append(Basis(a.degree, _clamped_inside(values, a.degree, start, end, name)))
+        bases.append(Basis(degree, _clamped_inside(values, degree, start, end, name)))
     return bases
+
+
+def middle_degree(a: Basis, b: Basis) -> int:
+    """Return the degree of middle curves: that of both contacts, or else the lower one, but cubic at least."""
+    return a.degree if a.degree == b.degree else max(_CUBIC, min(a.degree, b.degree))
 
 
 def _clamped_inside(inner: FloatArray, degree: int, start: float, end: float, name: str) -> FloatArray:
@@ -171,7 +178,8 @@ def middle_basis(a: Basis, b: Basis) -> Basis:
     array([0.5])
     """
     merged = merge_breakpoints(breakpoints(a.knots), breakpoints(b.knots))
-    return Basis(a.degree, clamped(_paired_means(merged[1:-1]), a.degree, merged[0], merged[-1]))
+    degree = middle_degree(a, b)
+    return Basis(degree, clamped(_paired_means(merged[1:-1]), degree, merged[0], merged[-1]))
 
 
 def fourth_basis(a: Basis, b: Basis) -> Basis:
@@ -189,7 +197,8 @@ def fourth_basis(a: Basis, b: Basis) -> Basis:
     array([0.2, 0.8])
     """
     merged = merge_breakpoints(breakpoints(a.knots), breakpoints(b.knots))
-    return Basis(a.degree, clamped(_every_fourth(merged[1:-1]), a.degree, merged[0], merged[-1]))
+    degree = middle_degree(a, b)
+    return Basis(degree, clamped(_every_fourth(merged[1:-1]), degree, merged[0], merged[-1]))
 
 
 def _every_fourth(v: FloatArray) -> FloatArray:

@@ -83,7 +83,7 @@ def linear_rows(
     exponents: FloatArray, monomials: FloatArray, along: Basis, a: LinearInV, p2: LinearInV
 ) -> list[FloatArray]:
     """Return the rows for given alpha^2 and p2, each a number or linear in v: row r over `raised_basis(along, r)`."""
-    total = [np.zeros((raised_basis(along, r).size, 3)) for r in range(monomials.shape[1])]
+    total = [np.zeros((raised_basis(along, r).size, monomials.shape[3])) for r in range(monomials.shape[1])]
     for (i, j), rows in zip(exponents.astype(int).tolist(), monomials, strict=True):
         steps = [_ends(a)] * i + [_ends(p2)] * j
         if j == 0 or any(_ends(p2)):

@@ -11,7 +11,7 @@ from semispline.solver.blending.fair_search import FairSolution, solve_fair
 from semispline.solver.blending.gram import EnergyForm
 from semispline.solver.blending.linear_alpha import LinearEnds, raised_basis
 from semispline.solver.blending.problem import BlendProblem
-from semispline.solver.splines import Basis, basis_matrix
+from semispline.solver.splines import Basis
 
 # It is tried where gap / |R_w| varies by this factor along a contact, and taken where the measure falls to this share:
 # it has half as many control points again, and 2.3 times as many in an ordinary B-spline.
@@ -70,10 +70,9 @@ def _natural_along(problem: BlendProblem, index: int) -> FloatArray:
     sides = problem.a, problem.b
     basis: Basis = sides[0].along
     v = basis.knots[0] + (basis.knots[-1] - basis.knots[0]) * _PLACES
-    values = [basis_matrix(side.along.degree, side.along.knots, v) for side in sides]
-    gap = np.linalg.norm(values[0] @ sides[0].rows[0] - values[1] @ sides[1].rows[0], axis=1)
-    side = sides[index]
-    across = values[index] @ (side.rows[1] - side.rows[0]) * (side.degree / side.spans[0])
+    edges = [side.edge(v) for side in sides]
+    gap = np.linalg.norm(edges[0][0] - edges[1][0], axis=1)
+    across = edges[index][1] * (sides[index].degree / sides[index].spans[0])
     return np.asarray(gap / np.maximum(np.linalg.norm(across, axis=1), np.finfo(float).tiny))
 
 

@@ -112,6 +112,7 @@ def constrained_problem(problem: BlendProblem, energy_scale: float = np.inf) -> 
 
     The objective is the energy over that of the start, or over `energy_scale` where that is less.
     """
+    problem.check_polynomial("constrained problem")
     n = problem.form.offsets[-1]
     free = [name for name, is_free in zip(("alpha", "beta"), problem.free, strict=True) if is_free]
     x = ca.MX.sym("x", 3 * n + len(free))

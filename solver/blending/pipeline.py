@@ -10,13 +10,13 @@ import numpy as np
 
 from semispline.solver.arrays import FloatArray, require
 from semispline.solver.blending.candidates import Layout, find_layout
-from semispline.solver.blending.gram import thin_plate_energy
+from semispline.solver.blending.measured_energy import measure_energy
 from semispline.solver.blending.problem import BlendProblem, make_problem
 from semispline.solver.blending.result import BlendResult, Objective
 from semispline.solver.blending.rounding import measure_energy_rounding, rounding_warning
 from semispline.solver.blending.shape_parameters import Found, active_bounds, admissible, bulged
 from semispline.solver.blending.shape_warnings import shape_warnings
-from semispline.solver.blending.sides import Side, make_side, matched_sides
+from semispline.solver.blending.sides import Side, make_side, matched_sides, of_one_degree
 from semispline.solver.blending.warnings import (
     bare_places,
     bound_warnings,
@@ -45,7 +45,7 @@ from semispline.solver.judge import (
 )
 from semispline.solver.options import BlendOptions, Continuity, Flip, named_options
 from semispline.solver.proof import check_certificate
-from semispline.solver.splines import BSplineCurve, SemiStructuredSurface
+from semispline.solver.splines import BSplineCurve, SemiStructuredSurface, euclidean
 
 # Blends in two directions whose normals turn alike to this many degrees turn equally.
 _EQUAL_TURNS = 1e-3
@@ -62,7 +62,7 @@ def blend(
     Parameters
     ----------
     a, b : Base
-        Polynomial B-spline surfaces and the edges to be joined. Neither is changed.
+        B-spline surfaces, rational or not, and the edges to be joined. Neither is changed.
     options : BlendOptions, optional
         Or its fields by name: ``blend(a, b, continuity="G1", middle_curves=0)``.
 
@@ -104,7 +104,8 @@ def blend(
     chosen, problem = layout.options, layout.problem
     found = bulged(layout.found, chosen.bulges)
     surface = _surface(problem, found, sides, frame)
-    energy = thin_plate_energy(surface)
+    measured = measure_energy(surface)
+    energy = measured.value
     seconds = time.perf_counter() - started
     rounding = measure_energy_rounding(problem, found, surface, frame, energy)
     # What came out, judged by code that knows nothing of the above.
@@ -116,7 +117,7 @@ def blend(
     creases = measure_creases(surface)
     shape = _measured_shape(surface, a, b, chosen)
     warnings = (
-        shape_warnings(shape, regularity, creases, is_fair=found.fairness is not None)
+        shape_warnings(shape, regularity, creases, is_fair=found.fairness is not None, cures=problem.cures)
         + bound_warnings(problem, layout.found)
         + (fairness_warning(found.fairness, shape.fairness.value) if chosen.bulges == (1.0, 1.0) else ())
         + rounding_warning(rounding, surface, energy)
@@ -132,6 +133,9 @@ def blend(
         method=found.method,
         energy=energy,
         energy_rounding=rounding.energy,
+        quadrature_error=measured.quadrature_error,
+        weights=problem.weights,
+        cures=problem.cures,
         alpha2=None if sides[0].order == 0 else found.a,
         beta2=None if sides[1].order == 0 else found.b,
         alpha2_bounds=admissible(problem, 0),
@@ -220,6 +224,8 @@ def place_sides(a: Base, b: Base, options: BlendOptions, flip: Flip) -> PlacedSi
     # Far from the origin each operation would round by the distance: there is but one rounding, of the result.
     origin = local_origin(a.surface, b.surface)
     local = matched_sides(sides[0].moved(origin, 1.0), sides[1].moved(origin, 1.0), matched)
+    if not local[0].is_rational:
+        local = of_one_degree(*local)
     sides = local[0].moved(-origin, 1.0), local[1].moved(-origin, 1.0)
     centre, size = _frame(*sides)
     scaled = local[0].moved(centre - origin, size), local[1].moved(centre - origin, size)
@@ -237,9 +243,11 @@ def _objective(layout: Layout, energy: float, size: float) -> Objective:
         rows = f"thin plate, v_scale {options.v_scale}, within {excess:.0e} of the least for these shape parameters"
     if found.fairness is not None:
         return Objective("fairness", found.fairness, found.known, rows)
-    value = energy if options.v_scale == "paper" else float(problem.form.products(points[None])[0, 0]) * size**2
+    value = energy if options.v_scale == "paper" else float(problem.energy_products(points[None])[0, 0]) * size**2
     if found.proven_gap is not None:
         known = f"proved least over the box to {found.proven_gap:.1e} of itself"
+        if problem.is_rational:
+            known += ", as a quadrature form"
     elif any(problem.free):
         known = f"a local minimum that method {found.method} found"
     elif excess is None:
@@ -286,7 +294,7 @@ def _strictly(result: BlendResult, strict: bool) -> BlendResult:
 
 def _frame(a: Side, b: Side) -> tuple[FloatArray, float]:
     """Centre and size of the control points that contact reads: the solve works in coordinates of size 1."""
-    points = np.concatenate([a.rows.reshape(-1, 3), b.rows.reshape(-1, 3)])
+    points = np.concatenate([side.points() for side in (a, b)])
     low, high = points.min(axis=0), points.max(axis=0)
     return (low + high) / 2, float((high - low).max()) or 1.0
 
@@ -296,12 +304,17 @@ def _surface(
 ) -> SemiStructuredSurface:
     """Set the prescribed rows anew from alpha and beta, solve for the free ones, and go back to model units."""
     centre, size = frame
-    points = problem.control_points(found.a, found.b, found.p2) * size + centre
+    points = problem.control_points(found.a, found.b, found.p2)
+    if problem.is_rational:
+        points[:, :3] = points[:, :3] * size + points[:, 3:] * centre
+    else:
+        points = points * size + centre
     pieces = np.split(points, problem.form.offsets[1:-1])
-    # The contact curves themselves are the bases' own, to the last bit.
-    pieces[0], pieces[-1] = sides[0].rows[0], sides[1].rows[0]
+    if not (problem.is_rational or problem.is_cured):
+        # The contact curves themselves are the bases' own, to the last bit.
+        pieces[0], pieces[-1] = sides[0].rows[0], sides[1].rows[0]
     curves = [
-        BSplineCurve(row.degree, row.knots, piece, name=f"control_curves[{i}]")
+        BSplineCurve(row.degree, row.knots, *euclidean(piece), name=f"control_curves[{i}]")
         for i, (row, piece) in enumerate(zip(problem.rows, pieces, strict=True))
     ]
     return SemiStructuredSurface(problem.form.u.degree, problem.form.u.knots, tuple(curves))

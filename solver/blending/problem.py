@@ -16,9 +16,18 @@ from semispline.solver.blending.exits import Exits, measure_exits
 from semispline.solver.blending.facing import VANISHING, measure_facing
 from semispline.solver.blending.free_system import FreeSystem
 from semispline.solver.blending.gram import EnergyForm
+from semispline.solver.blending.ladder import Window
 from semispline.solver.blending.layout import blend_u_basis, middle_bases
 from semispline.solver.blending.linear_alpha import LinearEnds, LinearInV, linear_rows, monomials_of_ends, raised_basis
-from semispline.solver.blending.sides import Side
+from semispline.solver.blending.rational_energy import RationalForm, RationalSystem, free_weights
+from semispline.solver.blending.representative import (
+    Cure,
+    Representative,
+    needs_constant_weights,
+    smooth_along,
+    tame_side,
+)
+from semispline.solver.blending.sides import Side, of_one_degree
 from semispline.solver.errors import EdgeError, OptionError
 from semispline.solver.options import Alpha, BlendOptions
 from semispline.solver.splines import (
@@ -31,6 +40,8 @@ from semispline.solver.splines import (
 ENERGY_BOX, WINDOW, WIDE_WINDOW = (1 / 8, 8.0), (1 / 4, 4.0), (1 / 4, 16.0)
 # For G3 and G4; above it lie loops that are fair.
 LOW_WINDOW = (1 / 8, 2.0)
+# Where a window's lower end stops the search it begins at this part of it: bases that bend much want little alpha.
+LOWER = 1 / 2
 # p2 = factor * p1 for G3 and G4: it lowers J by a quarter and by two fifths against zero.
 P2_FACTORS = {3: 3.0, 4: 4.0}
 
@@ -86,6 +97,10 @@ class BlendProblem:
     p2 : (SecondParameter, SecondParameter)
     linear : pair of LinearEnds or None
         Where alpha^2 or beta^2 is linear in v; the rows of that contact then rise in degree.
+    weights : pair of Representative or None
+        Of rational sides, what their rows are built on.
+    cures : pair of Cure or None
+        What was done to make the rows of each side smooth along.
     """
 
     form: EnergyForm
@@ -98,6 +113,39 @@ class BlendProblem:
     exits: Exits
     p2: tuple[SecondParameter, SecondParameter] = (SecondParameter(), SecondParameter())
     linear: tuple[LinearEnds | None, LinearEnds | None] = (None, None)
+    weights: tuple[Representative | None, Representative | None] = (None, None)
+    cures: tuple[Cure | None, Cure | None] = (None, None)
+
+    @property
+    def is_cured(self) -> bool:
+        """Whether the rows of a side are not the base's own."""
+        return any(cure is not None and cure.name != "none" for cure in self.cures)
+
+    @property
+    def has_constant_weights(self) -> bool:
+        """Whether no weight depends on alpha: where there are none, too."""
+        return all(found is None or found.constant for found in self.weights)
+
+    @property
+    def is_rational(self) -> bool:
+        """Whether control points are homogeneous: (w x, w y, w z, w)."""
+        return self.a.is_rational
+
+    def check_polynomial(self, found: str) -> None:
+        """Refuse rational blends where the solver knows polynomial ones only.
+
+        Raises
+        ------
+        OptionError
+            Beginning with what was found.
+        """
+        if self.is_rational:
+            raise OptionError(f"{found} with a rational base, expected method reduced: the others are for polynomials")
+
+    @property
+    def dimension(self) -> int:
+        """Columns of control points: 3, or 4 where they are homogeneous."""
+        return int(self.a.rows.shape[2])
 
     @property
     def free(self) -> tuple[bool, bool]:
@@ -126,7 +174,7 @@ class BlendProblem:
         U, p = self.form.u.knots, self.form.u.degree
         m = len(self.form.rows) - 1
         return tuple(
-            (side, rows, tuple(distances[p + 1 : p + 1 + max(2, side.order)].tolist()))
+            (side, rows, _first_spans(p, distances, side.order))
             for side, rows, distances in (
                 (self.a, range(m + 1), U - U[0]),
                 (self.b, range(m, -1, -1), U[-1] - U[::-1]),
@@ -150,21 +198,53 @@ class BlendProblem:
         return min(basis.degree - 1 if middle else self.seam_order, basis.size // 2 - 1)
 
     @cached_property
-    def free_system(self) -> FreeSystem:
+    def free_system(self) -> FreeSystem | RationalSystem:
         """What has to be solved for the free rows."""
-        return FreeSystem(self.form, self.free_rows, [self.seam_order_of(i) for i in self.free_rows])
+        plain = self.plain_system
+        if not self.is_rational or plain.size == 0:
+            return plain
+        return RationalSystem(self.rational_form, plain, self._seam_orders)
+
+    @cached_property
+    def plain_system(self) -> FreeSystem:
+        """The same for polynomial blends, and for the weights of rational ones."""
+        return FreeSystem(self.form, self.free_rows, self._seam_orders)
+
+    @property
+    def _seam_orders(self) -> list[int]:
+        return [self.seam_order_of(i) for i in self.free_rows]
+
+    @cached_property
+    def rational_form(self) -> RationalForm:
+        """The energy of rational blends; where something is free their weights do not depend on alpha."""
+        given = self.given
+        points = self._contact_rows(*given, (self.p2[0].at(given[0]), self.p2[1].at(given[1])))
+        form = self.form
+        return RationalForm(form.u, form.rows, free_weights(self.plain_system, form.u, form.rows, points[:, 3]))
+
+    def energy_products(self, points: FloatArray) -> FloatArray:
+        """Return the energy products of blends, control points of shape (K, N, 3 or 4): shape (K, K).
+
+        Of rational ones the weights are those of `rational_form`.
+        """
+        if not self.is_rational:
+            return self.form.products(points)
+        return self.rational_form.products(points[..., :3])
 
     def control_points(self, a: LinearInV, b: LinearInV, p2: tuple[LinearInV, LinearInV] | None = None) -> FloatArray:
-        """Return p for alpha^2, beta^2 and p2, shape (N, 3): one linear solve for the free rows, of least energy.
+        """Return p for alpha^2, beta^2 and p2, shape (N, 3 or 4): one linear solve for the free rows, of least energy.
 
         Where alpha^2 is linear in v, it and p2 may be pairs of end values.
         """
-        points = np.zeros((self.form.offsets[-1], 3))
-        seconds = p2 or (self.p2[0].at(a), self.p2[1].at(b))
-        for index, (value, second) in enumerate(zip((a, b), seconds, strict=True)):
+        return self.completed(self._contact_rows(a, b, p2 or (self.p2[0].at(a), self.p2[1].at(b))))
+
+    def _contact_rows(self, a: LinearInV, b: LinearInV, p2: tuple[LinearInV, LinearInV]) -> FloatArray:
+        """Return p with nothing but the prescribed rows."""
+        points = np.zeros((self.form.offsets[-1], self.dimension))
+        for index, (value, second) in enumerate(zip((a, b), p2, strict=True)):
             for row, prescribed in zip(self.contacts[index][1], self._prescribed(index, value, second), strict=False):
                 points[self.form.offsets[row] : self.form.offsets[row + 1]] = prescribed
-        return self.completed(points)
+        return points
 
     def _prescribed(self, index: int, value: LinearInV, second: LinearInV) -> Sequence[FloatArray]:
         """Return the rows that a contact prescribes."""
@@ -174,12 +254,12 @@ class BlendProblem:
         return list(side.contact_rows(cast("float", value), degree, spans, cast("float", second)))
 
     def shape_layers(self) -> tuple[FloatArray, list[FloatArray]]:
-        """Return Z_k of P = sum_k m_k Z_k, shape (K, N, 3), with alpha^2 and p2 in units of their natural sizes.
+        """Return Z_k of P = sum_k m_k Z_k, shape (K, N, 3 or 4), with alpha^2 and p2 in units of their natural sizes.
 
         The monomials are 1, then those of side a without 1, then those of side b; their exponents come with them.
         """
         offsets, degree = self.form.offsets, self.form.u.degree
-        layers = [np.zeros((offsets[-1], 3))]
+        layers = [np.zeros((offsets[-1], self.dimension))]
         exponents = []
         for index, (side, rows, spans) in enumerate(self.contacts):
             unit, linear, second = self.natural[index], self.linear[index], self.p2[index]
@@ -195,7 +275,7 @@ class BlendProblem:
             exponents.append(powers)
             for k, (power, monomial) in enumerate(zip(powers, monomials, strict=True)):
                 if k:
-                    layers.append(np.zeros((offsets[-1], 3)))
+                    layers.append(np.zeros((offsets[-1], self.dimension)))
                 for row, values in zip(rows, monomial, strict=False):
                     layers[0 if k == 0 else -1][offsets[row] : offsets[row + 1]] = values * unit ** power.sum()
         completed = self.completed(np.concatenate(layers, axis=1))
@@ -210,6 +290,11 @@ class BlendProblem:
             The stationarity system is singular or too ill-conditioned to be trusted.
         """
         return self.free_system.completed(points)
+
+
+def _first_spans(degree: int, distances: FloatArray, order: int) -> tuple[float, ...]:
+    """Return the distances of the nearest knots of U, from those of all knots from the contact."""
+    return tuple(distances[degree + 1 : degree + 1 + max(2, order)].tolist())
 
 
 def _without_p2(exponents: FloatArray, monomials: FloatArray, second: SecondParameter) -> tuple[FloatArray, FloatArray]:
@@ -243,6 +328,12 @@ def make_problem(a: Side, b: Side, options: BlendOptions) -> BlendProblem:
     u = blend_u_basis(cast("int", options.degree_u), middle_curves, options.u_knots, (a.order, b.order))
     if any(side.has_shape_parameter and x == "fair" for side, x in zip((a, b), options.alphas, strict=True)):
         _check_bends_continuously(u)
+    (a, cure_a), (b, cure_b) = smooth_along(a, b, options)
+    weights: tuple[Representative | None, Representative | None] = (None, None)
+    if a.is_rational:
+        (a, b), weights = _represented(a, b, u, options)
+    elif any(cure is not None and cure.name != "none" for cure in (cure_a, cure_b)):
+        a, b = of_one_degree(a, b)
     orders = [seam_order(side.along, side.rows[: side.order + 1], side.largest) for side in (a, b)]
     closed = min(orders)
     given = cast("Any", options.middle_knots)
@@ -284,7 +375,40 @@ def make_problem(a: Side, b: Side, options: BlendOptions) -> BlendProblem:
         exits,
         (p2_a, p2_b),
         (linear_a, linear_b),
+        weights,
+        (cure_a, cure_b),
     )
+
+
+def _represented(
+    a: Side, b: Side, u: Basis, options: BlendOptions
+) -> tuple[tuple[Side, Side], tuple[Representative, Representative]]:
+    """Return rational sides with weights that are positive whatever alpha and p2 may be."""
+    means, exits = measure_facing(a, b), measure_exits(a, b)
+    found = []
+    for index, side in enumerate((a, b)):
+        distances = u.knots - u.knots[0] if index == 0 else u.knots[-1] - u.knots[::-1]
+        spans = _first_spans(u.degree, distances, side.order)
+        if needs_constant_weights(options):
+            window = None
+        elif not side.has_shape_parameter:
+            window = Window((1.0, 1.0))
+        else:
+            natural = means.gap / _checked_speed(side, means.cross_speeds[index], "ab"[index])
+            low, high = _bounds(natural, side.order, options.alphas[index], options.box, exits)
+            second, bulge = _second(side, index, options), options.bulges[index]
+            most = exits.arc / second_weight(u.degree, spans) * natural * max(1.0, bulge**2) if second.free else 0.0
+            # Where it stops a search, a window is made to begin lower.
+            ends = min(LOWER, bulge) * low if low < high else min(1.0, bulge) * low, max(1.0, bulge) * high
+            window = Window(ends, (second.value - most, second.value + most), second.per_a)
+        found.append(tame_side(side, u, spans, window))
+    (tame_a, of_a), (tame_b, of_b) = found
+    return (tame_a, tame_b), (of_a, of_b)
+
+
+def second_weight(degree: int, spans: tuple[float, ...]) -> float:
+    """Return by how much p2 moves the third row of a contact, in |R_w|."""
+    return spans[0] * spans[1] / (degree * (degree - 1))
 
 
 def _check_bends_continuously(u: Basis) -> None:

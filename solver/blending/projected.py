@@ -20,12 +20,16 @@ _LEAST_CONVEX = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class Point:
-    """A place, value and gradient there, and a model of the Hessian."""
+    """A place, value and gradient there, and a model of the Hessian.
+
+    Where a way down ended because its steps led to where there is no value, `shut` is such a place.
+    """
 
     x: FloatArray
     value: float
     gradient: FloatArray
     hessian: FloatArray
+    shut: FloatArray | None = None
 
 
 def descend(
@@ -59,7 +63,7 @@ def descend(
     >>> abs(end.x).round(6)
     array([1., 0.])
     """
-    at = replace(start, hessian=convex(start.hessian))
+    at = replace(start, hessian=convex(start.hessian), shut=None)
     for _ in range(_MOST_STEPS):
         free = unbound(at.x, at.gradient, low, high)
         if not len(free) or np.abs(at.gradient[free]).max() <= tolerance:
@@ -67,9 +71,9 @@ def descend(
         step = np.zeros_like(at.x)
         step[free] = -np.linalg.solve(at.hessian[np.ix_(free, free)], at.gradient[free])
         step /= max(1.0, float((np.abs(step) / longest).max()))
-        following = _stepped(function, at, step, low, high)
+        following, shut = _stepped(function, at, step, low, high)
         if following is None:
-            break
+            return replace(at, shut=shut)
         at = following
     return at
 
@@ -93,8 +97,11 @@ def _stepped(
     step: FloatArray,
     low: FloatArray,
     high: FloatArray,
-) -> Point | None:
-    """Return the next place, the model of its Hessian updated; none where no part of the step goes down."""
+) -> tuple[Point | None, FloatArray | None]:
+    """Return the next place, the model of its Hessian updated; none where no part of the step goes down.
+
+    Beside it where there was no value, if that is why there is none.
+    """
     refusals = 0
     for _ in range(_MOST_HALVINGS):
         x = np.clip(at.x + step, low, high)
@@ -103,11 +110,11 @@ def _stepped(
         # Where there is no value the way is shut: what is left of a step is not worth many trials.
         refusals += not np.isfinite(value)
         if refusals > _MOST_REFUSALS:
-            return None
+            return None, x
         if value <= at.value + _ENOUGH * float(at.gradient @ moved):
-            return Point(x, value, gradient, _updated(at.hessian, moved, gradient - at.gradient))
+            return Point(x, value, gradient, _updated(at.hessian, moved, gradient - at.gradient)), None
         step = step / 2
-    return None
+    return None, None
 
 
 def _updated(hessian: FloatArray, moved: FloatArray, change: FloatArray) -> FloatArray:

@@ -46,7 +46,7 @@ def shape_polynomial(problem: BlendProblem, centre: tuple[float, float]) -> Floa
     Source: generated from `semispline.derivations.shape`.
     """
     points = _monomial_points(problem, centre)
-    products = problem.form.products(points)
+    products = problem.energy_products(points)
     powers = [side.order * is_free for side, is_free in zip((problem.a, problem.b), problem.free, strict=True)]
     function = getattr(shape_numpy, f"shape_polynomial_{powers[0]}{powers[1]}")
     table = np.asarray(function(*products[np.triu_indices(len(products))]))
@@ -61,14 +61,14 @@ def shape_polynomial(problem: BlendProblem, centre: tuple[float, float]) -> Floa
 def _monomial_points(problem: BlendProblem, centre: tuple[float, float]) -> FloatArray:
     """Return the control points Z_k of P = sum_k m_k Z_k, m = (1, x, .., y, ..), shape (K, N, 3)."""
     offsets, degree = problem.form.offsets, problem.form.u.degree
-    layers = [np.zeros((offsets[-1], 3))]
+    layers = [np.zeros((offsets[-1], problem.dimension))]
     for (side, rows, spans), at, unit, is_free in zip(
         problem.contacts, centre, problem.natural, problem.free, strict=True
     ):
         powers = side.row_powers(at, degree, spans) if is_free else [side.contact_rows(at, degree, spans)]
         for k, power in enumerate(powers):
             if k:
-                layers.append(np.zeros((offsets[-1], 3)))
+                layers.append(np.zeros((offsets[-1], problem.dimension)))
             for row, values in zip(rows, power, strict=False):
                 layers[0 if k == 0 else -1][offsets[row] : offsets[row + 1]] = values * unit**k
     completed = problem.completed(np.concatenate(layers, axis=1))
@@ -98,7 +98,7 @@ def solve_reduced(problem: BlendProblem) -> ReducedSolution:
         certificate = least_point(table, _box(problem, centre), PROOF_TOLERANCE / 4 * scale)
         found = _moved(problem, centre, certificate.point)
         points = problem.control_points(*found)
-        energy = float(problem.form.products(points[None])[0, 0])
+        energy = float(problem.energy_products(points[None])[0, 0])
         gap = (energy - certificate.bound) / max(energy, ZERO_ENERGY * terms)
         # A bound above the energy would mean that the polynomial is not the energy.
         if abs(gap) <= PROOF_TOLERANCE:

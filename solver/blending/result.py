@@ -7,6 +7,7 @@ from functools import cached_property
 
 from semispline.solver.blending.candidates import Candidate
 from semispline.solver.blending.linear_alpha import LinearInV
+from semispline.solver.blending.representative import Cure, Representative
 from semispline.solver.judge import Contact, Crease, Regularity, ShapeReport
 from semispline.solver.options import BlendOptions, Continuity
 from semispline.solver.proof import Certificate
@@ -58,6 +59,13 @@ class BlendResult:
     energy_rounding : float
         By how much rounding of the control points may change it, at most; above 0.001 of the energy `warnings` say so
         and nothing is proved.
+    quadrature_error : float or None
+        Of `energy`, where the blend is rational: how far a rule of half the nodes is off.
+    weights : pair of Representative or None
+        How the weights of a rational base were made tame; None for a polynomial one.
+    cures : pair of Cure or None
+        What was done to the rows of each base so that knots where they are only continuous do not crease the blend,
+        and where it is creased all the same; parameters along then correspond by foot points.
     alpha2, beta2 : float, (float, float) or None
         Of (2.1) and (2.2), the bases in their own parameters, the bulge included; 1 for C1 and C2, None for C0 and G0.
         Where linear in v the pair of values at its start and its end.
@@ -65,7 +73,7 @@ class BlendResult:
         The admissible box; None where there is no such unknown. Method bfgs does not know it: see `warnings`. Pairs of
         end values where linear in v.
     active_bounds : tuple of str
-        Which bounds stopped the search, such as "alpha2 lower", or were passed by it (method bfgs).
+        Which bounds stopped the search, such as "alpha2 lower" or "p2 of a upper", or were passed by it (method bfgs).
     flipped : bool
         Whether edge b runs against edge a.
     seam_shift : float
@@ -115,6 +123,9 @@ class BlendResult:
     method: str
     energy: float
     energy_rounding: float
+    quadrature_error: float | None
+    weights: tuple[Representative | None, Representative | None]
+    cures: tuple[Cure | None, Cure | None]
     alpha2: LinearInV | None
     beta2: LinearInV | None
     alpha2_bounds: tuple[LinearInV, LinearInV] | None

@@ -58,7 +58,7 @@ def measure_energy_rounding(
     """
     centre, size = frame
     points = np.concatenate([curve.control_points for curve in surface.control_curves])
-    sides = np.concatenate([side.rows.reshape(-1, 3) for side in (problem.a, problem.b)]) * size + centre
+    sides = np.concatenate([side.points() for side in (problem.a, problem.b)]) * size + centre
     errors = np.finfo(float).eps * np.maximum(np.abs(points).max(axis=0), np.abs(sides).max(axis=0))
     own = problem.form if problem.form.rows is problem.rows else EnergyForm(problem.form.u, problem.rows)
     # Of the surface as it is, and with v stretched as in the energy that is minimised; vv, uv, uu stretch unlike.

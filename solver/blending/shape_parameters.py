@@ -59,6 +59,7 @@ def find_shape_parameters(problem: BlendProblem, options: BlendOptions) -> Found
         objective = f"thin plate (11), v_scale {options.v_scale}, by alpha^2 and beta^2"
         certificate = replace(proved.certificate, objective=objective)
         return Found(proved.a, proved.b, method, certificate=certificate, proven_gap=proved.gap)
+    problem.check_polynomial(f"method: found {method}")
     if method == "casadi":
         from semispline.solver.blending.nlp import solve_constrained
 
@@ -84,6 +85,7 @@ def found_fair(fair: FairSolution, method: str) -> Found:
         f"least of {fair.tried} evaluations from several starts, not proved; slope at the end {fair.slope:.1e}, "
         f"refused: {fair.refused['folds']} candidates for folds, {fair.refused['loops']} for loops"
         + (f"; these were all, so that {' and '.join(fair.condoned)} were let pass" if fair.condoned else "")
+        + (f"; it ended beside a {fair.stopped_by}, which is refused" if fair.stopped_by else "")
         + ("" if fair.settled else "; not settled: a finer grid still changes it by more than 1 %")
     )
     return Found(fair.a, fair.b, method, fair.tried, p2=fair.p2, known=known, fair=fair)
@@ -115,7 +117,18 @@ def admissible(problem: BlendProblem, index: int) -> tuple[LinearInV, LinearInV]
 
 
 def active_bounds(problem: BlendProblem, found: Found) -> tuple[str, ...]:
-    """Return which bounds stopped the search, such as "alpha2 lower"."""
+    """Return which bounds stopped the search, such as "alpha2 lower" or "p2 of a upper"."""
+    return (*alpha_bounds(problem, found), *(f"p2 of {side} {which}" for side, which in p2_ends(found)))
+
+
+def p2_ends(found: Found) -> list[tuple[str, str]]:
+    """Return side and end, "lower" or "upper", of each p2 that ended at an end of its own range."""
+    ends = () if found.fair is None else found.fair.p2_ends
+    return [(side, which) for side, which in zip("ab", ends, strict=False) if which]
+
+
+def alpha_bounds(problem: BlendProblem, found: Found) -> tuple[str, ...]:
+    """Return which bounds of alpha^2 and beta^2 stopped the search: these, not p2's, decide what else is tried."""
     active = []
     for name, value, low, high in shape_unknowns(problem, found):
         # 1e-9: what the ways there and back between alpha and alpha^2 in natural units may round.

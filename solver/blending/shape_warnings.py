@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
+from semispline.solver.blending.representative import Cure
 from semispline.solver.judge import FOLD_DEGREES, LOOP_DEGREES, Crease, Regularity, ShapeReport
 
 # A normal that turns this far within one window is well on its way to a fold.
@@ -17,11 +18,18 @@ WAIST = 0.5
 # A normal that turns this far across a knot of full multiplicity, in degrees, makes a crease: well below what CAD
 # systems take for tangent (0.01 and more), well above the rounding of a surface that is smooth there.
 SHARP = 1e-3
+# Jumps of curvature above this, relative, are seen in reflections; CAD systems take less for continuous.
+BENT = 0.02
 _NAMED = 5
 
 
 def shape_warnings(
-    shape: ShapeReport, regularity: Regularity, creases: Sequence[Crease], *, is_fair: bool = False
+    shape: ShapeReport,
+    regularity: Regularity,
+    creases: Sequence[Crease],
+    *,
+    is_fair: bool = False,
+    cures: tuple[Cure | None, Cure | None] = (None, None),
 ) -> tuple[str, ...]:
     """Return a warning for each thing that a surface modeller would not keep without a look.
 
@@ -33,7 +41,8 @@ def shape_warnings(
         *_pinches(shape, regularity, fair),
         *_exits(shape, fair),
         *_meetings(shape),
-        *_creased([crease for crease in creases if crease.angle_degrees >= SHARP]),
+        *_creased([crease for crease in creases if crease.angle_degrees >= SHARP], cures),
+        *_bent([crease for crease in creases if crease.angle_degrees < SHARP]),
     )
 
 
@@ -96,7 +105,7 @@ def _meetings(shape: ShapeReport) -> Iterator[str]:
         yield f"the blend meets itself or its bases in {more} more place(s)"
 
 
-def _creased(sharp: Sequence[Crease]) -> Iterator[str]:
+def _creased(sharp: Sequence[Crease], cures: tuple[Cure | None, Cure | None]) -> Iterator[str]:
     if not sharp:
         return
     places = ", ".join(f"{crease.parameter} = {crease.at:g}" for crease in sharp[:_NAMED])
@@ -106,6 +115,21 @@ def _creased(sharp: Sequence[Crease]) -> Iterator[str]:
         f"the blend is creased at {places}{more}, by up to {sharpest:.2g} degrees: knots of full multiplicity, "
         "across which the energy counts nothing; try bases without such knots"
     )
+    for name, cure in zip("ab", cures, strict=True):
+        for jump in () if cure is None else cure.left:
+            if jump.degrees >= SHARP:
+                yield f"base {name} itself is creased by {jump.degrees:.2g} degrees at v = {jump.v:.6g}: split it there"
+
+
+def _bent(smooth: Sequence[Crease]) -> Iterator[str]:
+    """Say where the normal does not turn, but curvature jumps inside."""
+    bent = [crease for crease in smooth if crease.curvature_jump_relative > BENT]
+    if bent:
+        worst = max(bent, key=lambda crease: crease.curvature_jump_relative)
+        yield (
+            f"G1 inside: curvature jumps by up to {100 * worst.curvature_jump_relative:.2g} % at {worst.parameter} = "
+            f"{worst.at:g}, from a knot line where a base is no smoother; split the base there, or make it G2"
+        )
 
 
 def _point(point: tuple[float, float, float]) -> str:

@@ -13,7 +13,19 @@ from semispline.solver.errors import EdgeError
 from semispline.solver.generated import contact_numpy, rows_numpy, shape_numpy
 from semispline.solver.judge import Base, Correspondence
 from semispline.solver.options import ROWS_PER_SIDE, Continuity
-from semispline.solver.splines import Basis, BSplineCurve, BSplineSurface, affine_knots, elevate_curve, reversed_knots
+from semispline.solver.splines import (
+    Basis,
+    BSplineSurface,
+    affine_knots,
+    basis_matrix,
+    combined,
+    derivative_points,
+    elevated_knots,
+    elevation_matrix,
+    euclidean,
+    reversed_knots,
+    same_width,
+)
 
 # Across a span beside the edge below this fraction of the base, derivatives are made of rounding.
 _LEAST_SPAN = 1e-10
@@ -33,8 +45,9 @@ class Side:
         order of contact, two at least.
     along : Basis
         Degree and knots along the edge, in the parameter v of the blend.
-    rows : ndarray, shape (order + 1 or 3, n, 3)
+    rows : ndarray, shape (order + 1 or 3, n, 3 or 4)
         Control rows from the edge inwards; a base with fewer rows repeats its last one, which contact does not read.
+        Where one of the bases is rational they have four columns, (om x, om y, om z, om).
     largest : float
         Largest coordinate of the rows as they were given, in today's units: their rounding goes with it.
     """
@@ -45,6 +58,11 @@ class Side:
     along: Basis
     rows: FloatArray
     largest: float
+
+    @property
+    def is_rational(self) -> bool:
+        """Whether the rows are homogeneous."""
+        return bool(self.rows.shape[2] == 4)
 
     @property
     def order(self) -> int:
@@ -98,7 +116,7 @@ class Side:
         Returns
         -------
         exponents : ndarray, shape (M, 2)
-        rows : ndarray, shape (M, order + 1, n, 3)
+        rows : ndarray, shape (M, order + 1, n, 3 or 4)
 
         Source: generated from `semispline.derivations.contact`.
         """
@@ -113,9 +131,29 @@ class Side:
         rows = np.einsum("ik,mkd,dj,jnc->minc", weights, tables, derivatives, self.rows[: n + 1])
         return exponents, np.asarray(rows)
 
+    def edge(self, v: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return points of the contact curve, and derivatives across times spans[0] / degree, each of shape (K, 3)."""
+        values = basis_matrix(self.along.degree, self.along.knots, v)
+        point, inwards = values @ self.rows[0], values @ (self.rows[1] - self.rows[0])
+        return euclidean(point)[0], _first_derivative(point, inwards)
+
+    def tangents(self, v: FloatArray) -> FloatArray:
+        """Return derivatives of the contact curve along it, shape (K, 3)."""
+        degree, knots = self.along.degree, self.along.knots
+        slope = basis_matrix(degree - 1, knots[1:-1], v) @ derivative_points(degree, knots, self.rows[0])
+        return _first_derivative(basis_matrix(degree, knots, v) @ self.rows[0], np.asarray(slope))
+
     def moved(self, centre: FloatArray, size: float) -> Side:
         """Return the same side in coordinates (x - centre) / size."""
-        return replace(self, rows=(self.rows - centre) / size, largest=self.largest / size)
+        if not self.is_rational:
+            return replace(self, rows=(self.rows - centre) / size, largest=self.largest / size)
+        points, weights = self.rows[..., :3], self.rows[..., 3:]
+        rows = np.concatenate([(points - weights * centre) / size, weights], axis=2)
+        return replace(self, rows=rows, largest=self.largest / size)
+
+    def points(self) -> FloatArray:
+        """Return the points that contact reads, shape (K, 3); of a rational side those of the edge."""
+        return euclidean(self.rows[0])[0] if self.is_rational else self.rows.reshape(-1, 3)
 
 
 def make_side(base: Base, continuity: Continuity, name: str = "base") -> Side:
@@ -124,18 +162,13 @@ def make_side(base: Base, continuity: Continuity, name: str = "base") -> Side:
     Raises
     ------
     EdgeError
-        The base is rational or semi-structured, has too many knots along the edge that count as one, or next to no
+        The base is semi-structured, has too many knots along the edge that count as one, or next to no
         span beside an edge where derivatives are asked for.
     """
     surface = base.surface
     if not isinstance(surface, BSplineSurface):
         raise EdgeError(f"{name}: a semi-structured surface, expected a B-spline surface; convert it with to_bspline()")
-    # Equal weights cancel: such a surface is polynomial.
-    if surface.weights is not None and np.ptp(surface.weights) > 0:
-        raise EdgeError(
-            f"{name}: rational, but only polynomial B-spline surfaces are blended; approximate it without weights"
-        )
-    net = surface.control_points
+    net = surface.homogeneous
     across, along = (surface.degree_u, surface.knots_u), (surface.degree_v, surface.knots_v)
     if base.edge[0] == "v":
         net, across, along = net.transpose(1, 0, 2), along, across
@@ -148,7 +181,10 @@ def make_side(base: Base, continuity: Continuity, name: str = "base") -> Side:
     order = int(continuity[1])
     rows = net[[min(i, len(net) - 1) for i in range(max(ROWS_PER_SIDE, order + 1))]]
     spans = tuple(float(steps[min(degree + i, len(steps) - 1)]) for i in range(1, max(2, order) + 1))
-    side = Side(continuity, degree, spans, Basis(*along), rows, float(np.abs(rows).max()))
+    # Equal weights cancel: to this order such a surface is polynomial.
+    if rows.shape[2] == 4 and np.ptp(rows[: max(order, 1) + 1, :, 3]) == 0:
+        rows = rows[..., :3] / rows[0, 0, 3]
+    side = Side(continuity, degree, spans, Basis(*along), rows, float(np.abs(euclidean(rows)[0]).max()))
     if side.order > 0 and spans[0] < _LEAST_SPAN * steps[-1]:
         raise EdgeError(
             f"{name}: knots_{base.edge[0]} leave a span of {spans[0]:.1e} beside the edge, expected at least "
@@ -159,10 +195,12 @@ def make_side(base: Base, continuity: Continuity, name: str = "base") -> Side:
 
 
 def matched_sides(a: Side, b: Side, matched: Correspondence) -> tuple[Side, Side]:
-    """Bring both sides to one parameter v, that of a, and to one degree along it; all exact up to rounding.
+    """Bring both sides to one parameter v, that of a; all exact up to rounding.
 
-    Side b is re-seamed and turned round as `matched` says; the lower degree is elevated.
+    Side b is re-seamed and turned round as `matched` says. Where one of them is rational both have four columns.
     """
+    if a.is_rational or b.is_rational:
+        a, b = (replace(side, rows=rows) for side, rows in zip((a, b), same_width(a.rows, b.rows), strict=True))
     along, rows = b.along, b.rows
     if matched.shift:
         along, rows = reseamed(along, rows, matched.shift, b.largest)
@@ -170,15 +208,25 @@ def matched_sides(a: Side, b: Side, matched: Correspondence) -> tuple[Side, Side
     if matched.flipped:
         rows, knots = rows[:, ::-1], reversed_knots(knots)
     knots = affine_knots(knots, float(a.along.knots[0]), float(a.along.knots[-1]))
-    b = replace(b, along=Basis(along.degree, knots), rows=rows)
+    return a, replace(b, along=Basis(along.degree, knots), rows=rows)
+
+
+def of_one_degree(a: Side, b: Side) -> tuple[Side, Side]:
+    """Return both sides with the higher of their degrees along the contact; exact up to rounding."""
     degree = max(a.along.degree, b.along.degree)
     return _elevated(a, degree), _elevated(b, degree)
 
 
 def _elevated(side: Side, degree: int) -> Side:
-    if side.along.degree == degree:
+    own, knots = side.along.degree, side.along.knots
+    if own == degree:
         return side
-    curves = [elevate_curve(BSplineCurve(side.along.degree, side.along.knots, row), degree) for row in side.rows]
-    return replace(
-        side, along=Basis(degree, curves[0].knots), rows=np.stack([curve.control_points for curve in curves])
-    )
+    matrix = elevation_matrix(own, knots, degree)
+    rows = np.stack([combined(matrix, row) for row in side.rows])
+    return replace(side, along=Basis(degree, elevated_knots(knots, degree - own)), rows=rows)
+
+
+def _first_derivative(point: FloatArray, slope: FloatArray) -> FloatArray:
+    """Return the derivative of the quotient: (X' - W' X / W) / W."""
+    position, weight = euclidean(point)
+    return slope if weight is None else np.asarray((slope[:, :3] - slope[:, 3:] * position) / weight[:, None])

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from typing import cast
+
 import numpy as np
 
 from semispline.solver.blending.problem import BlendProblem
-from semispline.solver.blending.shape_parameters import Found, active_bounds, shape_unknowns
+from semispline.solver.blending.shape_parameters import Found, alpha_bounds, p2_ends, shape_unknowns
 from semispline.solver.judge import Base, Contact, NoNormal, doubtful, is_closed, model_size
 from semispline.solver.options import Continuity
 from semispline.solver.splines import SemiStructuredSurface, bounding_box
@@ -23,7 +25,7 @@ _UNTOLD, _FLAT = 0.1, 0.1
 def bound_warnings(problem: BlendProblem, found: Found) -> tuple[str, ...]:
     """Return a warning for each shape parameter that a bound stopped, or that is beyond: method bfgs knows none."""
     warnings = []
-    active = active_bounds(problem, found)
+    active = alpha_bounds(problem, found)
     for name, value, low, high in shape_unknowns(problem, found):
         if not low <= value <= high:
             warnings.append(
@@ -36,6 +38,12 @@ def bound_warnings(problem: BlendProblem, found: Found) -> tuple[str, ...]:
                 f"{name} is at its {which} bound {bound:.3g}: beyond it there may be a better blend; widen the box, or "
                 "set alpha"
             )
+    for side, which in p2_ends(found):
+        value = cast("float", found.p2["ab".index(side)])
+        warnings.append(
+            f"p2 of side {side} at its {which} end {value:.3g}, where it moves the third row of the blend along base "
+            f"{side} by the length of an arc: beyond it there may be a better blend; set p2, or alpha"
+        )
     return tuple(warnings)
 
 

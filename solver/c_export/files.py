@@ -9,6 +9,7 @@ linear in the number of control points, and nothing is factorised, allocated or 
 from __future__ import annotations
 
 import tempfile
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -24,17 +25,18 @@ from semispline.solver.blending import (
     state_problem,
 )
 from semispline.solver.c_export.readme import readme
-from semispline.solver.errors import ComputationError
+from semispline.solver.errors import ComputationError, InputError
 from semispline.solver.io import (
     check_folder,
     check_outputs,
+    face_warnings,
     read_problem,
     read_surfaces,
     split_spec,
-    trim_warnings,
     write_texts,
 )
 from semispline.solver.judge import Base
+from semispline.solver.splines import Surface
 
 NAME = "blend"
 # Errors of the control points of exported code, as a fraction of the size: of the energy that is the square.
@@ -72,9 +74,10 @@ def write_c(folder: str | Path, problem_file: str | Path) -> tuple[list[Path], t
     loaded = read_surfaces(specs) if specs else []
     read = iter(loaded)
     surfaces = [next(read).surface if isinstance(base, str) else base for base in bases]
+    _require_polynomial(surfaces)
     edges: list[Any] = [stored.edge_a, stored.edge_b]
     named = [edge for base, edge in zip(bases, edges, strict=True) if isinstance(base, str)]
-    warnings = trim_warnings(*zip(specs, named, loaded, strict=True), strict=stored.options.strict)
+    warnings = face_warnings(*zip(specs, named, loaded, strict=True), strict=stored.options.strict)
     a, b = (Base(surface, edge) for surface, edge in zip(surfaces, edges, strict=True))
     texts = c_files(state_problem(a, b, stored.options.decided("generated C")))
     if Path(folder).is_dir():
@@ -82,6 +85,15 @@ def write_c(folder: str | Path, problem_file: str | Path) -> tuple[list[Path], t
             {name: Path(folder) / name for name in texts}, [problem_file, *(split_spec(spec)[0] for spec in specs)]
         )
     return write_texts(folder, texts), warnings
+
+
+def _require_polynomial(surfaces: Sequence[Surface]) -> None:
+    for name, surface in zip("ab", surfaces, strict=True):
+        if surface.is_rational:
+            raise InputError(
+                f"{name}: rational, and generated C minimises the energy (11), which is a polynomial's; "
+                "blend it in Python, or approximate it without weights"
+            )
 
 
 def c_files(stated: StatedProblem) -> dict[str, str]:
@@ -163,7 +175,7 @@ def _points(stated: StatedProblem, nlp: ConstrainedProblem) -> Any:
 def _solve(stated: StatedProblem, a: Any, b: Any) -> Any:
     """Control points of least energy, (3, N), from the rows of both bases, each (3, rows times n)."""
     problem = stated.problem
-    form, system = problem.form, problem.free_system
+    form, system = problem.form, problem.plain_system
     # Asking for the points that Python finds refuses a system that cannot be trusted.
     points_found = problem.control_points(*problem.start)
     off = float(np.abs(system.solved_at_once(points_found) - points_found).max())

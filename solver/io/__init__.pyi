@@ -17,11 +17,12 @@ from .meshes import sampled as sampled
 from .meshes import triangle_mesh as triangle_mesh
 from .occ_kernel import require_kernel as require_kernel
 from .occ_writing import occ_surface as occ_surface
+from .surface_files import approximation_warning as approximation_warning
 from .surface_files import check_surface_output as check_surface_output
+from .surface_files import face_warnings as face_warnings
 from .surface_files import in_one_unit as in_one_unit
 from .surface_files import list_file as list_file
 from .surface_files import read_all as read_all
 from .surface_files import read_surfaces as read_surfaces
 from .surface_files import split_spec as split_spec
-from .surface_files import trim_warnings as trim_warnings
 from .surface_files import write_surface as write_surface

@@ -12,7 +12,14 @@ from semispline.solver.arrays import FloatArray
 from semispline.solver.errors import FileError, InputError
 from semispline.solver.io.face_boundary import FaceBoundary
 from semispline.solver.judge import extent
-from semispline.solver.splines import MERGE_TOLERANCE, BSplineSurface, SemiStructuredSurface, Surface, clamped_surface
+from semispline.solver.splines import (
+    MERGE_TOLERANCE,
+    BSplineCurve,
+    BSplineSurface,
+    SemiStructuredSurface,
+    Surface,
+    clamped_surface,
+)
 
 # Weights that agree to this relative tolerance (rounding of a product and a quotient) are one weight.
 _EQUAL_WEIGHTS = 8 * np.finfo(np.float64).eps
@@ -51,7 +58,10 @@ class Face(Protocol):
         """
 
     def surface(self) -> Surface:
-        """Return the exact, clamped (rational) B-spline surface, without trimming."""
+        """Return the clamped (rational) B-spline surface, without trimming: exact, or as near as `deviation` says."""
+
+    def deviation(self) -> float | None:
+        """Return how far `surface` was found from what the file holds, in its unit; None where it is exact."""
 
 
 @dataclass(frozen=True)
@@ -85,12 +95,15 @@ class SurfaceEntry:
         N of `PATH#N`.
     kind : str
     degree_u, degree_v : int or None
-        None where the face has no exact B-spline form.
+        None where the face cannot be read out.
     n_u, n_v : int or None
         Control points; n_v is None for a semi-structured surface whose curves differ.
     rational, closed_u, closed_v : bool or None
     trimmed : bool or None
         None where the file does not tell.
+    deviation : float or None
+        Where the face has no exact B-spline form: how far the one that is read out was found from it, in the unit of
+        the file.
     problem : str or None
         Why the face cannot be read out.
     """
@@ -105,6 +118,7 @@ class SurfaceEntry:
     trimmed: bool | None = None
     closed_u: bool | None = None
     closed_v: bool | None = None
+    deviation: float | None = None
     problem: str | None = None
 
 
@@ -115,19 +129,21 @@ def describe(number: int, face: Face) -> SurfaceEntry:
     except InputError as error:
         return SurfaceEntry(number, face.kind, trimmed=face.trimmed(), problem=str(error))
     if isinstance(surface, SemiStructuredSurface):
-        counts = {len(curve.control_points) for curve in surface.control_curves}
-        first, last = surface.control_curves[0], surface.control_curves[-1]
-        ends = np.stack([curve.control_points[[0, -1]] for curve in surface.control_curves])
-        size = extent(np.concatenate([curve.control_points for curve in surface.control_curves]))
+        curves = surface.control_curves
+        counts = {len(curve.control_points) for curve in curves}
+        n_u, n_v = len(curves), counts.pop() if len(counts) == 1 else None
+        first, last = curves[0], curves[-1]
+        size = extent(np.concatenate([curve.control_points for curve in curves]))
         same = first.degree == last.degree and np.array_equal(first.knots, last.knots)
-        n_u, n_v = len(surface.control_curves), counts.pop() if len(counts) == 1 else None
-        closed_u = same and _same(first.control_points, last.control_points, size)
-        closed_v = _same(ends[:, 0], ends[:, 1], size)
+        closed_u = same and _same(_with_weights(first), _with_weights(last), size)
+        ends = np.stack([_with_weights(curve)[[0, -1]] for curve in curves])
     else:
         net = surface.control_points
         n_u, n_v = net.shape[:2]
-        closed_u = _same(net[0], net[-1], extent(net))
-        closed_v = _same(net[:, 0], net[:, -1], extent(net))
+        size = extent(net)
+        ends = _with_weights(surface)
+        closed_u = _same(ends[0], ends[-1], size)
+    closed_v = _same(ends[:, 0], ends[:, -1], size)
     return SurfaceEntry(
         number=number,
         kind=face.kind,
@@ -135,10 +151,11 @@ def describe(number: int, face: Face) -> SurfaceEntry:
         degree_v=surface.degree_v,
         n_u=n_u,
         n_v=n_v,
-        rational=isinstance(surface, BSplineSurface) and surface.weights is not None,
+        rational=surface.is_rational,
         trimmed=face.trimmed(),
         closed_u=closed_u,
         closed_v=closed_v,
+        deviation=face.deviation(),
     )
 
 
@@ -237,5 +254,13 @@ def _is_clamped(knots: FloatArray, degree: int) -> bool:
     return bool(knots[0] == knots[degree] and knots[-1] == knots[-degree - 1])
 
 
+def _with_weights(spline: BSplineCurve | BSplineSurface) -> FloatArray:
+    """Return (x, y, z, w) for each control point."""
+    weights = np.ones(spline.control_points.shape[:-1]) if spline.weights is None else spline.weights
+    return np.concatenate([spline.control_points, weights[..., None]], axis=-1)
+
+
 def _same(a: FloatArray, b: FloatArray, size: float) -> bool:
-    return bool(np.abs(a - b).max() <= _CLOSED * size)
+    """Tell whether two rows (x, y, z, w) over the same knots are one curve: equal points, weights in one proportion."""
+    weights = np.abs(a[:, 3] / a[0, 3] - b[:, 3] / b[0, 3])
+    return bool(np.abs(a[:, :3] - b[:, :3]).max() <= _CLOSED * size and (weights <= _CLOSED * a[:, 3] / a[0, 3]).all())

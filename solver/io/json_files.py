@@ -1,8 +1,9 @@
 """The `semispline/1` JSON format: surfaces and whole blend problems.
 
 Numbers are written so that they read back as the same float64; files are written whole or not at all. What the
-format adds to the design document: where v-control curves of a semi-structured surface differ in degree, a curve
-states its own `degree_v`; one that does not has that of the surface, which is the highest.
+format adds to the design document: points of two coordinates lie in the plane z = 0; v-control curves may have weights;
+where those of a surface differ in degree, a curve states its own `degree_v`; one that does not has that of the surface,
+which is the highest.
 """
 
 from __future__ import annotations
@@ -51,6 +52,7 @@ class _CurveRecord(_Record):
     degree_v: _Degree | None = None
     knots_v: list[_Number]
     control_points: _Points
+    weights: list[_Number] | None = None
 
 
 class _SemiStructuredRecord(_Record):
@@ -191,7 +193,8 @@ def surface_record(surface: Surface) -> dict[str, Any]:
         for curve in surface.control_curves:
             own = {} if curve.degree == surface.degree_v else {"degree_v": curve.degree}
             points = {"knots_v": curve.knots.tolist(), "control_points": curve.control_points.tolist()}
-            curves.append(own | points)
+            weights = {} if curve.weights is None else {"weights": curve.weights.tolist()}
+            curves.append(own | points | weights)
         return {
             "format": FORMAT,
             "kind": "semistructured_surface",
@@ -231,7 +234,7 @@ def surface_from_record(record: Any, where: str = "surface") -> Surface:
                 raise ControlPointError(
                     f"{where}: control_points[{i}]: {len(row)} points, expected {wanted} as in row 0"
                 )
-            _check_points(row, f"{where}: control_points[{i}]")
+            _check_points(row, plain.control_points[0], f"{where}: control_points[{i}]")
         n_u, n_v = len(plain.control_points), len(plain.control_points[0]) if plain.control_points else 0
         both = ((plain.knots_u, plain.degree_u, n_u), (plain.knots_v, plain.degree_v, n_v))
         make = clamped_surface if any(_is_unclamped(*one) for one in both) else BSplineSurface
@@ -248,7 +251,7 @@ def surface_from_record(record: Any, where: str = "surface") -> Surface:
         )
     semi = _validated(_SemiStructuredRecord, content, where)
     for i, found in enumerate(semi.control_curves):
-        _check_points(found.control_points, f"{where}: control_curves[{i}].control_points")
+        _check_points(found.control_points, found.control_points, f"{where}: control_curves[{i}].control_points")
 
     def curve(i: int, found: _CurveRecord) -> BSplineCurve:
         degree = semi.degree_v if found.degree_v is None else found.degree_v
@@ -256,7 +259,9 @@ def surface_from_record(record: Any, where: str = "surface") -> Surface:
             raise FileError(
                 f"control_curves[{i}].degree_v: found {degree}, expected at most that of the surface, {semi.degree_v}"
             )
-        return BSplineCurve(degree, _list(found.knots_v), _list(found.control_points), name=f"control_curves[{i}]")
+        weights = None if found.weights is None else _list(found.weights)
+        points = _list(found.control_points)
+        return BSplineCurve(degree, _list(found.knots_v), points, weights, name=f"control_curves[{i}]")
 
     return _made(
         where,
@@ -272,8 +277,11 @@ def _is_unclamped(knots: list[float], degree: int, n_control: int) -> bool:
         return False
     if not abs(knots[0]) + abs(knots[-1]) < _HUGE:
         return False
-    ends = knots[: degree + 1], knots[-degree - 1 :]
-    return knots[degree] < knots[-degree - 1] and any(len(set(end)) > 1 for end in ends)
+    if not knots[degree] < knots[-degree - 1]:
+        return False
+    # An end that is repeated more often goes with a point that acts nowhere.
+    ends = (knots[: degree + 1], knots[degree + 1]), (knots[-degree - 1 :], knots[-degree - 2])
+    return any(len(set(end)) > 1 or next_knot == end[0] for end, next_knot in ends)
 
 
 def _content(record: Any, kinds: Sequence[str], where: str) -> dict[str, Any]:
@@ -316,10 +324,16 @@ def _first_fault(error: ValidationError) -> str:
     return f"{place}: found {short(fault['input'])}, expected {expected}"
 
 
-def _check_points(points: list[list[float]], where: str) -> None:
+def _check_points(points: list[list[float]], first_row: list[list[float]], where: str) -> None:
+    """Refuse points unless all have as many coordinates as the first one: 3, or 2 in the plane z = 0."""
     for j, point in enumerate(points):
-        if len(point) != 3:
-            raise ControlPointError(f"{where}[{j}]: {len(point)} coordinate(s), expected 3")
+        if len(point) not in (2, 3):
+            raise ControlPointError(f"{where}[{j}]: {len(point)} coordinate(s), expected 3, or 2 where z is 0")
+        if len(point) != len(first_row[0]):
+            wanted = len(first_row[0])
+            raise ControlPointError(
+                f"{where}[{j}]: {len(point)} coordinate(s), expected {wanted} as in the first point"
+            )
 
 
 def _made(where: str, make: Callable[[], _T]) -> _T:

@@ -11,19 +11,18 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
-from semispline.solver.arrays import FloatArray
 from semispline.solver.errors import FileError, InputError, SemisplineError
 from semispline.solver.io.disk import require_file
 from semispline.solver.io.face_boundary import FaceBoundary, joined
-from semispline.solver.io.faces import MILLIMETRES, Model, surface_from_net, without_equal_weights
+from semispline.solver.io.faces import MILLIMETRES, Model
 from semispline.solver.io.foreign import read_apart
 from semispline.solver.io.occ_boundary import ON_EDGE, distance_to_ends, edges_of, occ_boundary, pcurve_points
+from semispline.solver.io.occ_conversion import Conversion, Ends, converted, kind_of, resolved, snapped_ends
 from semispline.solver.io.occ_kernel import first_line, require_kernel, system_unit
 from semispline.solver.io.silence import silenced
 from semispline.solver.splines import BSplineSurface
@@ -39,23 +38,11 @@ _STEP_UNITS = {
     "mile": "mi",
     "mil": "mil",
 }
-_KINDS = {
-    "Geom_BSplineSurface": "B-spline",
-    "Geom_BezierSurface": "Bezier",
-    "Geom_Plane": "plane",
-    "Geom_CylindricalSurface": "cylinder",
-    "Geom_ConicalSurface": "cone",
-    "Geom_SphericalSurface": "sphere",
-    "Geom_ToroidalSurface": "torus",
-    "Geom_SurfaceOfRevolution": "revolution",
-    "Geom_SurfaceOfLinearExtrusion": "extrusion",
-    "Geom_OffsetSurface": "offset",
-}
 
 
 @dataclass(frozen=True, eq=False)
 class OccFace:
-    """A face of a transferred shape; `trimmed` and `surface` as `Face` says."""
+    """A face of a transferred shape; `trimmed`, `surface` and `deviation` as `Face` says."""
 
     face: Any
     where: str
@@ -64,10 +51,9 @@ class OccFace:
     def kind(self) -> str:
         """What the file holds."""
         try:
-            name = type(self._geometry()).__name__
+            return kind_of(self._geometry)
         except FileError:
             return "none"
-        return _KINDS.get(name, name.removeprefix("Geom_"))
 
     def trimmed(self) -> bool | None:
         """Whether curves cut the face out of the surface that `surface` returns; None if the kernel cannot tell."""
@@ -82,7 +68,7 @@ class OccFace:
 
         if BRep_Tool.NaturalRestriction_s(self.face):
             return False
-        ends = self._range()
+        ends = self._ends
         return any(
             distance_to_ends(pcurve_points(edge, self.face), ends).min(axis=1).max() > ON_EDGE
             for edge in edges_of(self.face)
@@ -93,82 +79,54 @@ class OccFace:
         if self.trimmed() is False:
             return None
         try:
-            return occ_boundary(self.face, self._range())
+            return occ_boundary(self.face, self._ends)
         except Exception:
             # Each failure of the kernel has a class of its own.
             return joined([])
 
     def surface(self) -> BSplineSurface:
-        """Return the exact, clamped (rational) B-spline surface, without trimming.
+        """Return the clamped (rational) B-spline surface, without trimming.
 
         Raises
         ------
         FileError
-            A kind of surface that has no exact B-spline form.
+            No surface, one without end, or one that the kernel cannot even approximate.
         KnotError
             Knots that the surface class refuses.
         """
         try:
-            geometry = self._geometry()
-            if type(geometry).__name__ == "Geom_BSplineSurface":
-                spline = geometry.Copy() if geometry.IsUPeriodic() or geometry.IsVPeriodic() else geometry
-            else:
-                spline = self._converted(geometry)
-            # Exact knot insertion at the seam.
-            if spline.IsUPeriodic():
-                spline.SetUNotPeriodic()
-            if spline.IsVPeriodic():
-                spline.SetVNotPeriodic()
-            return _read_out(spline)
+            return self._conversion.surface
         except SemisplineError as error:
             raise type(error)(f"{self.where}: {error}") from None
         except Exception as error:
             # Each failure of the kernel has a class of its own.
             raise FileError(f"{self.where}: Open CASCADE cannot convert it ({first_line(error)})") from None
 
+    def deviation(self) -> float | None:
+        """Return how far the surface is from what the file holds; None where it is exact."""
+        return self._conversion.deviation
+
+    @cached_property
+    def _conversion(self) -> Conversion:
+        return converted(self._geometry, self._ends)
+
+    @cached_property
     def _geometry(self) -> Any:
         from OCP.BRep import BRep_Tool
 
         geometry = BRep_Tool.Surface_s(self.face)
         if geometry is None:
             raise FileError("the face has no surface; choose another")
-        while type(geometry).__name__ == "Geom_RectangularTrimmedSurface":
-            geometry = geometry.BasisSurface()
-        return geometry
+        return resolved(geometry)
 
-    def _range(self) -> tuple[float, float, float, float]:
+    @cached_property
+    def _ends(self) -> Ends:
         """Range of the parameters that `surface` returns: that of the face where the surface has no end."""
         from OCP.BRepTools import BRepTools
 
-        geometry = self._geometry()
-        if type(geometry).__name__ in ("Geom_BSplineSurface", "Geom_BezierSurface"):
-            return tuple(geometry.Bounds())
-        return tuple(BRepTools.UVBounds_s(self.face))
-
-    def _converted(self, geometry: Any) -> Any:
-        from OCP.Geom import Geom_RectangularTrimmedSurface
-        from OCP.GeomConvert import GeomConvert
-
-        inexact = _inexact(geometry)
-        if inexact:
-            raise FileError(f"{inexact} has no exact B-spline form; make the face a B-spline where it was drawn")
-        if type(geometry).__name__ != "Geom_BezierSurface":
-            low_u, high_u, low_v, high_v = self._range()
-            first_u, last_u, first_v, last_v = geometry.Bounds()
-            # A full turn is not a trimming: the kernel refuses to cut a period out of itself.
-            cut_u = not (geometry.IsUPeriodic() and high_u - low_u >= (last_u - first_u) * (1 - 1e-12))
-            cut_v = not (geometry.IsVPeriodic() and high_v - low_v >= (last_v - first_v) * (1 - 1e-12))
-            if cut_u and not geometry.IsUPeriodic():
-                low_u, high_u = max(low_u, first_u), min(high_u, last_u)
-            if cut_v and not geometry.IsVPeriodic():
-                low_v, high_v = max(low_v, first_v), min(high_v, last_v)
-            if cut_u and cut_v:
-                geometry = Geom_RectangularTrimmedSurface(geometry, low_u, high_u, low_v, high_v)
-            elif cut_u:
-                geometry = Geom_RectangularTrimmedSurface(geometry, low_u, high_u, True)
-            elif cut_v:
-                geometry = Geom_RectangularTrimmedSurface(geometry, low_v, high_v, False)
-        return GeomConvert.SurfaceToBSplineSurface_s(geometry)
+        if type(self._geometry).__name__ in ("Geom_BSplineSurface", "Geom_BezierSurface"):
+            return tuple(self._geometry.Bounds())
+        return snapped_ends(self._geometry, tuple(BRepTools.UVBounds_s(self.face)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -178,6 +136,7 @@ class _ReadFace:
     kind: str
     is_trimmed: bool | None
     edges: FaceBoundary | None
+    off: float | None
     content: tuple[Any, ...] | InputError
 
     def trimmed(self) -> bool | None:
@@ -185,6 +144,9 @@ class _ReadFace:
 
     def boundary(self) -> FaceBoundary | None:
         return self.edges
+
+    def deviation(self) -> float | None:
+        return self.off
 
     def surface(self) -> BSplineSurface:
         if isinstance(self.content, InputError):
@@ -308,36 +270,3 @@ def _others(shape: Any) -> dict[str, int]:
         if count:
             found[kind.lower()] = count
     return found
-
-
-def _read_out(spline: Any) -> BSplineSurface:
-    n_u, n_v = spline.NbUPoles(), spline.NbVPoles()
-    poles = [spline.Pole(i + 1, j + 1) for i in range(n_u) for j in range(n_v)]
-    points = np.array([(p.X(), p.Y(), p.Z()) for p in poles]).reshape(n_u, n_v, 3)
-    weights: FloatArray | None = None
-    if spline.IsURational() or spline.IsVRational():
-        found = np.array([spline.Weight(i + 1, j + 1) for i in range(n_u) for j in range(n_v)])
-        weights = without_equal_weights(found.reshape(n_u, n_v))
-    knots_u = _repeated(spline.NbUKnots(), spline.UKnot, spline.UMultiplicity)
-    knots_v = _repeated(spline.NbVKnots(), spline.VKnot, spline.VMultiplicity)
-    return surface_from_net(spline.UDegree(), spline.VDegree(), knots_u, knots_v, points, weights)
-
-
-def _repeated(count: int, knot: Any, multiplicity: Any) -> FloatArray:
-    knots = [knot(i + 1) for i in range(count)]
-    return np.repeat(np.array(knots, dtype=np.float64), [multiplicity(i + 1) for i in range(count)])
-
-
-def _inexact(geometry: Any) -> str | None:
-    """Name the part of a surface that the kernel could only approximate."""
-    name = type(geometry).__name__
-    if name not in _KINDS or name == "Geom_OffsetSurface":
-        return f"a surface of kind {_KINDS.get(name, name)}"
-    if name not in ("Geom_SurfaceOfRevolution", "Geom_SurfaceOfLinearExtrusion"):
-        return None
-    curve = geometry.BasisCurve()
-    while type(curve).__name__ == "Geom_TrimmedCurve":
-        curve = curve.BasisCurve()
-    kind = type(curve).__name__.removeprefix("Geom_")
-    exact = ("BSplineCurve", "BezierCurve", "Line", "Circle", "Ellipse", "Parabola", "Hyperbola")
-    return None if kind in exact else f"the {_KINDS[name]} of a curve of kind {kind}"

@@ -16,14 +16,14 @@ def work(path: str, *bounded: str) -> tuple[Any, ...]:
     model = read_occ(path)
     # A boundary takes as long as many surfaces: only of the faces for which it is wanted.
     edges = {int(n): model.faces[int(n)].boundary() for n in bounded if int(n) < len(model.faces)}
-    faces = [(face.kind, face.trimmed(), edges.get(n), _content(face)) for n, face in enumerate(model.faces)]
+    faces = [(face.kind, face.trimmed(), edges.get(n), *_content(face)) for n, face in enumerate(model.faces)]
     return model.unit, faces, model.others
 
 
-def _content(face: Any) -> tuple[Any, ...] | InputError:
+def _content(face: Any) -> tuple[float | None, tuple[Any, ...] | InputError]:
     try:
         surface = face.surface()
     except InputError as error:
-        return error
+        return None, error
     arrays = (surface.knots_u, surface.knots_v, surface.control_points, surface.weights)
-    return (surface.degree_u, surface.degree_v, *arrays)
+    return face.deviation(), (surface.degree_u, surface.degree_v, *arrays)

@@ -20,6 +20,8 @@ from semispline.solver.splines import BSplineSurface
 
 # 17 significant digits; the point that both formats ask for comes with the exponent.
 _REAL = "%.16E"
+# Geom_BSplineSurface::MaxDegree().
+_HIGHEST = 25
 
 
 def occ_bytes(surface: BSplineSurface, suffix: str, unit: str) -> bytes:
@@ -31,6 +33,12 @@ def occ_bytes(surface: BSplineSurface, suffix: str, unit: str) -> bytes:
         Open CASCADE refuses the surface, or the extra `cad` is not installed.
     """
     require_kernel(suffix)
+    for name, degree in (("u", surface.degree_u), ("v", surface.degree_v)):
+        if degree > _HIGHEST:
+            raise FileError(
+                f"{suffix}: the surface has degree {degree} in {name}, and Open CASCADE takes at most {_HIGHEST}; "
+                "write .json or .3dm, or ask for a lower continuity"
+            )
     write = _step_bytes if suffix in (".step", ".stp") else _iges_bytes if suffix in (".iges", ".igs") else _brep_bytes
     try:
         with silenced(1, 2):

@@ -73,6 +73,9 @@ class RhinoFace:
         """Return the edges of the face, as `Face` says."""
         return self._edges if self.trimmed() else None
 
+    def deviation(self) -> None:
+        """Say nothing: openNURBS approximates nothing."""
+
     @cached_property
     def _edges(self) -> FaceBoundary:
         size = float(np.ptp(self.surface().control_points.reshape(-1, 3), axis=0).max())

@@ -21,6 +21,9 @@ from semispline.solver.io.foreign import limits
 Net = tuple[int, int, FloatArray, FloatArray, FloatArray, bool]
 # Degree, knots and control points (n, 4) multiplied by their weights.
 Curve = tuple[int, FloatArray, FloatArray]
+_SHAPES = {"plane": "IsPlanar", "cylinder": "IsCylinder", "cone": "IsCone", "sphere": "IsSphere", "torus": "IsTorus"}
+# How far a surface may be from the shape after which it is called, in the unit of the file.
+_SAME = 1e-9
 _MAGIC = b"3D Geometry File Format"
 
 
@@ -62,12 +65,15 @@ def _why_not(path: str) -> str:
 
 
 def _kind(geometry: Any) -> str:
-    """Return what the file holds, in words; rhino3dm tells no more of the surfaces of a Brep."""
+    """Return what the file holds, in words; of a surface in a Brep, which has no class of its own, what shape it is."""
     name = type(geometry).__name__
+    if name == "Surface":
+        return next((word for word, tell in _SHAPES.items() if getattr(geometry, tell)(_SAME)), "surface")
     words = {
         "NurbsSurface": "B-spline",
         "Extrusion": "extrusion",
-        "Surface": "surface",
+        "PlaneSurface": "plane",
+        "RevSurface": "revolution",
         "Mesh": "mesh",
         "Point": "point",
         "PointCloud": "point cloud",

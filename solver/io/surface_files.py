@@ -9,6 +9,7 @@ import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from warnings import warn
 
 import numpy as np
 
@@ -16,7 +17,7 @@ from semispline.solver.arrays import FloatArray
 from semispline.solver.errors import FileError, InputError, TrimError
 from semispline.solver.io.disk import atomic_path, check_output, require_file, shown
 from semispline.solver.io.face_boundary import FaceBoundary, edge_offset
-from semispline.solver.io.faces import MILLIMETRES, Model, SurfaceEntry, describe, picked, without_equal_weights
+from semispline.solver.io.faces import MILLIMETRES, Face, Model, SurfaceEntry, describe, picked, without_equal_weights
 from semispline.solver.splines import BSplineSurface, SemiStructuredSurface, Surface
 
 _OCC = (".step", ".stp", ".iges", ".igs", ".brep", ".brp")
@@ -40,11 +41,17 @@ class LoadedSurface:
         Of the coordinates, a key of `MILLIMETRES`; None where the file does not say.
     boundary : FaceBoundary or None
         The edges of the face that the file cuts out of it; None where that is the whole surface.
+    kind : str
+        What the file holds.
+    deviation : float or None
+        Where that has no exact B-spline form: how far `surface` was found from it.
     """
 
     surface: Surface
     unit: str | None
     boundary: FaceBoundary | None = None
+    kind: str = ""
+    deviation: float | None = None
 
 
 def read_surface(spec: str | Path) -> Surface:
@@ -62,14 +69,23 @@ def read_surface(spec: str | Path) -> Surface:
         The whole surface, without trimming, in the unit of the file. Unclamped and periodic ones are clamped, planes,
         cylinders and the like converted, all exactly.
 
+    Warns
+    -----
+    UserWarning
+        It has no exact B-spline form, as most offsets, and was approximated: by how much.
+
     Raises
     ------
     FileError
-        Missing, broken, no such number, several surfaces and no number, or no exact B-spline form.
+        Missing, broken, no such number, several surfaces and no number, or no B-spline form.
     KnotError, ControlPointError
         Values that make no surface.
     """
-    return read_surfaces([spec])[0].surface
+    (loaded,) = read_surfaces([spec])
+    approximated = approximation_warning(spec, loaded)
+    if approximated:
+        warn(approximated, stacklevel=2)
+    return loaded.surface
 
 
 def read_surfaces(specs: Sequence[str | Path]) -> list[LoadedSurface]:
@@ -89,8 +105,27 @@ def read_surfaces(specs: Sequence[str | Path]) -> list[LoadedSurface]:
             models[path] = open_model(path, sorted({n or 0 for other, n in wanted if other == path}))
         model = models[path]
         face = picked(model, number)
-        loaded.append(LoadedSurface(face.surface(), model.unit, face.boundary()))
+        loaded.append(_loaded(face, model.unit, face.boundary()))
     return in_one_unit(loaded)
+
+
+def _loaded(face: Face, unit: str | None, boundary: FaceBoundary | None = None) -> LoadedSurface:
+    return LoadedSurface(face.surface(), unit, boundary, face.kind, face.deviation())
+
+
+def approximation_warning(spec: str | Path, loaded: LoadedSurface) -> str | None:
+    """Return a warning where a surface is not exactly what its file holds.
+
+    Examples
+    --------
+    >>> square = BSplineSurface(1, 1, [0, 0, 1, 1], [0, 0, 1, 1], [[[0, 0, 0], [0, 1, 0]], [[1, 0, 0], [1, 1, 0]]])
+    >>> approximation_warning("a.step#2", LoadedSurface(square, "mm", kind="offset", deviation=4.123e-6))
+    'a.step#2 (offset) has no exact B-spline form: the surface taken for it is up to 4.12e-06 mm off'
+    """
+    if loaded.deviation is None:
+        return None
+    off = f"up to {loaded.deviation:.3g} {loaded.unit or 'model units'} off"
+    return f"{spec} ({loaded.kind}) has no exact B-spline form: the surface taken for it is {off}"
 
 
 def trimmed_edge_warning(spec: str | Path, edge: str, loaded: LoadedSurface) -> str | None:
@@ -127,17 +162,22 @@ def trimmed_edge_warning(spec: str | Path, edge: str, loaded: LoadedSurface) -> 
     )
 
 
-def trim_warnings(*edges: tuple[str | Path, str, LoadedSurface], strict: bool = False) -> tuple[str, ...]:
-    """Return the warnings of edges, each given as to `trimmed_edge_warning`.
+def face_warnings(*edges: tuple[str | Path, str, LoadedSurface], strict: bool = False) -> tuple[str, ...]:
+    """Return the warnings of edges, each given as to `trimmed_edge_warning`, and of the surfaces that they belong to.
 
     Raises
     ------
     TrimError
         There are some, and `strict` allows none.
     """
-    found = tuple(warning for edge in edges if (warning := trimmed_edge_warning(*edge)))
+    surfaces = dict.fromkeys(warning for spec, _, loaded in edges if (warning := approximation_warning(spec, loaded)))
+    trims = [warning for edge in edges if (warning := trimmed_edge_warning(*edge))]
+    found = (*surfaces, *trims)
     if strict and found:
-        raise TrimError(f"{'; '.join(found)}; name another edge, give the untrimmed surface, or leave out strict")
+        remedy = "name another edge, give the untrimmed surface, or leave out strict"
+        if not trims:
+            remedy = "make the face a B-spline where it was drawn, or leave out strict"
+        raise TrimError(f"{'; '.join(found)}; {remedy}")
     return found
 
 
@@ -161,12 +201,12 @@ def read_all(specs: Sequence[str | Path]) -> tuple[list[LoadedSurface], list[str
         path, number = split_spec(spec)
         model = open_model(path)
         if number is not None or len(model.faces) < 2:
-            loaded.append(LoadedSurface(picked(model, number).surface(), model.unit))
+            loaded.append(_loaded(picked(model, number), model.unit))
             continue
         before = len(loaded)
         for face in model.faces:
             try:
-                loaded.append(LoadedSurface(face.surface(), model.unit))
+                loaded.append(_loaded(face, model.unit))
             except InputError as error:
                 problems.append(str(error))
         if len(loaded) == before:
@@ -193,7 +233,9 @@ def in_one_unit(loaded: Sequence[LoadedSurface]) -> list[LoadedSurface]:
             same.append(replace(item, unit=unit))
             continue
         boundary = None if item.boundary is None else item.boundary.scaled(factor)
-        same.append(LoadedSurface(_scaled(item.surface, factor), unit, boundary))
+        deviation = None if item.deviation is None else item.deviation * factor
+        surface = _scaled(item.surface, factor)
+        same.append(replace(item, surface=surface, unit=unit, boundary=boundary, deviation=deviation))
     return same
 
 
@@ -333,6 +375,9 @@ class _JsonFace:
         return False
 
     def boundary(self) -> None:
+        return None
+
+    def deviation(self) -> None:
         return None
 
     def surface(self) -> Surface:

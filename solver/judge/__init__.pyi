@@ -4,6 +4,7 @@ from .base import local_origin as local_origin
 from .confirmed_meetings import Meeting as Meeting
 from .contact import Contact as Contact
 from .contact import NoNormal as NoNormal
+from .continuity import corresponding_points as corresponding_points
 from .continuity import measure_contact as measure_contact
 from .continuity import model_size as model_size
 from .correspondence import Correspondence as Correspondence
@@ -14,6 +15,7 @@ from .correspondence import snapped_seam as snapped_seam
 from .correspondence import tied_directions as tied_directions
 from .creases import Crease as Crease
 from .creases import measure_creases as measure_creases
+from .creases import worst_inside as worst_inside
 from .curvature import LocalGeometry as LocalGeometry
 from .curvature import isophote_angle as isophote_angle
 from .curvature import local_geometry as local_geometry

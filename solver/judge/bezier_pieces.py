@@ -1,20 +1,29 @@
-"""A polynomial surface cut into its Bezier pieces: to be measured piece by piece, or evaluated fast on many grids."""
+"""A surface cut into its Bezier pieces: to be measured piece by piece, or evaluated fast on many grids."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field, replace
 from functools import cache
 from itertools import pairwise
-from math import perm
+from math import comb, perm
+from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from semispline.solver.arrays import FloatArray, SparseMatrix
+from semispline.solver.arrays import FloatArray, SparseMatrix, exact_origin
 from semispline.solver.judge.parametric import ParametricSurface
-from semispline.solver.splines import BSplineSurface, SemiStructuredSurface, Surface, blossom_matrix, elevation_matrix
+from semispline.solver.splines import (
+    BSplineSurface,
+    SemiStructuredSurface,
+    Surface,
+    blossom_matrix,
+    bounding_box,
+    elevation_matrix,
+)
 
+_Values: TypeAlias = Callable[[FloatArray, FloatArray, int, int], FloatArray]
 # Polynomial pieces that are worked on at once: a long surface has more of them than memory should hold.
 _PIECES_AT_ONCE = 2048
 
@@ -28,19 +37,18 @@ class Part:
     v_widths : ndarray, shape (S,)
     rows : ndarray, shape (m + 1, 3 or 4, S, q + 1)
         Bezier points of all rows; homogeneous for a rational surface.
-    is_last : bool
-        The spans are the last ones.
     """
 
     v_widths: FloatArray
     rows: FloatArray
-    is_last: bool
 
 
-def parts_of(surface: Surface) -> Iterator[Part]:
-    """Cut a surface along v into parts of some polynomial pieces."""
+def parts_of(surface: Surface, cuts: int = 1) -> Iterator[Part]:
+    """Cut a surface along v into parts of some polynomial pieces, each span into so many."""
     q, n_u = surface.degree_v, len(surface.breakpoints[0]) - 1
     v_breaks = surface.breakpoints[1]
+    if cuts > 1:
+        v_breaks = np.append((v_breaks[:-1, None] + np.diff(v_breaks)[:, None] * np.arange(cuts) / cuts), v_breaks[-1])
     groups, (n_rows, d) = _rows_by_knots(surface)
     step = max(1, _PIECES_AT_ONCE // n_u)
     for at in range(0, len(v_breaks) - 1, step):
@@ -55,7 +63,7 @@ def parts_of(surface: Surface) -> Iterator[Part]:
             own = points.transpose(2, 3, 0, 1)
             ends = np.repeat([0.0, 1.0], degree + 1)
             nets[group.rows] = own @ elevation_matrix(degree, ends, q).toarray().T if degree < q else own
-        yield Part(np.diff(breaks), nets, at + step >= len(v_breaks) - 1)
+        yield Part(np.diff(breaks), nets)
 
 
 def bezier_matrix(degree: int, knots: FloatArray, breaks: FloatArray) -> SparseMatrix:
@@ -103,11 +111,17 @@ def _rows_by_knots(surface: Surface) -> tuple[list[_Rows], tuple[int, int]]:
     for i, curve in enumerate(surface.control_curves):
         alike.setdefault((curve.degree, curve.knots.tobytes()), []).append(i)
     groups = []
+    d = 4 if surface.is_rational else 3
     for rows in alike.values():
         curves = [surface.control_curves[i] for i in rows]
-        points = np.concatenate([curve.control_points for curve in curves], axis=1)
+        points = np.concatenate([_with_columns(curve.homogeneous, d) for curve in curves], axis=1)
         groups.append(_Rows(np.array(rows), curves[0].degree, curves[0].knots, points))
-    return groups, (len(surface.control_curves), 3)
+    return groups, (len(surface.control_curves), d)
+
+
+def _with_columns(points: FloatArray, d: int) -> FloatArray:
+    """Return points with d columns: what has no weight has weight 1."""
+    return points if points.shape[1] == d else np.concatenate([points, np.ones((len(points), 1))], axis=1)
 
 
 def _middles(breaks: FloatArray) -> FloatArray:
@@ -115,29 +129,39 @@ def _middles(breaks: FloatArray) -> FloatArray:
 
 
 def in_pieces(surface: ParametricSurface) -> ParametricSurface:
-    """Return the same surface, evaluated many times as fast on small grids where it is a polynomial spline."""
-    if isinstance(surface, SemiStructuredSurface) or (isinstance(surface, BSplineSurface) and surface.weights is None):
-        return _Pieces.of(surface)
-    return surface
+    """Return the same surface, evaluated many times as fast on small grids where it is a spline."""
+    return _Pieces.of(surface) if isinstance(surface, SemiStructuredSurface | BSplineSurface) else surface
 
 
 @dataclass(frozen=True, eq=False)
 class _Pieces:
-    """A surface by its Bezier points, shape (S, q + 1, U (p + 1) 3): those of all spans of u for each of v."""
+    """A surface by its Bezier points, shape (S, q + 1, U (p + 1) d): those of all spans of u for each of v.
+
+    Of a rational surface they are homogeneous, d = 4, and counted from an origin.
+    """
 
     breakpoints: tuple[FloatArray, FloatArray]
     degree_u: int
     points: FloatArray
+    columns: int
+    origin: FloatArray
     # Grids share their parameters.
     known: dict[tuple[int, bytes], _Places] = field(default_factory=dict)
+    # Of the last grid of a rational surface: weights and points of each order.
+    quotients: dict[tuple[str, bytes, bytes], _Quotients] = field(default_factory=dict)
 
     @staticmethod
     def of(surface: Surface) -> _Pieces:
-        breaks = surface.breakpoints
+        breaks, origin = surface.breakpoints, np.zeros(3)
+        if surface.is_rational:
+            # Far from it differences of products would round by the distance.
+            origin = exact_origin(bounding_box(surface))
+            surface = _counted_from(surface, origin)
         cut = bezier_matrix(surface.degree_u, surface.knots_u, breaks[0])
         rows = np.concatenate([part.rows for part in parts_of(surface)], axis=2)
         points = (cut @ rows.reshape(len(rows), -1)).reshape(-1, *rows.shape[1:]).transpose(2, 3, 0, 1)
-        return _Pieces(breaks, surface.degree_u, np.ascontiguousarray(points).reshape(*points.shape[:2], -1))
+        points = np.ascontiguousarray(points).reshape(*points.shape[:2], -1)
+        return _Pieces(breaks, surface.degree_u, points, rows.shape[1], origin)
 
     @property
     def domain(self) -> tuple[tuple[float, float], tuple[float, float]]:
@@ -147,21 +171,40 @@ class _Pieces:
 
     def evaluate(self, u: ArrayLike, v: ArrayLike, du: int = 0, dv: int = 0) -> FloatArray:
         """Return the point or a derivative at (u[k], v[k]), shape (K, 3)."""
-        at_u, at_v = self._places(0, u), self._places(1, v)
-        points = self.points.reshape(*self.points.shape[:2], -1, self.degree_u + 1, 3)[at_v.pieces, :, at_u.pieces]
-        return np.asarray(np.einsum("ki,kj,kjid->kd", at_u.basis(du), at_v.basis(dv), points))
+        return self._euclidean("points", self._at_points, u, v, (du, dv))
 
     def evaluate_grid(self, u: ArrayLike, v: ArrayLike, du: int = 0, dv: int = 0) -> FloatArray:
         """Return the same on the grid u x v, shape (len(u), len(v), 3)."""
+        return self._euclidean("grid", self._on_grid, u, v, (du, dv))
+
+    def _at_points(self, u: FloatArray, v: FloatArray, du: int, dv: int) -> FloatArray:
         at_u, at_v = self._places(0, u), self._places(1, v)
+        points = self.points.reshape(*self.points.shape[:2], -1, self.degree_u + 1, self.columns)
+        return np.asarray(
+            np.einsum("ki,kj,kjid->kd", at_u.basis(du), at_v.basis(dv), points[at_v.pieces, :, at_u.pieces])
+        )
+
+    def _on_grid(self, u: FloatArray, v: FloatArray, du: int, dv: int) -> FloatArray:
+        at_u, at_v, d = self._places(0, u), self._places(1, v), self.columns
         n_v, of_u = len(at_v.pieces), at_u.basis(du)
         along = np.einsum("vj,vjx->vx", at_v.basis(dv), self.points[at_v.pieces])
         # Components apart, and each in one piece: what is done with them is then done fast.
-        pieces = along.reshape(n_v, -1, 3).transpose(1, 2, 0).reshape(-1, self.degree_u + 1, 3 * n_v)
-        found = np.empty((len(of_u), 3 * n_v))
+        pieces = along.reshape(n_v, -1, d).transpose(1, 2, 0).reshape(-1, self.degree_u + 1, d * n_v)
+        found = np.empty((len(of_u), d * n_v))
         for start, end in pairwise(at_u.ends):
             found[start:end] = of_u[start:end] @ pieces[at_u.pieces[start]]
-        return found.reshape(len(of_u), 3, n_v).transpose(0, 2, 1)
+        return found.reshape(len(of_u), d, n_v).transpose(0, 2, 1)
+
+    def _euclidean(self, kind: str, values: _Values, u: ArrayLike, v: ArrayLike, order: tuple[int, int]) -> FloatArray:
+        u, v = np.asarray(u, dtype=np.float64), np.asarray(v, dtype=np.float64)
+        if self.columns == 3:
+            return values(u, v, *order)
+        key = kind, u.tobytes(), v.tobytes()
+        if key not in self.quotients:
+            self.quotients.clear()
+            self.quotients[key] = _Quotients(lambda du, dv: values(u, v, du, dv))
+        found = self.quotients[key].derivative(*order)
+        return found + self.origin if order == (0, 0) else found
 
     def _places(self, axis: int, x: ArrayLike) -> _Places:
         x = np.asarray(x, dtype=np.float64)
@@ -170,6 +213,30 @@ class _Pieces:
             degree = self.degree_u if axis == 0 else self.points.shape[1] - 1
             self.known[key] = _Places.of(x, self.breakpoints[axis], degree)
         return self.known[key]
+
+
+@dataclass(frozen=True, eq=False)
+class _Quotients:
+    """Derivatives of X / w on one set of parameters: of each order once, by the product rule on X = w S."""
+
+    homogeneous: Callable[[int, int], FloatArray]
+    weights: dict[tuple[int, int], FloatArray] = field(default_factory=dict)
+    known: dict[tuple[int, int], FloatArray] = field(default_factory=dict)
+
+    def derivative(self, du: int, dv: int) -> FloatArray:
+        """Return the derivative of an order, shape (..., 3); each component lies in one piece."""
+        if (du, dv) not in self.known:
+            lower = [(i, j) for i in range(du + 1) for j in range(dv + 1) if i or j]
+            # Those below first: their weights are needed.
+            below = {(i, j): self.derivative(du - i, dv - j) for i, j in lower}
+            raw = np.moveaxis(self.homogeneous(du, dv), -1, 0)
+            self.weights[du, dv] = raw[3]
+            value = np.array(raw[:3])
+            for (i, j), other in below.items():
+                value -= comb(du, i) * comb(dv, j) * self.weights[i, j] * np.moveaxis(other, -1, 0)
+            value /= self.weights[0, 0]
+            self.known[du, dv] = np.moveaxis(value, 0, -1)
+        return self.known[du, dv]
 
 
 @dataclass(frozen=True, eq=False)
@@ -199,6 +266,14 @@ class _Places:
             else:
                 self.known[order] = self.values[degree - order] @ _differences(degree, order) / self.widths**order
         return self.known[order]
+
+
+def _counted_from(surface: Surface, origin: FloatArray) -> Surface:
+    """Return a surface moved to an origin, which is exact."""
+    if isinstance(surface, BSplineSurface):
+        return replace(surface, control_points=surface.control_points - origin)
+    curves = (replace(curve, control_points=curve.control_points - origin) for curve in surface.control_curves)
+    return replace(surface, control_curves=tuple(curves))
 
 
 @cache

@@ -43,7 +43,7 @@ class NoNormal:
 
 @dataclass(frozen=True)
 class Contact:
-    """How two surfaces meet along an edge; the worst over samples in every span of both.
+    """How two surfaces meet along an edge; the worst over samples in every span of both, and between them.
 
     Angle and curvature are not a number where a side has no normal somewhere along the edge.
 
@@ -79,6 +79,9 @@ class Contact:
         The two edges run in opposite directions.
     shift : float
         Closed edges: how far edge b's seam is from edge a's, in b's parameter.
+    corresponds : {"affine", "foot points"}
+        Which points of the edges are compared: of parameters that correspond affinely, or, where the edges are one
+        curve with two parametrisations, each with its foot on the other. Residuals always mean the former.
     rate_jump, second_rate_jump : float or None
         Largest difference of the rate of curvature, 1/length^2, and of its second rate, 1/length^3.
     rate_jump_relative, second_rate_jump_relative : float or None
@@ -102,6 +105,7 @@ class Contact:
     curvature_at: Place
     flipped: bool
     shift: float
+    corresponds: Literal["affine", "foot points"] = "affine"
     rate_jump: float | None = None
     rate_jump_relative: float | None = None
     second_rate_jump: float | None = None

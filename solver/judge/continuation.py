@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -11,8 +11,10 @@ from semispline.solver.arrays import FloatArray
 from semispline.solver.errors import EdgeError
 from semispline.solver.judge.base import Base
 from semispline.solver.judge.bezier_pieces import in_pieces
+from semispline.solver.judge.foot_points import FootMap, Run, foot_map
 from semispline.solver.judge.parametric import ParametricSurface
 from semispline.solver.judge.sections import closed_directions, extent, lengths
+from semispline.solver.splines import merge_breakpoints
 
 # How far apart the edges may be, as a fraction of their extent: contact that was made is far better; and how many
 # roundings of their coordinates.
@@ -35,6 +37,9 @@ class Continuation:
         Where on a closed edge the start of v lies, beyond the edge's own start.
     surface : ParametricSurface
         That of the base, as it is evaluated.
+    feet : FootMap or None
+        Which v along the edge belongs to v on the surface that is continued, where both are one curve with two
+        parametrisations; then derivatives along v are of first order.
     """
 
     base: Base
@@ -42,6 +47,7 @@ class Continuation:
     flipped: bool
     shift: float
     surface: ParametricSurface
+    feet: FootMap | None = None
 
     @property
     def domain(self) -> tuple[tuple[float, float], tuple[float, float]]:
@@ -57,8 +63,14 @@ class Continuation:
 
     def parameters(self, w: ArrayLike, v: ArrayLike) -> tuple[FloatArray, FloatArray]:
         """Return the base's own parameters u and v."""
-        start, end = self._across
         w, v = np.asarray(w, dtype=np.float64), np.asarray(v, dtype=np.float64)
+        if self.feet is not None:
+            v = self.feet.along_b(np.atleast_1d(v)).reshape(v.shape)
+        return self._own(w, v)
+
+    def _own(self, w: FloatArray, v: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return the base's own parameters where v belongs to them affinely."""
+        start, end = self._across
         across = np.clip((start if self._inwards > 0 else end) + self._inwards * w, start, end)
         first, last = self.base.range_along
         t = (v - self.v_breaks[0]) / (self.v_breaks[-1] - self.v_breaks[0])
@@ -70,13 +82,33 @@ class Continuation:
     def evaluate(self, w: ArrayLike, v: ArrayLike, dw: int = 0, dv: int = 0) -> FloatArray:
         """Return the point or a derivative at (w[k], v[k]), shape (K, 3)."""
         orders = (dw, dv) if self.base.edge[0] == "u" else (dv, dw)
-        return self._rate(dw, dv) * self.surface.evaluate(*self.parameters(w, v), *orders)
+        return self._paced(self._rate(dw, dv) * self.surface.evaluate(*self.parameters(w, v), *orders), v, dv)
 
     def evaluate_grid(self, w: ArrayLike, v: ArrayLike, dw: int = 0, dv: int = 0) -> FloatArray:
         """Return the same on the grid w x v, shape (len(w), len(v), 3)."""
+        own = self.parameters(w, v)
         if self.base.edge[0] == "u":
-            return self._rate(dw, dv) * self.surface.evaluate_grid(*self.parameters(w, v), dw, dv)
-        return self._rate(dw, dv) * self.surface.evaluate_grid(*self.parameters(w, v), dv, dw).transpose(1, 0, 2)
+            return self._paced(self._rate(dw, dv) * self.surface.evaluate_grid(*own, dw, dv), v, dv)
+        return self._paced(self._rate(dw, dv) * self.surface.evaluate_grid(*own, dv, dw).transpose(1, 0, 2), v, dv)
+
+    def edge_run(self) -> Run:
+        """Return the base's edge, by v as it belongs to it affinely."""
+        (start, end), (first, last) = (float(self.v_breaks[0]), float(self.v_breaks[-1])), self.base.range_along
+
+        def at(v: FloatArray) -> tuple[FloatArray, FloatArray]:
+            s = self._own(np.zeros_like(v), v)[1 if self.base.edge[0] == "u" else 0]
+            return self.base.derivative(s, 0, 0), self._rate(0, 1) * self.base.derivative(s, 0, 1)
+
+        t = np.mod((self.base.breakpoints_along() - first - self.shift) / (last - first), 1.0)
+        breaks = start + (1 - t if self.flipped else t) * (end - start)
+        return Run(at, merge_breakpoints(np.array([start, end]), breaks))
+
+    def _paced(self, values: FloatArray, v: ArrayLike, dv: int) -> FloatArray:
+        """Return derivatives by v on the surface that is continued from those by v along the edge."""
+        if self.feet is None or dv == 0:
+            return values
+        v = np.asarray(v, dtype=np.float64)
+        return values * self.feet.pace(v, self.feet.along_b(v))[:, None]
 
     @property
     def _across(self) -> tuple[float, float]:
@@ -112,12 +144,26 @@ def continuation(surface: ParametricSurface, base: Base, end: int) -> Continuati
 
     distances = [float(lengths(way.evaluate_grid([0.0], v)[0] - target).max()) for way in ways]
     best = int(np.argmin(distances))
-    if not distances[best] <= _APART * size + _ROUNDINGS * np.finfo(np.float64).eps * np.abs(target).max():
+    most = _APART * size + _ROUNDINGS * np.finfo(np.float64).eps * float(np.abs(target).max())
+    if distances[best] <= most:
+        return ways[best]
+    feet = foot_map(_end_run(surface, end), ways[best].edge_run(), most, closed)
+    if feet is None:
         raise EdgeError(
             f"base: its edge {base.edge} is {distances[best]:.3g} away from the surface's end u{end}, "
             "expected the edge that the surface was made for"
         )
-    return ways[best]
+    return replace(ways[best], feet=feet)
+
+
+def _end_run(surface: ParametricSurface, end: int) -> Run:
+    """Return the surface's own edge at the start (0) or at the end (1) of its u."""
+    u = np.array([surface.domain[0][end]])
+
+    def at(v: FloatArray) -> tuple[FloatArray, FloatArray]:
+        return surface.evaluate_grid(u, v)[0], surface.evaluate_grid(u, v, 0, 1)[0]
+
+    return Run(at, surface.breakpoints[1])
 
 
 def _nearest(base: Base, point: FloatArray) -> float:

@@ -27,6 +27,8 @@ LEAST_CIRCLING = 1e-2
 # rounding of control points bends a curve by 1e-16 / h^2, which is to stay below 1e-8.
 SNAP = 1e-4
 _SAMPLES = 256
+# Of quotients no quadrature is exact; one of this degree is, but for rounding, where weights are tame.
+_OF_QUOTIENTS = 48
 _NEWTON_STEPS = 30
 
 
@@ -164,16 +166,10 @@ def corresponding(a: Base, b: Base, matched: Correspondence, s: FloatArray) -> F
     return np.asarray(np.clip(b_start + along, b_start, b_end))
 
 
-def corresponding_samples(a: Base, b: Base, matched: Correspondence) -> tuple[FloatArray, FloatArray]:
-    """Return parameters along edge a and along edge b that correspond, in every span of both and at the ends.
-
-    Where one edge is closed and starts inside the other the ends are left out: the other may have a crease there.
-    """
-    start, end = a.range_along
-    merged = _merged_spans(a, b, matched)
-    inside = (merged[:-1, None] + np.diff(merged)[:, None] * _FRACTIONS).ravel()
-    s_a = inside if matched.shift else np.concatenate([[start], inside, [end]])
-    return s_a, corresponding(a, b, matched, s_a)
+def samples_in_spans(breaks: FloatArray, *, ends: bool) -> FloatArray:
+    """Return parameters inside every span, and at both ends of all if asked."""
+    inside = (breaks[:-1, None] + np.diff(breaks)[:, None] * _FRACTIONS).ravel()
+    return np.concatenate([breaks[:1], inside, breaks[-1:]]) if ends else np.asarray(inside)
 
 
 def snapped_seam(a: Base, b: Base, matched: Correspondence) -> Correspondence:
@@ -194,13 +190,18 @@ def snapped_seam(a: Base, b: Base, matched: Correspondence) -> Correspondence:
     return replace(matched, shift=float(wanted[nearest] % 1.0) * length)
 
 
-def _merged_spans(a: Base, b: Base, matched: Correspondence) -> FloatArray:
-    """Return the breakpoints of both edges in the parameter along edge a; b's by the correspondence backwards."""
+def merged_spans(a: Base, b: Base, matched: Correspondence) -> FloatArray:
+    """Return the breakpoints of both edges in the parameter along edge a."""
+    return merge_breakpoints(a.breakpoints_along(), b_breaks_along_a(a, b, matched))
+
+
+def b_breaks_along_a(a: Base, b: Base, matched: Correspondence) -> FloatArray:
+    """Return the breakpoints of edge b, and both ends, in the parameter along edge a: the correspondence backwards."""
     start, end = a.range_along
     b_start, b_end = b.range_along
     t = np.mod((b.breakpoints_along() - b_start - matched.shift) / (b_end - b_start), 1.0)
     on_a = np.sort(start + (1 - t if matched.flipped else t) * (end - start))
-    return merge_breakpoints(a.breakpoints_along(), np.concatenate([[start], on_a, [end]]))
+    return np.concatenate([[start], on_a, [end]])
 
 
 def _centred(base: Base, t: FloatArray) -> FloatArray:
@@ -212,17 +213,19 @@ def _centred(base: Base, t: FloatArray) -> FloatArray:
 def _refined(a: Base, b: Base, matched: Correspondence) -> float:
     """Refine the shift by Newton's method on the correlation of both curves, the integral of <A(t), B(t + shift)>.
 
-    Exact quadrature over the spans of both, and derivatives of first order only: the curves need no more smoothness,
-    and their order does not matter.
+    Exact quadrature over the spans of both, of rational edges to rounding, and derivatives of first order only: the
+    curves need no more smoothness, and their order does not matter.
     """
     start, end = a.range_along
     length = b.range_along[1] - b.range_along[0]
     degree = 2 * max(row.degree for base in (a, b) for row in base.referee.rows)
+    if a.surface.is_rational or b.surface.is_rational:
+        degree = max(degree, _OF_QUOTIENTS)
     shift = matched.shift
     for _ in range(_NEWTON_STEPS):
         # A shift of a whole turn is none, but keeps the parameters periodic.
         turned = Correspondence(matched.flipped, shift % length or length)
-        nodes, weights = gauss_rule(_merged_spans(a, b, turned), degree)
+        nodes, weights = gauss_rule(merged_spans(a, b, turned), degree)
         s, weights = nodes.ravel(), weights.ravel() / (end - start)
         s_b = corresponding(a, b, turned, s)
         on_a, slope_a, slope_b = a.derivative(s, 0, 0), a.derivative(s, 0, 1), b.derivative(s_b, 0, 1)

@@ -8,6 +8,7 @@ Source: C. de Boor, A Practical Guide to Splines, ch. X; Piegl and Tiller, The N
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from math import comb
@@ -16,7 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from semispline.solver.arrays import FloatArray
-from semispline.solver.splines import BSplineSurface, SemiStructuredSurface
+from semispline.solver.splines import BSplineCurve, BSplineSurface, SemiStructuredSurface
 
 
 def curve_points(
@@ -81,10 +82,23 @@ def _homogeneous(surface: BSplineSurface, u: FloatArray, v: FloatArray, du: int,
 
 def _net(surface: BSplineSurface, origin: FloatArray | None = None) -> FloatArray:
     """Return control points counted from `origin`; (w x, w y, w z, w) in place of each of a rational surface."""
-    points = surface.control_points if origin is None else surface.control_points - origin
-    if surface.weights is None:
-        return points
-    return np.concatenate([points * surface.weights[..., None], surface.weights[..., None]], axis=2)
+    return _weighted(surface.control_points, surface.weights, origin)
+
+
+def _weighted(points: FloatArray, weights: FloatArray | None, origin: FloatArray | None = None) -> FloatArray:
+    """Return points counted from `origin`, shape (..., 3); with weights (w x, w y, w z, w), shape (..., 4)."""
+    points = points if origin is None else points - origin
+    return points if weights is None else np.concatenate([points * weights[..., None], weights[..., None]], axis=-1)
+
+
+def _rows(curves: Sequence[BSplineCurve], origin: FloatArray | None = None) -> list[_Row]:
+    """Return rows counted from `origin`, all with four numbers where one is rational: what has no weights has 1."""
+    rational = any(c.weights is not None for c in curves)
+    rows = []
+    for c in curves:
+        weights = np.ones(len(c.control_points)) if rational and c.weights is None else c.weights
+        rows.append(_Row(c.degree, c.knots, _weighted(c.control_points, weights, origin)))
+    return rows
 
 
 def surface_points(
@@ -104,13 +118,17 @@ def surface_points(
     ndarray, shape (K, 3)
     """
     u, v = np.broadcast_arrays(np.asarray(u, dtype=np.float64), np.asarray(v, dtype=np.float64))
+    orders = [(a, b) for a in range(du + 1) for b in range(dv + 1)] if surface.is_rational else [(du, dv)]
     if isinstance(surface, SemiStructuredSurface):
-        rows = np.stack(
-            [curve_points(c.degree, c.knots, c.control_points, v, dv) for c in surface.control_curves], axis=1
-        )
-        return curve_points(surface.degree_u, surface.knots_u, rows, u, du)
-    orders = [(a, b) for a in range(du + 1) for b in range(dv + 1)] if surface.weights is not None else [(du, dv)]
-    return _euclidean({order: _homogeneous(surface, u, v, *order) for order in orders})[du, dv]
+        rows = _rows(surface.control_curves)
+        along = {
+            b: np.stack([curve_points(row.degree, row.knots, row.control_points, v, b) for row in rows], axis=1)
+            for b in {b for _, b in orders}
+        }
+        found = {(a, b): curve_points(surface.degree_u, surface.knots_u, along[b], u, a) for a, b in orders}
+    else:
+        found = {order: _homogeneous(surface, u, v, *order) for order in orders}
+    return _euclidean(found)[du, dv]
 
 
 def _euclidean(values: dict[tuple[int, int], FloatArray]) -> dict[tuple[int, int], FloatArray]:
@@ -211,16 +229,19 @@ def edge_curves(
     if edge[0] == "u":
         nearest = _nearest(len(surface.control_curves), surface.degree_u, at_end, order)
         curves = [surface.control_curves[i] for i in nearest]
-        rows = [_Row(c.degree, c.knots, c.control_points - centre) for c in curves]
-        return EdgeCurves(_stacked(rows), 3, _steps(surface.degree_u, surface.knots_u, at_end, order))
+        rows = _rows(curves, centre)
+        dimension = rows[0].control_points.shape[1]
+        return EdgeCurves(_stacked(rows), dimension, _steps(surface.degree_u, surface.knots_u, at_end, order))
     # Each curve ends with derivatives of its own; those of one order are control points of a curve in u.
-    ends = np.zeros((len(surface.control_curves), order + 1, 3))
-    for end, c in zip(ends, surface.control_curves, strict=True):
-        points = [c.control_points[i] - centre for i in _nearest(len(c.control_points), c.degree, at_end, order)]
-        values = _ends(points, _steps(c.degree, c.knots, at_end, order))
+    rows = _rows(surface.control_curves, centre)
+    dimension = rows[0].control_points.shape[1]
+    ends = np.zeros((len(rows), order + 1, dimension))
+    for end, row in zip(ends, rows, strict=True):
+        points = [row.control_points[i] for i in _nearest(len(row.control_points), row.degree, at_end, order)]
+        values = _ends(points, _steps(row.degree, row.knots, at_end, order))
         end[: len(values)] = values
     line = _Row(surface.degree_u, surface.knots_u, ends.reshape(len(ends), -1))
-    return EdgeCurves((line,), 3, ())
+    return EdgeCurves((line,), dimension, ())
 
 
 def end_differences(degree: int, knots: FloatArray, at_end: bool, order: int) -> FloatArray:

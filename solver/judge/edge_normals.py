@@ -20,6 +20,9 @@ _NOTHING = 1e-9
 _SUSPECT = 0.5
 _PER_SPAN = 8
 _SECTIONS = 40
+# No value falls across a bracket by more than so many times the largest one: a spline of degree p by some p^2 / 2, and
+# beside a span that is narrower than its neighbour by as many times more.
+_STEEPEST = 1e5
 _GOLDEN = (5**0.5 - 1) / 2
 _REASONS = (
     "the derivative across the edge vanishes",
@@ -91,9 +94,13 @@ def _lows(base: Base, s: FloatArray, mean: float, kind: int, row: FloatArray) ->
         return []
     left, right = s[np.maximum(lows - 1, 0)], s[np.minimum(lows + 1, len(s) - 1)]
     best, least = s[lows], row[lows]
+    most, width = float(row.max()), right - left
     for _ in range(_SECTIONS):
+        # What is still high in a bracket so narrow cannot vanish there.
+        if np.all((least - VANISHES) * width > _STEEPEST * most * (right - left)):
+            return []
         inner = right - _GOLDEN * (right - left), left + _GOLDEN * (right - left)
-        below, above = (_sizes(base, x)[kind] / mean for x in inner)
+        below, above = np.split(_sizes(base, np.concatenate(inner))[kind] / mean, 2)
         for x, value in zip(inner, (below, above), strict=True):
             better = value < least
             best, least = np.where(better, x, best), np.where(better, value, least)

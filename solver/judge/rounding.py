@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import comb
 
 import numpy as np
 
 from semispline.solver.arrays import FloatArray
 from semispline.solver.judge.base import Base
 from semispline.solver.judge.de_boor import end_differences
-from semispline.solver.splines import BSplineSurface, bounding_box
+from semispline.solver.splines import BSplineSurface, bounding_box, breakpoints, merge_breakpoints
 
 # The bound on rounding counts each control point once; a few operations follow before it is measured.
 _ROUNDINGS = 8.0
@@ -25,13 +26,16 @@ def derivative_noises(base: Base, origin: FloatArray, order: int = 2) -> FloatAr
     stored = eps / 2 * float(np.linalg.norm(np.abs(box).max(axis=0)))
     worked = _ROUNDINGS * eps * float(np.abs(box - origin).max())
     across, along = _directions(base, order)
-    rational = isinstance(base.surface, BSplineSurface) and base.surface.weights is not None
     at_end = base.edge[1] == "1"
-    first = np.max(
-        [_factors(degree, _end_widths(degree, knots, at_end, order), rational) for degree, knots in across], 0
-    )
-    second = np.max([_factors(degree, _inner_widths(degree, knots, order), rational) for degree, knots in along], 0)
-    return np.asarray((stored + worked) * np.multiply.outer(first, second))
+    first = np.max([_factors(degree, _end_widths(degree, knots, at_end, order)) for degree, knots in across], 0)
+    second = np.max([_factors(degree, _inner_widths(degree, knots, order)) for degree, knots in along], 0)
+    factors = np.multiply.outer(first, second)
+    if base.surface.is_rational and (ratio := _weight_ratio(base, order)) > 1:
+        factors = _quotient_factors(factors, ratio)
+        # Weights are rounded, too: a part e of one moves the quotient f by e (P - f) times its share.
+        weighed = eps * float(np.abs(box - origin).max())
+        return np.asarray((stored + worked) * factors + weighed * _of_product(factors))
+    return np.asarray((stored + worked) * factors)
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,9 +64,11 @@ def edge_noises(base: Base, origin: FloatArray, order: int = 2) -> EdgeNoises:
     one = noises[0, 0]
     along = noises[0, :3] / one if one > 0 else np.ones(3)
     surface = base.surface
-    if base.edge[0] == "u" and not (isinstance(surface, BSplineSurface) and surface.weights is not None):
+    if surface.is_rational:
+        return EdgeNoises(noises, np.diag(noises[:3, 0]), along)
+    if base.edge[0] == "u":
         degree, knots = surface.degree_u, surface.knots_u
-    elif isinstance(surface, BSplineSurface) and surface.weights is None:
+    elif isinstance(surface, BSplineSurface):
         degree, knots = surface.degree_v, surface.knots_v
     else:
         return EdgeNoises(noises, np.diag(noises[:3, 0]), along)
@@ -100,12 +106,67 @@ def _inner_widths(degree: int, knots: FloatArray, order: int) -> list[float]:
     return result
 
 
-def _factors(degree: int, widths: list[float], rational: bool) -> FloatArray:
-    """Return how much a derivative of each order, from 0, may magnify an error of the control points.
-
-    A quotient has derivatives above its degree too.
-    """
+def _factors(degree: int, widths: list[float]) -> FloatArray:
+    """Return how much a derivative of each order, from 0, may magnify an error of the control points."""
     factors = [1.0]
     for s, width in enumerate(widths):
-        factors.append(factors[-1] * 2 * max(degree - s, 1 if rational else 0) / width)
+        factors.append(factors[-1] * 2 * max(degree - s, 0) / width)
     return np.array(factors)
+
+
+def _quotient_factors(factors: FloatArray, ratio: float) -> FloatArray:
+    """Return the same for a quotient, whose weights differ by no more than a ratio wherever they act together.
+
+    With f = X / w the error of the points has f w = X, and f^(k) w = X^(k) - sum C(k, j) w^(j) f^(k - j). Of X^(k) at
+    most the largest weight times the factor is left, of w^(j) half the spread of the weights times it.
+    """
+    spread = (ratio - 1) / 2
+    found = np.zeros_like(factors)
+    for a, b in np.ndindex(*factors.shape):
+        found[a, b] = ratio * factors[a, b] if a or b else 1.0
+        for i, j in np.ndindex(a + 1, b + 1):
+            if i or j:
+                found[a, b] += comb(a, i) * comb(b, j) * spread * factors[i, j] * found[a - i, b - j]
+    return found
+
+
+def _of_product(factors: FloatArray) -> FloatArray:
+    """Return how large derivatives of a product may be, by Leibniz' rule, where each of two has these bounds."""
+    found = np.zeros_like(factors)
+    for a, b in np.ndindex(*factors.shape):
+        for i, j in np.ndindex(a + 1, b + 1):
+            found[a, b] += comb(a, i) * comb(b, j) * factors[i, j] * factors[a - i, b - j]
+    return found
+
+
+def _weight_ratio(base: Base, order: int) -> float:
+    """Return the largest ratio of weights that act together along an edge, in derivatives up to `order`."""
+    surface = base.surface
+    # What these read at an end.
+    near = slice(-order - 1, None) if base.edge[1] == "1" else slice(order + 1)
+    rows: list[tuple[int, FloatArray, FloatArray]]
+    if isinstance(surface, BSplineSurface):
+        weights = np.ones(surface.control_points.shape[:2]) if surface.weights is None else surface.weights
+        if base.edge[0] == "v":
+            rows = [(surface.degree_u, surface.knots_u, row) for row in weights.T[near]]
+        else:
+            rows = [(surface.degree_v, surface.knots_v, row) for row in weights[near]]
+    else:
+        every = [
+            (c.degree, c.knots, np.ones(len(c.control_points)) if c.weights is None else c.weights)
+            for c in surface.control_curves
+        ]
+        if base.edge[0] == "u":
+            rows = every[near]
+        else:
+            ends = [own[near] for _, _, own in every]
+            low, high = (np.array([pick(end) for end in ends]) for pick in (min, max))
+            rows = [(surface.degree_u, surface.knots_u, side) for side in (low, high)]
+    breaks = merge_breakpoints(*(breakpoints(knots) for _, knots, _ in rows))
+    middles = (breaks[:-1] + breaks[1:]) / 2
+    acting = []
+    for degree, knots, own in rows:
+        windows = np.lib.stride_tricks.sliding_window_view(own, degree + 1)
+        acting.append(windows[np.searchsorted(knots, middles, side="right") - 1 - degree])
+    together = np.concatenate(acting, axis=1)
+    return float((together.max(axis=1) / together.min(axis=1)).max())

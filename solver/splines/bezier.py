@@ -1,9 +1,9 @@
 """Bezier patches divided by Bezier functions: both parts are semi-structured surfaces.
 
-A patch of degrees (m, n), cut along v = f(u) with f of degree k, falls into two parts that are polynomial of degree n
-across, while row s across is a Bezier curve of degree m + s k (below the cut) or m + (n - s) k (above it). The paper
-writes the curves along u and blends them in v; a `SemiStructuredSurface` blends in its first parameter. So the first
-parameter of a part runs across, from 0 to 1, and the second one runs along the cut, in the parameter of the patch:
+A patch of degrees (m, n), cut along v = f(u) with f of degree k, falls into two parts that have degree n across, while
+row s across is a Bezier curve of degree m + s k (below the cut) or m + (n - s) k (above it). The paper writes the
+curves along u and blends them in v; a `SemiStructuredSurface` blends in its first parameter. So the first parameter of
+a part runs across, from 0 to 1, and the second one runs along the cut, in the parameter of the patch:
 
     lower.evaluate(s, t) = patch(t, lo + s (f(t) - lo)),    upper.evaluate(s, t) = patch(t, f(t) + s (hi - f(t))),
 
@@ -24,6 +24,7 @@ from numpy.typing import ArrayLike
 from semispline.solver.arrays import FloatArray, finite_array, real_array, rebuilt, require
 from semispline.solver.errors import ControlPointError, InputError, OptionError
 from semispline.solver.scalars import real_number
+from semispline.solver.splines.evaluation import checked_weights, euclidean
 from semispline.solver.splines.knots import clamped
 from semispline.solver.splines.outline import crossing_sides, signed_area
 from semispline.solver.splines.surfaces import BSplineCurve, BSplineSurface, SemiStructuredSurface, Surface
@@ -82,18 +83,20 @@ class BezierFunction:
         return level[0]
 
 
-def bezier_patch(control_points: ArrayLike) -> BSplineSurface:
+def bezier_patch(control_points: ArrayLike, weights: ArrayLike | None = None) -> BSplineSurface:
     """Return the Bezier patch with these control points over the unit square.
 
     Parameters
     ----------
     control_points : array_like, shape (m + 1, n + 1, 3)
-        P_ij; the degrees m and n, at least 1, follow from the shape.
+        P_ij, Euclidean; the degrees m and n, at least 1, follow from the shape.
+    weights : array_like, shape (m + 1, n + 1), optional
+        Positive.
 
     Raises
     ------
     ControlPointError
-        Not finite, of another shape, or fewer than two rows or columns.
+        Not finite, of another shape, fewer than two rows or columns, or a weight that is not positive.
 
     Source: equation (4) of the paper.
 
@@ -106,7 +109,8 @@ def bezier_patch(control_points: ArrayLike) -> BSplineSurface:
     rows, columns = points.shape[:2]
     if min(rows, columns) < 2:
         raise ControlPointError(f"control_points: {rows} x {columns} of them, expected at least 2 x 2")
-    return BSplineSurface(rows - 1, columns - 1, _bezier_knots(rows - 1), _bezier_knots(columns - 1), points)
+    w = None if weights is None else checked_weights(weights, points, "weights")
+    return BSplineSurface(rows - 1, columns - 1, _bezier_knots(rows - 1), _bezier_knots(columns - 1), points, w)
 
 
 def divide_bezier(
@@ -117,7 +121,7 @@ def divide_bezier(
     Parameters
     ----------
     patch : BSplineSurface
-        Polynomial, without inner knots, over any domain; degrees (m, n).
+        Without inner knots, over any domain, rational too; degrees (m, n).
     coefficients : array_like, shape (k + 1,)
         v_0, ..., v_k of the function, equally spaced over the whole domain along the cut; values in the units of the
         divided parameter and inside its range. One coefficient gives a straight cut. Where the function reaches an end
@@ -137,7 +141,7 @@ def divide_bezier(
     Raises
     ------
     InputError
-        The patch is rational or has inner knots, or a coefficient is not finite or out of range.
+        The patch has inner knots, or a coefficient is not finite or out of range.
     OptionError
         An unknown direction.
 
@@ -156,7 +160,7 @@ def divide_bezier(
         raise OptionError(f"direction: found {direction!r}, expected 'u' or 'v'")
     _check_bezier(patch)
     # Rows of `points` run along the cut, columns across.
-    points = patch.control_points if direction == "v" else patch.control_points.transpose(1, 0, 2)
+    points = patch.homogeneous if direction == "v" else patch.homogeneous.transpose(1, 0, 2)
     along, across = patch.domain if direction == "v" else patch.domain[::-1]
     function = BezierFunction(finite_array(coefficients, 1, "coefficients", InputError), *along)
     return _divide(points, function, across, "coefficients")
@@ -170,7 +174,7 @@ def trim_bezier(
     Parameters
     ----------
     patch : BSplineSurface
-        Polynomial, without inner knots.
+        Without inner knots, rational too.
     left, right : BezierFunction
         u = left(v) and u = right(v), over intervals of v.
     bottom, top : BezierFunction
@@ -187,7 +191,7 @@ def trim_bezier(
     Raises
     ------
     InputError
-        The patch is rational or has inner knots; a side leaves the domain or touches its boundary; two sides do not
+        The patch has inner knots; a side leaves the domain or touches its boundary; two sides do not
         meet in their corner; two sides cross, touch, or leave their
         corner in one direction (decided by subdivision, not by samples); the outline is inside out.
 
@@ -213,7 +217,7 @@ def trim_bezier(
         _check_side(name, side, along, across)
     _check_outline(patch, left, right, bottom, top)
 
-    by_u = patch.control_points
+    by_u = patch.homogeneous
     by_v = by_u.transpose(1, 0, 2)
 
     def strip(name: str, side: BezierFunction, part: int) -> SemiStructuredSurface:
@@ -223,7 +227,7 @@ def trim_bezier(
     def rectangle(us: tuple[float, float], vs: tuple[float, float]) -> BSplineSurface:
         points = _segment(_segment(by_u, u_range, us).transpose(1, 0, 2), v_range, vs).transpose(1, 0, 2)
         p, q = patch.degree_u, patch.degree_v
-        return BSplineSurface(p, q, _bezier_knots(p, *us), _bezier_knots(q, *vs), points)
+        return BSplineSurface(p, q, _bezier_knots(p, *us), _bezier_knots(q, *vs), *euclidean(points))
 
     return {
         "left": strip("left", left, 0),
@@ -240,7 +244,7 @@ def trim_bezier(
 def _divide(
     points: FloatArray, function: BezierFunction, across: tuple[float, float], name: str
 ) -> tuple[SemiStructuredSurface, SemiStructuredSurface]:
-    """Divide a net, rows along and columns across the cut, given over the interval of the function."""
+    """Divide a homogeneous net, rows along and columns across the cut, given over the interval of the function."""
     lo, hi = across
     outside = (function.coefficients < lo) | (function.coefficients > hi)
     if outside.any():
@@ -258,17 +262,15 @@ def _divide(
 
 
 def _skin(rows: list[FloatArray], function: BezierFunction) -> SemiStructuredSurface:
-    curves = tuple(
-        BSplineCurve(
-            len(row) - 1, _bezier_knots(len(row) - 1, function.start, function.end), row, f"control_curves[{s}]"
-        )
-        for s, row in enumerate(rows)
-    )
-    return SemiStructuredSurface(len(rows) - 1, _bezier_knots(len(rows) - 1), curves)
+    curves = []
+    for s, row in enumerate(rows):
+        knots = _bezier_knots(len(row) - 1, function.start, function.end)
+        curves.append(BSplineCurve(len(row) - 1, knots, *euclidean(row), name=f"control_curves[{s}]"))
+    return SemiStructuredSurface(len(rows) - 1, _bezier_knots(len(rows) - 1), tuple(curves))
 
 
 def _product(function: FloatArray, curves: FloatArray) -> FloatArray:
-    """Return the Bezier control points of function x curve for curves of shape (K, r + 1, 3)."""
+    """Return the Bezier control points of function x curve for curves of shape (K, r + 1, 3 or 4)."""
     k, r = len(function) - 1, curves.shape[1] - 1
     weights = _product_weights(k, r)
     result = np.zeros((curves.shape[0], k + r + 1, curves.shape[2]))
@@ -303,8 +305,6 @@ def _bezier_knots(degree: int, start: float = 0.0, end: float = 1.0) -> FloatArr
 def _check_bezier(patch: BSplineSurface) -> None:
     if not isinstance(patch, BSplineSurface):
         raise InputError(f"patch: found {type(patch).__name__}, expected a BSplineSurface without inner knots")
-    if patch.weights is not None:
-        raise InputError("patch: found a rational surface, expected a polynomial one: the parts carry no weights")
     expected = (patch.degree_u + 1, patch.degree_v + 1)
     if patch.control_points.shape[:2] != expected:
         raise InputError(

@@ -1,4 +1,7 @@
-"""Curves over one domain brought to one degree and one knot vector: plain arrays, below the classes."""
+"""Curves over one domain brought to one degree and one knot vector: plain arrays, below the classes.
+
+Points are homogeneous, (w x, w y, w z, w), where a curve is rational. Where one of several curves is, all are made so.
+"""
 
 from __future__ import annotations
 
@@ -11,6 +14,8 @@ import numpy as np
 from semispline.solver.arrays import FloatArray
 from semispline.solver.errors import OptionError
 from semispline.solver.scalars import real_number
+from semispline.solver.splines.deviation import deviation_bound
+from semispline.solver.splines.evaluation import same_width
 from semispline.solver.splines.knots import MERGE_TOLERANCE, clamped, inner_knots
 from semispline.solver.splines.refinement import (
     combined,
@@ -22,7 +27,7 @@ from semispline.solver.splines.refinement import (
 
 
 class Curve(Protocol):
-    """What is needed of a curve: its degree, knots and control points."""
+    """What is needed of a curve: its degree, knots and homogeneous control points."""
 
     @property
     def degree(self) -> int:
@@ -33,8 +38,8 @@ class Curve(Protocol):
         """Clamped knots."""
 
     @property
-    def control_points(self) -> FloatArray:
-        """Control points, shape (n, d)."""
+    def homogeneous(self) -> FloatArray:
+        """Control points, shape (n, 3), or (n, 4) where rational."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,7 +48,7 @@ class PlainCurve:
 
     degree: int
     knots: FloatArray
-    control_points: FloatArray
+    homogeneous: FloatArray
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,12 +77,12 @@ class CompatibleCurves:
     ----------
     degree : int
     knots : ndarray, shape (n + degree + 1,)
-    control_points : ndarray, shape (number of curves, n, 3)
+    homogeneous : ndarray, shape (number of curves, n, 3), or (number of curves, n, 4) where any is rational
     """
 
     degree: int
     knots: FloatArray
-    control_points: FloatArray
+    homogeneous: FloatArray
 
 
 def compatible_curves(curves: Sequence[Curve], tolerance: float = MERGE_TOLERANCE) -> CompatibleCurves:
@@ -100,11 +105,11 @@ def compatible_curves(curves: Sequence[Curve], tolerance: float = MERGE_TOLERANC
     start, end = float(curves[0].knots[0]), float(curves[0].knots[-1])
     knots = clamped(np.repeat(np.array(order), [counts[x] for x in order]), degree, start, end)
     rows = []
-    for curve, high in zip(merged, raised, strict=True):
+    for curve, high, points in zip(merged, raised, same_width(*(c.homogeneous for c in merged)), strict=True):
         matrix = elevation_matrix(curve.degree, curve.knots, degree)
         if len(high) != len(knots):
             matrix = refinement_matrix(degree, high, knots) @ matrix
-        rows.append(combined(matrix, curve.control_points))
+        rows.append(combined(matrix, points))
     return CompatibleCurves(degree, knots, np.stack(rows))
 
 
@@ -161,9 +166,9 @@ def _without_slivers(curve: Curve, tolerance: float) -> PlainCurve:
     inner = inner_knots(curve.knots, curve.degree)
     width = tolerance * (end - start)
     if not len(inner) or (inner[0] - start > width and end - inner[-1] > width):
-        return PlainCurve(curve.degree, curve.knots, curve.control_points)
+        return PlainCurve(curve.degree, curve.knots, curve.homogeneous)
     matrix, knots = piece_matrix(curve.degree, curve.knots, start, end)
-    return PlainCurve(curve.degree, knots, combined(matrix, curve.control_points))
+    return PlainCurve(curve.degree, knots, combined(matrix, curve.homogeneous))
 
 
 def _end_shift(curve: Curve, whole: Curve) -> float:
@@ -173,16 +178,12 @@ def _end_shift(curve: Curve, whole: Curve) -> float:
 
 
 def _change(curve: Curve, other: Curve) -> float:
-    """Bound the distance between two curves of one degree.
-
-    Both are refined to all knots of both; the difference lies in the convex hull of the differences of their control
-    points.
-    """
+    """Bound the distance between two curves of one degree: both are refined to all knots of both."""
     counts: dict[float, int] = {}
     for vector in (curve.knots, other.knots):
         values, count = np.unique(vector, return_counts=True)
         for value, times in zip(values.tolist(), count.tolist(), strict=True):
             counts[value] = max(times, counts.get(value, 0))
     both = np.repeat(np.array(sorted(counts)), [counts[x] for x in sorted(counts)])
-    one, two = (refinement_matrix(c.degree, c.knots, both) @ c.control_points for c in (curve, other))
-    return float(np.linalg.norm(one - two, axis=1).max())
+    one, two = (refinement_matrix(c.degree, c.knots, both) @ c.homogeneous for c in (curve, other))
+    return deviation_bound([curve.degree], two, one)

@@ -6,12 +6,15 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from semispline.solver.arrays import FloatArray, SparseMatrix, finite_array, require
 from semispline.solver.errors import KnotError, OptionError
 from semispline.solver.scalars import is_whole, real_number
+from semispline.solver.splines.coarsening import coarser_points
 from semispline.solver.splines.compatible import compatible_curves
+from semispline.solver.splines.deviation import deviation_bound
+from semispline.solver.splines.evaluation import euclidean
 from semispline.solver.splines.knots import reversed_knots
 from semispline.solver.splines.refinement import (
     combined,
@@ -34,7 +37,9 @@ def reverse_curve(curve: BSplineCurve) -> BSplineCurve:
     array([[1.5, 0. , 0. ]])
     """
     require(curve, "curve", BSplineCurve)
-    return replace(curve, knots=reversed_knots(curve.knots), control_points=curve.control_points[::-1])
+    weights = None if curve.weights is None else curve.weights[::-1]
+    points = curve.control_points[::-1]
+    return replace(curve, knots=reversed_knots(curve.knots), control_points=points, weights=weights)
 
 
 def elevate_curve(curve: BSplineCurve, degree: int) -> BSplineCurve:
@@ -48,10 +53,8 @@ def elevate_curve(curve: BSplineCurve, degree: int) -> BSplineCurve:
     require(curve, "curve", BSplineCurve)
     if degree == curve.degree:
         return curve
-    points = combined(elevation_matrix(curve.degree, curve.knots, degree), curve.control_points)
-    return replace(
-        curve, degree=degree, knots=elevated_knots(curve.knots, degree - curve.degree), control_points=points
-    )
+    points = combined(elevation_matrix(curve.degree, curve.knots, degree), curve.homogeneous)
+    return _with_points(curve, degree, elevated_knots(curve.knots, degree - curve.degree), points)
 
 
 def insert_curve_knots(curve: BSplineCurve, knots: ArrayLike) -> BSplineCurve:
@@ -71,8 +74,8 @@ def insert_named(curve: BSplineCurve, more: FloatArray, name: str) -> BSplineCur
     """Return what `insert_curve_knots` does, with the caller's name for the knots in messages."""
     require(curve, "curve", BSplineCurve)
     refined = with_knots(curve.degree, curve.knots, more, name)
-    points = combined(refinement_matrix(curve.degree, curve.knots, refined), curve.control_points)
-    return replace(curve, knots=refined, control_points=points)
+    points = combined(refinement_matrix(curve.degree, curve.knots, refined), curve.homogeneous)
+    return _with_points(curve, curve.degree, refined, points)
 
 
 def restrict_curve(curve: BSplineCurve, start: float, end: float) -> BSplineCurve:
@@ -81,7 +84,12 @@ def restrict_curve(curve: BSplineCurve, start: float, end: float) -> BSplineCurv
     An end within 1e-12 of the domain of a knot means that knot: the piece takes no sliver of the neighbouring span.
     """
     matrix, knots = piece_matrix(curve.degree, curve.knots, start, end)
-    return replace(curve, knots=knots, control_points=combined(matrix, curve.control_points))
+    return _with_points(curve, curve.degree, knots, combined(matrix, curve.homogeneous))
+
+
+def _with_points(curve: BSplineCurve, degree: int, knots: FloatArray, homogeneous: FloatArray) -> BSplineCurve:
+    points, weights = euclidean(homogeneous)
+    return replace(curve, degree=degree, knots=knots, control_points=points, weights=weights)
 
 
 def split_curve(curve: BSplineCurve, v: float) -> tuple[BSplineCurve, BSplineCurve]:
@@ -92,7 +100,7 @@ def split_curve(curve: BSplineCurve, v: float) -> tuple[BSplineCurve, BSplineCur
 
 
 def combined_curves(curves: Sequence[BSplineCurve], matrix: SparseMatrix) -> tuple[BSplineCurve, ...]:
-    """Return one curve for each row of a sparse matrix: the linear combination of the curves with its weights.
+    """Return one curve for each row of a sparse matrix: the linear combination of the (homogeneous) curves.
 
     Each result has the knots of the curves that take part in it, and no others; those of different curves within 1e-12
     of the domain are one.
@@ -101,17 +109,17 @@ def combined_curves(curves: Sequence[BSplineCurve], matrix: SparseMatrix) -> tup
     for i in range(matrix.shape[0]):
         part = slice(matrix.indptr[i], matrix.indptr[i + 1])
         used = [curves[j] for j in matrix.indices[part]]
-        weights = np.asarray(matrix.data[part])
+        factors = np.asarray(matrix.data[part])
         if not used:
             first = curves[0].knots
             result.append(BSplineCurve(1, np.repeat(first[[0, -1]], 2), np.zeros((2, 3))))
         elif len(used) == 1:
-            points = used[0].control_points * weights[0]
-            result.append(used[0] if weights[0] == 1.0 else BSplineCurve(used[0].degree, used[0].knots, points))
+            points = euclidean(used[0].homogeneous * factors[0])
+            result.append(used[0] if factors[0] == 1.0 else BSplineCurve(used[0].degree, used[0].knots, *points))
         else:
             same = compatible_curves(used)
-            points = np.einsum("i,ijd->jd", weights, same.control_points)
-            result.append(BSplineCurve(same.degree, same.knots, points))
+            points = euclidean(np.einsum("i,ijd->jd", factors, same.homogeneous))
+            result.append(BSplineCurve(same.degree, same.knots, *points))
     return tuple(result)
 
 
@@ -130,8 +138,8 @@ def set_curve_continuity(curve: BSplineCurve, v: float, continuity: int, toleran
         The number of continuous derivatives that the form of the curve guarantees at v, from 0 to the degree; the
         degree itself means no knot at v.
     tolerance : float
-        The farthest that a control point may move for it, as a fraction of the largest extent of the control points;
-        rounding of their coordinates is allowed on top.
+        The farthest that a control point may move for it, or a point of a rational curve by a proven bound, as a
+        fraction of the largest extent of the control points; rounding of their coordinates is allowed on top.
 
     Raises
     ------
@@ -170,38 +178,24 @@ def set_curve_continuity(curve: BSplineCurve, v: float, continuity: int, toleran
     knots = np.delete(curve.knots, slice(first, first + present - wanted))
     points, moved = _coarser_points(curve, knots)
     extent = float(np.ptp(curve.control_points, axis=0).max())
-    limit = tolerance * extent + 16 * np.finfo(float).eps * float(np.abs(curve.control_points).max())
-    if moved > limit:
+    spread = 1.0 if curve.weights is None else float(curve.weights.max() / curve.weights.min())
+    limit = tolerance * extent + 16 * np.finfo(float).eps * float(np.abs(curve.control_points).max()) * spread
+    if not moved <= limit:
+        what = "its control points" if curve.weights is None else "its points"
         raise KnotError(
-            f"continuity: the curve cannot be C{continuity} at v = {at}: its control points would move by "
+            f"continuity: the curve cannot be C{continuity} at v = {at}: {what} would move by "
             f"{moved:.3g}, at most {limit:.3g} is allowed"
         )
-    return replace(curve, knots=knots, control_points=points)
+    return _with_points(curve, curve.degree, knots, points)
 
 
 def _coarser_points(curve: BSplineCurve, knots: FloatArray) -> tuple[FloatArray, float]:
-    """Return control points over fewer knots, and the farthest that refining them again misses the old ones.
+    """Return homogeneous points over fewer knots, and how far the curve is from the old one.
 
-    Points whose basis functions do not reach the removed knot stay as they are; the few others come from a local least
-    squares fit.
+    The distance is infinite where a weight would not be positive.
     """
-    matrix = refinement_matrix(curve.degree, knots, curve.knots)
-    rows, n = matrix.shape
-    # The first `head` rows and the last `tail` rows of the matrix are those of the identity.
-    alone = np.diff(matrix.indptr) == 1
-    only = matrix.indices[matrix.indptr[:-1]]
-    head = _leading(alone & (only == np.arange(rows)))
-    tail = min(n - head, _leading((alone & (only == np.arange(rows) - (rows - n)))[::-1]))
-    old = curve.control_points
-    points = np.concatenate([old[:head], np.zeros((n - head - tail, 3)), old[rows - tail :]])
-    rest = old - matrix @ points
-    if n > head + tail:
-        block = matrix[head : rows - tail, head : n - tail].toarray()
-        points[head : n - tail] = np.linalg.lstsq(block, rest[head : rows - tail], rcond=None)[0]
-    miss = np.linalg.norm(matrix @ points - old, axis=1)
-    return points, float(miss.max())
-
-
-def _leading(flags: NDArray[np.bool_]) -> int:
-    """Count the leading True values."""
-    return len(flags) if flags.all() else int(np.argmin(flags))
+    refining = refinement_matrix(curve.degree, knots, curve.knots)
+    points = coarser_points(refining, curve.homogeneous)
+    if not (points[:, 3:] > 0).all():
+        return points, np.inf
+    return points, deviation_bound([curve.degree], refining @ points, curve.homogeneous)

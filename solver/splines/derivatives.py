@@ -47,7 +47,8 @@ def derivative_curve(curve: BSplineCurve, order: int = 1) -> BSplineCurve:
     Raises
     ------
     InputError
-        The derivative, or one of lower order, jumps at a knot.
+        A rational curve (its derivative has other weights and twice the degree), or a derivative that jumps at a knot,
+        or one of lower order that does.
 
     Examples
     --------
@@ -56,7 +57,10 @@ def derivative_curve(curve: BSplineCurve, order: int = 1) -> BSplineCurve:
     array([[1., 0., 0.],
            [1., 2., 0.]])
     """
+    require(curve, "curve", BSplineCurve)
     check_orders(order=order)
+    if curve.weights is not None:
+        raise InputError("curve: rational; its derivative is not a spline of lower degree, use evaluate(v, order)")
     step = partial(_curve_step, name=f"derivative of order {order}")
     slack = np.full(len(curve.control_points), ROUNDING * _largest(curve.control_points))
     return _repeated(curve, slack, [step] * order)
@@ -85,15 +89,15 @@ def derivative_surface(surface: S, du: int = 0, dv: int = 0) -> S:
     """
     require(surface, "surface", BSplineSurface, SemiStructuredSurface)
     check_orders(du=du, dv=dv)
+    if surface.is_rational:
+        raise InputError(
+            "surface: rational; its derivative is not a spline of lower degree, use evaluate(u, v, du, dv)"
+        )
     name = f"derivative ({du}, {dv})"
     if isinstance(surface, SemiStructuredSurface):
         rounding = ROUNDING * max(_largest(c.control_points) for c in surface.control_curves)
         rows = [np.full(len(c.control_points), rounding) for c in surface.control_curves]
         return _mixed(surface, rows, [partial(_rows_step_u, name=name)] * du, [partial(_rows_step_v, name=name)] * dv)
-    if surface.weights is not None:
-        raise InputError(
-            "surface: rational; its derivative is not a spline of lower degree, use evaluate(u, v, du, dv)"
-        )
     slack = np.full(surface.control_points.shape[:2], ROUNDING * _largest(surface.control_points))
     return _mixed(surface, slack, [partial(_net_step_u, name=name)] * du, [partial(_net_step_v, name=name)] * dv)
 
@@ -235,4 +239,4 @@ def _distances(a: FloatArray, b: FloatArray) -> FloatArray:
 
 def _curve_distance(a: BSplineCurve, b: BSplineCurve) -> FloatArray:
     """Bound the distance between two curves by that of their control points over common knots."""
-    return np.zeros(1) if a is b else _distances(*compatible_curves([a, b]).control_points)
+    return np.zeros(1) if a is b else _distances(*compatible_curves([a, b]).homogeneous)

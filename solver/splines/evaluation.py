@@ -1,4 +1,4 @@
-"""What the evaluation of every spline shares: checked parameters, local bases, the quotient rule."""
+"""What the evaluation of every spline shares: parameters, local bases, homogeneous points, the quotient rule."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from math import comb
 import numpy as np
 from numpy.typing import ArrayLike
 
-from semispline.solver.arrays import FloatArray, real_array
-from semispline.solver.errors import InputError, OptionError
+from semispline.solver.arrays import FloatArray, finite_array, real_array
+from semispline.solver.errors import ControlPointError, InputError, OptionError
 from semispline.solver.scalars import is_whole
 from semispline.solver.splines.knots import MERGE_TOLERANCE, basis_matrix
 
@@ -36,6 +36,22 @@ def checked_parameters(x: ArrayLike, knots: FloatArray, name: str) -> FloatArray
     return np.asarray(np.clip(array, start, end))
 
 
+def checked_weights(values: ArrayLike, points: FloatArray, name: str) -> FloatArray:
+    """Return weights as a read-only array, refused unless there is a positive one for each point, shape (..., 3)."""
+    shape = points.shape[:-1]
+    weights = finite_array(values, len(shape), name, ControlPointError)
+    if weights.shape != shape:
+        raise ControlPointError(f"{name}: shape {weights.shape}, expected {shape}")
+    if (weights <= 0).any():
+        at = tuple(np.argwhere(weights <= 0)[0].tolist())
+        where = ", ".join(map(str, at))
+        raise ControlPointError(f"{name}[{where}]: found {weights[at]}, expected a positive number")
+    heaviest, farthest = float(weights.max()), float(np.abs(points).max())
+    if heaviest * farthest == np.inf:
+        raise ControlPointError(f"{name}: found {heaviest}, too large to be multiplied by the coordinate {farthest}")
+    return weights
+
+
 def point_parameters(
     u: ArrayLike, v: ArrayLike, knots_u: FloatArray, knots_v: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
@@ -59,6 +75,30 @@ def local_basis(degree: int, knots: FloatArray, x: FloatArray) -> tuple[FloatArr
     matrix = basis_matrix(degree, knots, x)
     shape = (len(x), degree + 1)
     return matrix.data.reshape(shape), matrix.indices.reshape(shape)
+
+
+def homogeneous_points(points: FloatArray, weights: FloatArray | None) -> FloatArray:
+    """Return the points themselves, shape (..., 3), or with weights (w x, w y, w z, w), shape (..., 4); read-only."""
+    if weights is None:
+        return points
+    w = weights[..., None]
+    result = np.concatenate([points * w, w], axis=-1)
+    result.setflags(write=False)
+    return result
+
+
+def euclidean(points: FloatArray) -> tuple[FloatArray, FloatArray | None]:
+    """Return Euclidean points and weights (None where there are three columns): the inverse of `homogeneous_points`."""
+    if points.shape[-1] == 3:
+        return points, None
+    weights = points[..., 3]
+    return points[..., :3] / weights[..., None], weights
+
+
+def same_width(*points: FloatArray) -> list[FloatArray]:
+    """Return arrays of three or four columns with as many as the widest has: what has no weight gets weight 1."""
+    width = max(x.shape[-1] for x in points)
+    return [x if x.shape[-1] == width else np.concatenate([x, np.ones((*x.shape[:-1], 1))], axis=-1) for x in points]
 
 
 def quotient(homogeneous: Callable[[int, int], FloatArray], du: int, dv: int) -> FloatArray:

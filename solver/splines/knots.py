@@ -45,6 +45,8 @@ def checked_knots(knots: ArrayLike, degree: int, n_control: int, name: str = "kn
     """
     if not is_whole(degree) or degree < 1:
         raise KnotError(f"{name}: degree is {degree!r}, expected a whole number of at least 1")
+    # NumPy's unsigned integers have no negative.
+    degree = int(degree)
     if n_control < degree + 1:
         raise KnotError(f"{name}: {n_control} control point(s) for degree {degree}, expected at least {degree + 1}")
     array = finite_array(knots, 1, name, KnotError)
@@ -84,7 +86,8 @@ def checked_knots(knots: ArrayLike, degree: int, n_control: int, name: str = "kn
         k = int(np.argmax(wrong))
         found, limit = (counts[k] + degree + 1, degree + 1) if at_end[k] else (counts[k], degree)
         where = f"{name}[{degree + 1 + first[k]}]"
-        raise KnotError(f"{where}: knot {inner[first[k]]} has multiplicity {found}, expected at most {limit}")
+        hint = "clamped_surface and clamp_knots take other vectors" if at_end[k] else "split the spline there"
+        raise KnotError(f"{where}: knot {inner[first[k]]} has multiplicity {found}, expected at most {limit} ({hint})")
     return array
 
 

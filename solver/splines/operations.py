@@ -16,10 +16,11 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from semispline.solver.arrays import FloatArray, SparseMatrix, finite_array, real_array, require
+from semispline.solver.arrays import FloatArray, SparseMatrix, finite_array, real_array, require, space_points
 from semispline.solver.errors import ControlPointError, InputError, KnotError
 from semispline.solver.scalars import real_number
 from semispline.solver.splines.curves import combined_curves, elevate_curve, insert_named, restrict_curve, reverse_curve
+from semispline.solver.splines.evaluation import checked_weights, euclidean, homogeneous_points
 from semispline.solver.splines.knots import affine_knots, reversed_knots
 from semispline.solver.splines.refinement import (
     clamp_knots,
@@ -127,7 +128,7 @@ def transform(surface: S, matrix: ArrayLike, translation: ArrayLike = (0.0, 0.0,
 
     Parameters
     ----------
-    surface : BSplineSurface (rational too) or SemiStructuredSurface
+    surface : BSplineSurface or SemiStructuredSurface, rational too
     matrix : array_like, shape (3, 3) or (4, 4)
         A, or [[A, t], [0, 0, 0, 1]].
     translation : array_like, shape (3,)
@@ -198,13 +199,13 @@ def elevate_degree(surface: S, degree_u: int | None = None, degree_v: int | None
     require(surface, "surface", BSplineSurface, SemiStructuredSurface)
     if degree_u is not None and degree_u != surface.degree_u:
         matrix = elevation_matrix(surface.degree_u, surface.knots_u, degree_u)
-        surface = _with_u(surface, degree_u, elevated_knots(surface.knots_u, degree_u - surface.degree_u), matrix)
+        surface = with_u(surface, degree_u, elevated_knots(surface.knots_u, degree_u - surface.degree_u), matrix)
     if degree_v is None:
         return surface
     if isinstance(surface, SemiStructuredSurface):
-        return _each_curve(surface, partial(elevate_curve, degree=degree_v))
+        return each_curve(surface, partial(elevate_curve, degree=degree_v))
     matrix = elevation_matrix(surface.degree_v, surface.knots_v, degree_v)
-    return _with_v(surface, degree_v, elevated_knots(surface.knots_v, degree_v - surface.degree_v), matrix)
+    return with_v(surface, degree_v, elevated_knots(surface.knots_v, degree_v - surface.degree_v), matrix)
 
 
 def insert_knots(surface: S, knots_u: ArrayLike = (), knots_v: ArrayLike = ()) -> S:
@@ -232,15 +233,15 @@ def insert_knots(surface: S, knots_u: ArrayLike = (), knots_v: ArrayLike = ()) -
     if len(more):
         refined = with_knots(surface.degree_u, surface.knots_u, more, "knots_u")
         matrix = refinement_matrix(surface.degree_u, surface.knots_u, refined)
-        surface = _with_u(surface, surface.degree_u, refined, matrix)
+        surface = with_u(surface, surface.degree_u, refined, matrix)
     more = finite_array(knots_v, 1, "knots_v", KnotError)
     if not len(more):
         return surface
     if isinstance(surface, SemiStructuredSurface):
-        return _each_curve(surface, partial(insert_named, more=more, name="knots_v"))
+        return each_curve(surface, partial(insert_named, more=more, name="knots_v"))
     refined = with_knots(surface.degree_v, surface.knots_v, more, "knots_v")
     matrix = refinement_matrix(surface.degree_v, surface.knots_v, refined)
-    return _with_v(surface, surface.degree_v, refined, matrix)
+    return with_v(surface, surface.degree_v, refined, matrix)
 
 
 def split_u(surface: S, u: float) -> tuple[S, S]:
@@ -282,19 +283,18 @@ def split_v(surface: S, v: float) -> tuple[S, S]:
 
 def _restrict_u(surface: S, start: float, end: float) -> S:
     matrix, knots = piece_matrix(surface.degree_u, surface.knots_u, start, end)
-    return _with_u(surface, surface.degree_u, knots, matrix)
+    return with_u(surface, surface.degree_u, knots, matrix)
 
 
 def _restrict_v(surface: S, start: float, end: float) -> S:
     if isinstance(surface, SemiStructuredSurface):
-        return _each_curve(surface, partial(restrict_curve, start=start, end=end))
+        return each_curve(surface, partial(restrict_curve, start=start, end=end))
     matrix, knots = piece_matrix(surface.degree_v, surface.knots_v, start, end)
-    return _with_v(surface, surface.degree_v, knots, matrix)
+    return with_v(surface, surface.degree_v, knots, matrix)
 
 
-def _each_curve(
-    surface: SemiStructuredSurface, change: Callable[[BSplineCurve], BSplineCurve]
-) -> SemiStructuredSurface:
+def each_curve(surface: SemiStructuredSurface, change: Callable[[BSplineCurve], BSplineCurve]) -> SemiStructuredSurface:
+    """Return the surface with every v-control curve changed; an error names the curve."""
     curves = []
     for i, curve in enumerate(surface.control_curves):
         with named_row(i):
@@ -302,7 +302,7 @@ def _each_curve(
     return replace(surface, control_curves=tuple(curves))
 
 
-def _with_u(surface: S, degree: int, knots: FloatArray, matrix: SparseMatrix) -> S:
+def with_u(surface: S, degree: int, knots: FloatArray, matrix: SparseMatrix) -> S:
     """Return the surface whose rows are `matrix` times the old (homogeneous) rows."""
     if isinstance(surface, SemiStructuredSurface):
         return SemiStructuredSurface(degree, knots, combined_curves(surface.control_curves, matrix))
@@ -310,7 +310,7 @@ def _with_u(surface: S, degree: int, knots: FloatArray, matrix: SparseMatrix) ->
     return from_homogeneous(degree, surface.degree_v, knots, surface.knots_v, net)
 
 
-def _with_v(surface: BSplineSurface, degree: int, knots: FloatArray, matrix: SparseMatrix) -> BSplineSurface:
+def with_v(surface: BSplineSurface, degree: int, knots: FloatArray, matrix: SparseMatrix) -> BSplineSurface:
     """Return the surface whose columns are `matrix` times the old (homogeneous) columns."""
     net = combined(matrix, surface.homogeneous.transpose(1, 0, 2))
     return from_homogeneous(surface.degree_u, degree, surface.knots_u, knots, net.transpose(1, 0, 2))
@@ -320,10 +320,7 @@ def from_homogeneous(
     degree_u: int, degree_v: int, knots_u: FloatArray, knots_v: FloatArray, net: FloatArray
 ) -> BSplineSurface:
     """Return the surface with the control net (x, y, z) or (w x, w y, w z, w), shape (n_u, n_v, 3 or 4)."""
-    if net.shape[2] == 3:
-        return BSplineSurface(degree_u, degree_v, knots_u, knots_v, net)
-    weights = net[..., 3]
-    return BSplineSurface(degree_u, degree_v, knots_u, knots_v, net[..., :3] / weights[..., None], weights)
+    return BSplineSurface(degree_u, degree_v, knots_u, knots_v, *euclidean(net))
 
 
 def clamped_surface(
@@ -341,8 +338,8 @@ def clamped_surface(
     degree_u, degree_v : int
     knots_u, knots_v : array_like, shapes (n_u + degree_u + 1,), (n_v + degree_v + 1,)
         Non-decreasing; the domain is [t_p, t_n]. What `clamp_knots` says of periodic splines holds here.
-    control_points : array_like, shape (n_u, n_v, 3)
-        Euclidean.
+    control_points : array_like, shape (n_u, n_v, 3) or (n_u, n_v, 2)
+        Euclidean; with two coordinates, in the plane z = 0.
     weights : array_like, shape (n_u, n_v), optional
 
     Examples
@@ -352,12 +349,9 @@ def clamped_surface(
     >>> surface.knots_v, surface.control_points[0, :, 1]
     (array([2., 2., 2., 3., 3., 3.]), array([0.5, 1. , 1.5]))
     """
-    net = finite_array(control_points, 3, "control_points", ControlPointError)
+    net = space_points(control_points, 3, "control_points", ControlPointError)
     if weights is not None:
-        w = finite_array(weights, 2, "weights", ControlPointError)
-        if w.shape != net.shape[:2]:
-            raise ControlPointError(f"weights: shape {w.shape}, expected {net.shape[:2]}")
-        net = np.concatenate([net * w[..., None], w[..., None]], axis=2)
+        net = homogeneous_points(net, checked_weights(weights, net, "weights"))
     new_u, net = clamp_knots(degree_u, knots_u, net)
     new_v, turned = clamp_knots(degree_v, knots_v, net.transpose(1, 0, 2))
     return from_homogeneous(degree_u, degree_v, new_u, new_v, turned.transpose(1, 0, 2))

@@ -10,6 +10,7 @@ from semispline.solver.errors import InputError, KnotError, OptionError
 from semispline.solver.scalars import is_whole, real_number, whole_number
 from semispline.solver.splines.compatible import merged_curves
 from semispline.solver.splines.curves import insert_curve_knots, set_curve_continuity
+from semispline.solver.splines.evaluation import euclidean
 from semispline.solver.splines.knots import MERGE_TOLERANCE
 from semispline.solver.splines.surfaces import BSplineCurve, SemiStructuredSurface, named_row
 
@@ -90,5 +91,5 @@ def merge_knots(surface: SemiStructuredSurface, tolerance: float = MERGE_TOLERAN
     """
     require(surface, "surface", SemiStructuredSurface)
     merged = merged_curves(surface.control_curves, tolerance)
-    rows = (BSplineCurve(row.degree, row.knots, row.control_points) for row in merged.curves)
+    rows = (BSplineCurve(row.degree, row.knots, *euclidean(row.homogeneous)) for row in merged.curves)
     return MergedKnots(replace(surface, control_curves=tuple(rows)), merged.knot_shift, merged.change)

@@ -14,14 +14,15 @@ from sympy import Matrix, Rational, diag
 from typer.testing import CliRunner
 
 from semispline.derivations.cli import NAMES, app, derived
-from semispline.derivations.codegen.files import THEORY, differences, expected_files, refreshed
+from semispline.derivations.codegen.files import THEORY, differences, expected_files, refreshed, write_files
 from semispline.derivations.contact import contact_jets, contact_rows
 from semispline.derivations.results import FORMS, RESULTS, Request, show
 from semispline.derivations.splines import end_derivatives
 
 ROOT = Path(__file__).parents[2]
 FORMULAS = (
-    "energy", "fairness", "linear-power", "linear-product", "shape-conditions", "special-conditions", "stationarity",
+    "energy", "fairness", "homogeneous-conditions", "homogeneous-last", "linear-power", "linear-product",
+    "shape-conditions", "special-conditions", "stationarity",
 )  # fmt: skip
 
 
@@ -198,38 +199,65 @@ def test_bad_requests_end_with_status_two_and_one_line(arguments, words):
     assert result.stderr.count("\n") == 1
 
 
+# That files and formulas are fresh is tested here and in test_codegen.py without the command; `make fresh` runs it too.
+@pytest.mark.slow
 def test_check_is_quiet_in_this_checkout():
     found = run(["generate", "--check"])
     assert (found.returncode, found.stdout) == (0, ""), found.stdout + found.stderr
 
 
-def test_check_sees_and_generate_repairs_whatever_differs(checkout):
+@pytest.fixture
+def spoilt(checkout):
+    """A checkout with a file edited, one missing, one too many, and a formula of the theory changed."""
     folder = checkout / "solver" / "generated"
-    edited, missing, stale = folder / "contact_numpy.py", folder / "energy_casadi.py", folder / "old_numpy.py"
-    original = {path: path.read_text() for path in (edited, missing)}
-    edited.write_text(original[edited].replace("+ 1", "- 1", 1))
-    missing.unlink()
-    stale.write_text("x = 1\n")
+    edited = folder / "contact_numpy.py"
+    edited.write_text(edited.read_text().replace("+ 1", "- 1", 1))
+    (folder / "energy_casadi.py").unlink()
+    (folder / "old_numpy.py").write_text("x = 1\n")
     theory = checkout / THEORY
-    text = theory.read_text()
-    theory.write_text(text.replace("P_{0}", "P_{1}", 1))
+    theory.write_text(theory.read_text().replace("P_{0}", "P_{1}", 1))
+    return checkout
 
-    found = run(["generate", "--check"], checkout)
+
+def says_what_differs(text):
+    for line in (
+        "--- solver/generated/contact_numpy.py (found)",
+        "+++ solver/generated/energy_casadi.py (generated)",
+        "+++ solver/generated/old_numpy.py (stale: nothing generates it)",
+        "--- docs/theory.md (found)",
+    ):
+        assert line in text
+    assert [line[0] for line in text.splitlines() if "x = 1" in line] == ["-"]
+
+
+def is_as_committed(checkout):
+    """That what is committed is what is generated is tested in test_codegen.py, and below for the theory."""
+    assert (checkout / THEORY).read_text() == (ROOT / THEORY).read_text()
+    here, there = ({p.name: p.read_text() for p in (f / "solver/generated").glob("*.py")} for f in (checkout, ROOT))
+    assert here == there
+
+
+def test_whatever_differs_is_seen_and_repaired(spoilt, generated, monkeypatch):
+    monkeypatch.setattr("semispline.derivations.codegen.files.generated_files", lambda: generated)
+    expected = expected_files(spoilt, derived)
+    says_what_differs(differences(spoilt, expected))
+    assert {path.name for path in write_files(spoilt, expected)} == {
+        "contact_numpy.py", "energy_casadi.py", "old_numpy.py", "theory.md",
+    }  # fmt: skip
+    is_as_committed(spoilt)
+    assert differences(spoilt, expected) == ""
+
+
+@pytest.mark.slow
+def test_the_command_sees_and_repairs_whatever_differs(spoilt):
+    found = run(["generate", "--check"], spoilt)
     assert found.returncode == 1, found.stderr
-    assert "--- solver/generated/contact_numpy.py (found)" in found.stdout
-    assert "+++ solver/generated/energy_casadi.py (generated)" in found.stdout
-    assert "+++ solver/generated/old_numpy.py (stale: nothing generates it)" in found.stdout
-    assert "--- docs/theory.md (found)" in found.stdout
-    assert [line[0] for line in found.stdout.splitlines() if "x = 1" in line] == ["-"]
+    says_what_differs(found.stdout)
     # Nothing was touched.
-    assert stale.exists()
-    assert not missing.exists()
-
-    assert run(["generate"], checkout).returncode == 0
-    assert {path: path.read_text() for path in original} == original
-    assert theory.read_text() == text
-    assert not stale.exists()
-    assert differences(checkout, expected_files(checkout, derived)) == ""
+    assert (spoilt / "solver/generated/old_numpy.py").exists()
+    assert not (spoilt / "solver/generated/energy_casadi.py").exists()
+    assert run(["generate"], spoilt).returncode == 0
+    is_as_committed(spoilt)
 
 
 def test_generate_outside_a_checkout_says_so(tmp_path):
@@ -242,6 +270,7 @@ def test_generate_outside_a_checkout_says_so(tmp_path):
     assert sorted(path.name for path in tmp_path.iterdir()) == ["derivations", "semispline"]
 
 
+@pytest.mark.slow
 def test_a_folder_that_cannot_be_written_is_one_line(checkout):
     target = checkout / "solver" / "generated" / "contact_numpy.py"
     target.unlink()

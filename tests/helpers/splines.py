@@ -27,10 +27,12 @@ def _numbers(draw):
 
 
 @st.composite
-def curves(draw, domain=(0.0, 1.0), degrees=(1, 6), most=3):
+def curves(draw, domain=(0.0, 1.0), degrees=(1, 6), most=3, rational=False):
     degree = draw(st.integers(*degrees))
     knots = draw(knot_vectors(degree, domain, most))
-    return BSplineCurve(degree, knots, _numbers(draw).uniform(-1, 1, (len(knots) - degree - 1, 3)))
+    rng, n = _numbers(draw), len(knots) - degree - 1
+    points = rng.uniform(-1, 1, (n, 3))
+    return BSplineCurve(degree, knots, points, rng.uniform(0.5, 2.0, n) if rational else None)
 
 
 @st.composite
@@ -46,15 +48,19 @@ def bspline_surfaces(draw, rational=None, degrees=(1, 6), most=3):
 
 
 @st.composite
-def semistructured_surfaces(draw, degrees=(1, 6), most=2):
+def semistructured_surfaces(draw, degrees=(1, 6), most=2, rational=False):
+    """With `rational` some rows carry weights, at least one of them, and some may not."""
     p = draw(st.integers(*degrees))
     knots_u = draw(knot_vectors(p, draw(st.sampled_from(DOMAINS)), most))
     domain = draw(st.sampled_from(DOMAINS))
     rng, rows = _numbers(draw), []
-    for _ in range(len(knots_u) - p - 1):
+    for i in range(len(knots_u) - p - 1):
         q = draw(st.integers(*degrees))
         knots = draw(knot_vectors(q, domain, most))
-        rows.append(BSplineCurve(q, knots, rng.uniform(-1, 1, (len(knots) - q - 1, 3))))
+        n = len(knots) - q - 1
+        points = rng.uniform(-1, 1, (n, 3))
+        weighted = rational and (i == 0 or draw(st.booleans()))
+        rows.append(BSplineCurve(q, knots, points, rng.uniform(0.5, 2.0, n) if weighted else None))
     return SemiStructuredSurface(p, knots_u, rows)
 
 
@@ -104,15 +110,40 @@ def _fraction(value):
 def exact_point(surface, u, v, du=0, dv=0):
     """Point of a surface, or a mixed derivative, in Fractions."""
     if isinstance(surface, SemiStructuredSurface):
-        rows = [exact_curve(c.degree, c.knots, c.control_points, v, dv) for c in surface.control_curves]
-        return exact_curve(surface.degree_u, surface.knots_u, rows, u, du)
-    net = [[[_fraction(x) for x in point] for point in row] for row in surface.control_points]
-    if surface.weights is None:
-        return _tensor(surface, net, u, v, du, dv)
-    for row, weights in zip(net, surface.weights, strict=True):
-        for j, w in enumerate(weights):
-            row[j] = [x * _fraction(w) for x in row[j]] + [_fraction(w)]
-    raw = {(a, b): _tensor(surface, net, u, v, a, b) for a in range(du + 1) for b in range(dv + 1)}
+        rows = [(c.degree, c.knots, c.control_points, c.weights) for c in surface.control_curves]
+    else:
+        weights = [None] * len(surface.control_points) if surface.weights is None else surface.weights
+        pairs = zip(surface.control_points, weights, strict=True)
+        rows = [(surface.degree_v, surface.knots_v, points, w) for points, w in pairs]
+    rational = any(w is not None for _, _, _, w in rows)
+    rows = [(q, knots, _exact_homogeneous(points, w, rational)) for q, knots, points, w in rows]
+
+    def tensor(a, b):
+        along = [exact_curve(q, knots, points, v, b) for q, knots, points in rows]
+        return exact_curve(surface.degree_u, surface.knots_u, along, u, a)
+
+    if not rational:
+        return tensor(du, dv)
+    return _exact_quotient({(a, b): tensor(a, b) for a in range(du + 1) for b in range(dv + 1)})[du, dv]
+
+
+def exact_rational_curve(curve, x, order=0):
+    """Point of a rational curve, or a derivative, in Fractions."""
+    points = _exact_homogeneous(curve.control_points, curve.weights, True)
+    raw = {(0, k): exact_curve(curve.degree, curve.knots, points, x, k) for k in range(order + 1)}
+    return _exact_quotient(raw)[0, order]
+
+
+def _exact_homogeneous(points, weights, rational):
+    rows = [[_fraction(x) for x in point] for point in points]
+    if not rational:
+        return rows
+    own = [Fraction(1)] * len(rows) if weights is None else [_fraction(w) for w in weights]
+    return [[x * w for x in point] + [w] for point, w in zip(rows, own, strict=True)]
+
+
+def _exact_quotient(raw):
+    """Derivatives of X / w from those of (X, w), by the product rule on X = w S."""
     known = {}
     for a, b in raw:
         value = raw[a, b][:3]
@@ -122,12 +153,7 @@ def exact_point(surface, u, v, du=0, dv=0):
                     factor = comb(a, i) * comb(b, j) * raw[i, j][3]
                     value = [x - factor * y for x, y in zip(value, known[a - i, b - j], strict=True)]
         known[a, b] = [x / raw[0, 0][3] for x in value]
-    return known[du, dv]
-
-
-def _tensor(surface, net, u, v, du, dv):
-    rows = [exact_curve(surface.degree_v, surface.knots_v, row, v, dv) for row in net]
-    return exact_curve(surface.degree_u, surface.knots_u, rows, u, du)
+    return known
 
 
 def _differences(degree, knots, points, order):
@@ -154,23 +180,25 @@ def _gain(degree, knots, order):
 
 def scale(surface, du=0, dv=0):
     """Largest control point of a derivative; for a rational surface what the quotient rule makes of such numbers."""
-    if isinstance(surface, SemiStructuredSurface):
-        # v-derivatives of each row; a u-difference at most doubles them for each order.
-        rows = [_differences(c.degree, c.knots, c.control_points, dv) for c in surface.control_curves if c.degree >= dv]
-        largest = max((np.abs(row).max() for row in rows), default=1e-30)
-        return float(largest) * _gain(surface.degree_u, surface.knots_u, du)
-    net = surface.control_points
-    if surface.weights is not None:
-        net = np.concatenate([net * surface.weights[..., None], surface.weights[..., None]], axis=2)
+    semi = isinstance(surface, SemiStructuredSurface)
+    if semi:
+        rows = [(c, _weighted(c.control_points, c.weights, surface.is_rational)) for c in surface.control_curves]
+        net = np.concatenate([points for _, points in rows])
+    else:
+        net = _weighted(surface.control_points, surface.weights, surface.weights is not None)
 
     def largest(a, b):
+        if semi:
+            # v-derivatives of each row; a u-difference at most doubles them for each order.
+            along = [np.abs(_differences(c.degree, c.knots, x, b)).max(axis=0) for c, x in rows if c.degree >= b]
+            return np.max(along or [np.zeros(net.shape[1])], axis=0) * _gain(surface.degree_u, surface.knots_u, a)
         if a > surface.degree_u or b > surface.degree_v:
             return np.zeros(net.shape[2])
-        rows = _differences(surface.degree_u, surface.knots_u, net, a).transpose(1, 0, 2)
-        points = _differences(surface.degree_v, surface.knots_v, rows, b)
+        across = _differences(surface.degree_u, surface.knots_u, net, a).transpose(1, 0, 2)
+        points = _differences(surface.degree_v, surface.knots_v, across, b)
         return np.abs(points).reshape(-1, net.shape[2]).max(axis=0)
 
-    if surface.weights is None:
+    if net.shape[-1] == 3:
         return max(float(largest(du, dv).max()), 1e-30)
     known = {}
     for a in range(du + 1):
@@ -180,5 +208,12 @@ def scale(surface, du=0, dv=0):
                 for j in range(b + 1):
                     if i or j:
                         total += comb(a, i) * comb(b, j) * largest(i, j)[3] * known[a - i, b - j]
-            known[a, b] = total / surface.weights.min()
-    return float(known[du, dv])
+            known[a, b] = total / net[..., 3].min()
+    return max(float(known[du, dv]), 1e-30)
+
+
+def _weighted(points, weights, rational):
+    if not rational:
+        return points
+    w = np.ones(points.shape[:-1]) if weights is None else weights
+    return np.concatenate([points * w[..., None], w[..., None]], axis=-1)

@@ -170,12 +170,21 @@ def chosen_for(mutant: Mutant, table: Table, root: Path, bound: float) -> list[s
     direct = _running(mutant, table, root)
     files = {test.split("::")[0] for test in direct}
     same_files = {test for test in table.seconds if test.split("::")[0] in files} - direct
+    own = sorted((test for test in direct if rank(test)[0] == 0), key=rank)
     chosen: list[str] = []
     total = 0.0
-    for test in [*sorted(direct, key=rank), *sorted(same_files, key=rank)]:
-        if not chosen or total + table.seconds[test] <= bound or test.startswith(doctests):
-            chosen.append(test)
-            total += table.seconds[test]
+
+    def choose(tests: list[str], most: float) -> None:
+        nonlocal total
+        for test in tests:
+            if not chosen or total + table.seconds[test] <= most or test.startswith(doctests):
+                chosen.append(test)
+                total += table.seconds[test]
+
+    # Long tests of its own do not leave out the quick ones of others.
+    choose(own, bound / 2)
+    choose([*sorted(direct - set(own), key=rank), *sorted(same_files, key=rank)], bound)
+    choose([test for test in own if test not in chosen], bound)
     return chosen
 
 

@@ -158,6 +158,7 @@ def _in_child(slot: Slot, job: Job) -> int:
     os.chdir(slot.tree)
     sys.path[:] = [str(slot.tree), *(p for p in sys.path if p and not _is_ours(Path(p)))]
     os.environ["PYTHONPATH"] = str(slot.tree)
+    os.environ["SEMISPLINE_SWEEPS"] = "whole"
     os.environ.pop("PYTEST_CURRENT_TEST", None)  # of a test that tests this tool
     if not job.writes_bytecode:
         sys.dont_write_bytecode = True

@@ -92,6 +92,8 @@ def test_the_tests_of_a_file_come_first_then_those_of_its_room_and_its_doctest_i
     other, near, slow, quick, doctest, beside = seconds
     assert chosen_for(mutant, table, Path(), 100.0) == [quick, doctest, slow, near, other, beside]
     assert chosen_for(mutant, table, Path(), 1.0) == [quick, doctest]
+    # Half of the time is for others, and what is left of it for its own.
+    assert chosen_for(mutant, table, Path(), 12.0) == [quick, doctest, near, other, beside, slow]
 
 
 def test_a_survivor_is_shown_what_is_new_and_a_killed_one_rests_on_its_function_and_its_killer(tmp_path):

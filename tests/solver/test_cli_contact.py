@@ -55,7 +55,8 @@ def test_bases_a_millionth_as_large_as_far_away(name, options, side):
     # What is measured is what the stored surfaces do: the same numbers counted from one of them, which is exact.
     base, blended = near(a if side == "a" else b, a), near(Base(result.surface, "u0" if side == "a" else "u1"), a)
     again = measure_contact(*((base, blended) if side == "a" else (blended, base)))
-    assert contact.curvature_jump_relative == pytest.approx(again.curvature_jump_relative, rel=1e-6)
+    # To what the worst lies above the worst sample: it is sought where it is more than rounding, and that is near only.
+    assert contact.curvature_jump_relative == pytest.approx(again.curvature_jump_relative, rel=1e-5)
     assert 1e-4 < contact.curvature_jump_relative < 2e-3
 
 

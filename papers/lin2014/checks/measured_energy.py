@@ -16,7 +16,6 @@ from semispline.solver.arrays import FloatArray
 from semispline.solver.blending import BlendResult, blend, thin_plate_energy
 from semispline.solver.judge import local_geometry, surface_points
 from semispline.solver.splines import (
-    BSplineCurve,
     SemiStructuredSurface,
     affine_knots,
     basis_matrix,
@@ -30,9 +29,7 @@ def parameter_dependence() -> Consequence:
     surface = made_blend().surface
     doubled = replace(
         surface,
-        control_curves=tuple(
-            BSplineCurve(c.degree, affine_knots(c.knots, 0.0, 2.0), c.control_points) for c in surface.control_curves
-        ),
+        control_curves=tuple(replace(c, knots=affine_knots(c.knots, 0.0, 2.0)) for c in surface.control_curves),
     )
     measured = {}
     for name, version in (("v in [0, 1]", surface), ("v in [0, 2]", doubled)):

@@ -4,10 +4,11 @@ from itertools import product
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from scipy.interpolate import BSpline
 
+from helpers.sweeps import examples
 from semispline import Base, BSplineSurface, map_domain, read_surface, reverse_v, revolve_polynomial
 from semispline.papers.reproduction.families.closed_rims import KINDS, closed_rims
 from semispline.papers.reproduction.families.open_pairs import open_pair
@@ -94,7 +95,7 @@ def test_open_pairs_lie_as_they_promise(family, exits):
 
 
 @given(st.sampled_from(["facing", "u-turn"]), st.integers(0, 10**9))
-@settings(max_examples=20)
+@examples(20)
 def test_any_seed_makes_a_pair(family, seed):
     gap, angles = lies(*(getattr(open_pair(family, seed), side) for side in "ab"))
     low, high = {"facing": (0, 80), "u-turn": (90, 150)}[family]

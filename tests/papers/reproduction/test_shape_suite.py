@@ -1,8 +1,10 @@
 """What the suite of shapes counts, on blends whose shape is known; and the limits, on a sample of each family."""
 
+import importlib
 import json
 from dataclasses import replace
 from functools import cache
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -39,6 +41,7 @@ GOOD = Shape(
     must_loop=False,
     waist=None,
     meets=(),
+    search_seconds=None,
     points_stored=30,
     points_converted=50,
     seconds=0.1,
@@ -140,6 +143,36 @@ def test_flat_rings_are_blended_flat_and_judged_so():
     assert shape.meets == ()
     assert shape.points_stored == result.surface.n_control_points
     assert shape.points_converted == result.surface.to_bspline().control_points.size // 3
+
+
+def test_the_time_of_the_search_on_a_mesh_is_told_where_one_was_searched():
+    # Facing strips: a direction shows that nothing meets. A U-turn covers its bases, seen from anywhere.
+    for problem, is_searched in ((open_pair("facing", 0), False), (open_pair("u-turn", 3), True)):
+        shape, result = judged(problem, FAIR_SET)
+        assert result.shape.meets.searched == ()
+        assert any("no mesh was searched" in text for text in result.shape.meets.sentences) is is_searched
+        assert (shape.search_seconds is not None) is is_searched
+        assert shape.search_seconds is None or shape.search_seconds > 0
+
+
+def test_the_search_on_a_mesh_has_a_column_of_its_own(monkeypatch):
+    monkeypatch.syspath_prepend(Path(__file__).parents[3] / "benchmarks" / "shapes")
+    tables = importlib.import_module("tables")
+    shapes = [replace(GOOD, search_seconds=x) for x in (0.1, 0.4, 0.9, None)]
+    head, _, line = tables._ratios([row(shape) for shape in (*shapes, Refused("no"))]).splitlines()
+    cells = dict(zip(*([x.strip() for x in text.strip("|").split("|")] for text in (head, line)), strict=True))
+    # Blends of 0.1 s each.
+    assert cells["mesh searched in"] == "3"
+    assert cells["mesh search over blend, median"] == "4.00"
+    assert cells["mesh search, most"] == "9.00"
+    line = tables._ratios([row(GOOD)]).splitlines()[2]
+    assert line.endswith("| 0 | – | – |")
+
+
+def test_bounds_of_alpha_alone_are_counted():
+    shape, result = judged(open_pair("u-turn", 4), FAIR_SET)
+    assert result.active_bounds == ("p2 of b upper",)
+    assert shape.at_bound == ()
 
 
 def test_what_cannot_be_blended_is_refused_with_its_reason():

@@ -1,16 +1,19 @@
 """Which layouts a fair blend tries, and which it takes."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from helpers.facing import random_facing
-from semispline import Base, BSplineSurface, OptionError, blend
+from semispline import Base, BSplineSurface, OptionError, blend, measure_fairness
 from semispline.papers.reproduction.families.suite import shape_problem
 from semispline.solver.blending import candidates, fair_search
-from semispline.solver.blending.fair_search import FairSolution
+from semispline.solver.blending.fair_search import FairSolution, solve_fair
 from semispline.solver.blending.linear_problem import gap_ratio
 from semispline.solver.blending.pipeline import state_problem
-from semispline.solver.blending.shape_parameters import Found
+from semispline.solver.blending.shape_parameters import Found, found_fair
+from semispline.solver.blending.warnings import bound_warnings
 
 CUBIC = [0, 0, 0, 0, 1, 1, 1, 1]
 
@@ -105,6 +108,37 @@ def test_where_the_lower_end_stops_the_search_the_window_begins_lower():
     boxed = blend(a, b, box=(1 / 4, 4))
     assert boxed.alpha2_bounds == pytest.approx((natural[0] * arc / 4, natural[0] * arc * 4))
     assert "alpha2 lower" in boxed.active_bounds
+
+
+@pytest.mark.parametrize(("seed", "side", "end"), [(4, 1, "upper"), (13, 0, "upper"), (8, 1, "lower")])
+def test_p2_at_the_end_of_its_range_is_named_and_warned_of(seed, side, end):
+    problem = shape_problem("u-turn", seed)
+    result = blend(problem.a, problem.b)
+    name = "ab"[side]
+    assert result.active_bounds == (f"p2 of {name} {end}",)
+    (text,) = (w for w in result.warnings if w.startswith("p2"))
+    assert text.startswith(f"p2 of side {name} at its {end} end {result.p2[side]:.3g}, where it moves the third row")
+    assert text.endswith("; set p2, or alpha")
+    # Its range is that of the third row: by at most an arc's length, in the parameter of the base.
+    stated = state_problem(problem.a, problem.b).problem
+    first, second = stated.contacts[side][2][:2]
+    most = stated.exits.arc * stated.natural[side] * 5 * 4 / (first * second)
+    assert result.p2[side] == pytest.approx(most if end == "upper" else -most, rel=1e-9)
+    # Nobody is told of an end that is not met.
+    assert not bound_warnings(stated, replace(found_fair(solve_fair(stated), "reduced"), fair=None))
+
+
+@pytest.mark.parametrize(("seed", "side"), [(4, 1), (13, 0)])
+def test_beyond_the_end_of_p2_the_blend_is_fairer(seed, side):
+    problem = shape_problem("u-turn", seed)
+    result = blend(problem.a, problem.b)
+
+    def measured(factor):
+        p2 = [value * (factor if k == side else 1.0) for k, value in enumerate(result.p2)]
+        alpha = np.sqrt(result.alpha2), np.sqrt(result.beta2)
+        return measure_fairness(blend(problem.a, problem.b, alpha=alpha, p2=tuple(p2)).surface).value
+
+    assert measured(1.1) < 0.98 * measured(1.0) < 0.98 * 0.98 * measured(0.9)
 
 
 def test_where_nothing_is_searched_there_are_no_candidates():

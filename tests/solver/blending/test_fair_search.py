@@ -1,15 +1,15 @@
 """The fairest shape: J and its gradient against other ways to them, and blends whose right shape is known."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
-import pyiges
 import pytest
 
 from helpers.bases import facing_pair
 from helpers.facing import random_facing
+from helpers.impeller import impeller_pair
 from semispline import (
     Base,
     BlendOptions,
@@ -24,6 +24,7 @@ from semispline import (
     revolve_polynomial,
     transform,
 )
+from semispline.papers.reproduction.families.open_pairs import open_pair
 from semispline.solver.blending import fair_search
 from semispline.solver.blending.candidates import Layout, _fairer
 from semispline.solver.blending.fair_objective import FairObjective, make_unknowns
@@ -32,7 +33,7 @@ from semispline.solver.blending.fairness_grid import NODES_U, across, along
 from semispline.solver.blending.fairness_table import FOLDS, LOOPS, FairnessTable
 from semispline.solver.blending.pipeline import state_problem
 from semispline.solver.blending.projected import Point, descend
-from semispline.solver.blending.shape_parameters import Found
+from semispline.solver.blending.shape_parameters import Found, found_fair
 from semispline.solver.blending.warnings import fairness_warning
 
 CASES = Path(__file__).parents[2] / "cases"
@@ -109,10 +110,10 @@ def refined(problem, found, times):
     return objective.j(end, at.value), np.exp(further.x - end)[[0, 2]]
 
 
-def test_a_finer_grid_chooses_the_same():
+def test_a_finer_grid_chooses_the_same(whole):
     # At least 97 of 100 choices within 1 %, and every measure.
     moved = []
-    for k in range(33):
+    for k in range(33 if whole else 11):
         problem = state_problem(*random_facing(np.random.default_rng([7, k])), **FAIR).problem
         found = solve_fair(problem)
         measure, choice = refined(problem, found, 4)
@@ -214,8 +215,7 @@ def test_what_is_flat_takes_the_arc():
 
 
 def test_the_real_pair_turns_evenly():
-    path = Path(pyiges.__file__).parent / "examples" / "impeller.igs"
-    result = blend(Base(read_surface(f"{path}#102"), "u0"), Base(read_surface(f"{path}#131"), "u0"), **FAIR)
+    result = blend(*impeller_pair(), **FAIR)
     assert measure_turn(result.surface).degrees < 15
     assert not result.warnings
 
@@ -267,6 +267,20 @@ def test_where_every_candidate_folds_the_fairest_is_taken_and_says_so(seed):
     assert not any("alpha fair" in text for text in result.warnings)
     # The quartic was tried as well.
     assert [c.degree_u for c in result.candidates][:2] == [5, 4]
+
+
+def test_a_search_that_is_stopped_by_a_refusal_says_by_which():
+    problem = state_problem(*(getattr(open_pair("rough", 13), side) for side in "ab")).problem
+    stopped, free = solve_fair(problem), solve_fair(state_problem(*sheets()).problem)
+    assert (stopped.stopped_by, free.stopped_by) == ("loop", "")
+    # There its slope is still steep; where nothing is refused the search goes on.
+    assert stopped.slope > 0.1
+    further = fair_search._solved(problem, (), None)
+    assert further.value < stopped.value
+    known = found_fair(stopped, "reduced").known
+    assert "; it ended beside a loop, which is refused" in known
+    assert "it ended beside a fold" in found_fair(replace(stopped, stopped_by="fold"), "reduced").known
+    assert "it ended" not in found_fair(free, "reduced").known
 
 
 def test_a_candidate_that_passes_comes_before_a_fairer_one_that_was_let_pass():

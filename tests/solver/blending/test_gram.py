@@ -13,7 +13,7 @@ from scipy.interpolate import BSpline
 
 from helpers.bases import facing_pair, random_knots
 from helpers.papers_set import blend
-from semispline import BSplineCurve, BSplineSurface, InputError, SemiStructuredSurface, thin_plate_energy
+from semispline import BSplineCurve, BSplineSurface, SemiStructuredSurface, thin_plate_energy
 from semispline.solver.blending.gram import EnergyForm, gram_matrix
 from semispline.solver.judge.de_boor import surface_points
 from semispline.solver.splines.quadrature import Basis, gauss_rule
@@ -128,13 +128,6 @@ def test_energy_of_a_known_surface():
     net = [[[i / 2, j / 2, (i == 2) + 3 * i * j / 4 + (j == 2)] for j in range(3)] for i in range(3)]
     surface = BSplineSurface(2, 2, [0, 0, 0, 1, 1, 1], [0, 0, 0, 1, 1, 1], net)
     assert thin_plate_energy(surface) == pytest.approx(26, rel=1e-14)
-
-
-def test_rational_surface_is_refused():
-    k = [0, 0, 1, 1]
-    surface = BSplineSurface(1, 1, k, k, [[[0, 0, 0], [0, 1, 0]], [[1, 0, 0], [1, 1, 0]]], [[1, 1], [1, 2]])
-    with pytest.raises(InputError, match="rational"):
-        thin_plate_energy(surface)
 
 
 def test_energy_of_a_blend_agrees_with_the_referee():

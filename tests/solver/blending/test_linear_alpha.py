@@ -1,16 +1,16 @@
 """alpha linear in v: exact rows, contact by the referee, gradients, and a search that finds what the gap asks for."""
 
 from fractions import Fraction
-from pathlib import Path
 
 import numpy as np
-import pyiges
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from sympy import Matrix
 
 from helpers.facing import random_facing
+from helpers.impeller import impeller_pair
+from helpers.sweeps import examples
 from semispline import (
     Base,
     BSplineCurve,
@@ -20,7 +20,6 @@ from semispline import (
     measure_contact,
     measure_fairness,
     measure_turn,
-    read_surface,
     revolve_polynomial,
     transform,
 )
@@ -42,11 +41,6 @@ from semispline.solver.judge.limits import shortfalls
 from semispline.solver.splines import Basis, basis_matrix, clamped, linear_product_matrices
 
 QUINTIC = {"degree_u": 5, "middle_curves": 0, "alpha": "fair"}
-
-
-def impeller():
-    path = Path(pyiges.__file__).parent / "examples" / "impeller.igs"
-    return Base(read_surface(f"{path}#102"), "u0"), Base(read_surface(f"{path}#131"), "u0")
 
 
 def finished(stated, problem, a, b, p2=None):
@@ -73,7 +67,7 @@ def splines(draw):
     return degree, knots, points
 
 
-@settings(max_examples=12, deadline=None)
+@examples(12)
 @given(splines(), st.integers(-3, 3), st.integers(-3, 3))
 def test_products_are_the_derived_ones(spline, low, high):
     degree, knots, points = spline
@@ -190,7 +184,7 @@ def test_the_gradient_is_that_of_the_value(options):
 
 
 def test_the_impeller_turns_a_third_as_much():
-    pair = impeller()
+    pair = impeller_pair()
     stated = state_problem(*pair, **QUINTIC)
     constant = solve_fair(stated.problem)
     assert gap_ratio(stated.problem) == pytest.approx(6.5, abs=0.1)

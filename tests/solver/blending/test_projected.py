@@ -1,5 +1,7 @@
 """Projected BFGS: known minima, inside and at bounds, and ways that are shut."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -70,6 +72,23 @@ def test_where_the_way_is_shut_it_ends_before_the_wall():
     assert 0.3 < end.x[0] <= 0.5
     assert np.isfinite(end.value)
     assert calls < 60
+    # The place beyond the wall is named.
+    assert end.shut[0] > 0.5
+
+
+def test_a_way_that_ends_by_itself_is_not_shut():
+    def walled(x):
+        return (np.inf if x[0] > 1.5 else float((x[0] - 1) ** 2), np.array([2 * (x[0] - 1), 0.0]))
+
+    beyond = replace(started(walled, [0.0, 0.0], np.diag([0.1, 1.0])), shut=np.ones(2))
+    end = descend(walled, beyond, *WIDE, np.full(2, 9.0), 1e-9)
+    assert end.x[0] == pytest.approx(1.0, abs=1e-9)
+    assert end.shut is None
+
+    def noise(x):
+        return 1.0, np.array([1.0, 0.0])
+
+    assert descend(noise, started(noise, [0.0, 0.0]), *WIDE, np.ones(2), 1e-9).shut is None
 
 
 def test_convex_keeps_what_is_convex():

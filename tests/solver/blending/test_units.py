@@ -2,11 +2,12 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from helpers.bases import facing_pair, moved, ring
 from helpers.papers_set import blend
+from helpers.sweeps import examples
 from semispline import Base, BSplineSurface
 
 # Moving rounds the input itself: eps times 10^4 sizes is 2e-12 of the size, and the blend, whose rows are differences
@@ -42,7 +43,7 @@ def assert_same(bases, method, scale, offset, **options):
     assert other.energy / scale**2 == pytest.approx(plain.energy, rel=limit, abs=1e-12 * size**2)
 
 
-@settings(max_examples=30)
+@examples(30)
 @given(
     st.integers(0, 10**6),
     st.floats(-6, 6),

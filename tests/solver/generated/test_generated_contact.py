@@ -6,11 +6,12 @@ from fractions import Fraction
 import casadi as ca
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from scipy.interpolate import BSpline
 from sympy import Float, Matrix, Rational, Symbol, diff
 
+from helpers.sweeps import examples
 from semispline.derivations.contact import A, base_derivative, contact_conditions, contact_rows
 from semispline.derivations.splines import end_derivatives, span_symbols
 from semispline.solver.generated import contact_casadi, contact_numpy
@@ -90,7 +91,7 @@ def contacts(draw):
 
 
 @given(contacts())
-@settings(max_examples=60)
+@examples(60)
 def test_a_blend_with_generated_rows_follows_the_base_in_scipy(contact):
     order, p, U, q, W, rng, blend_end, base_end = contact
     a = rng.uniform(0.25, 4)

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import rhino3dm
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from OCP.BRep import BRep_Builder
 from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge, BRepBuilderAPI_MakeFace, BRepBuilderAPI_MakeWire
@@ -20,6 +20,7 @@ from OCP.STEPControl import STEPControl_StepModelType, STEPControl_Writer
 from OCP.TopoDS import TopoDS, TopoDS_Compound
 from typer.testing import CliRunner
 
+from helpers.sweeps import examples
 from semispline import BlendOptions, BSplineSurface
 from semispline.papers.cli import app as all_commands
 from semispline.solver.c_export import write_c
@@ -184,7 +185,7 @@ def test_of_a_seam_each_side_is_an_edge(tmp_path, suffix, periodic):
     assert offsets(part("low", 0.0, 2 * math.pi, 0.0, 70.0)) == ([30.0, 30.0, 0.0, 30.0], [True, True, True, False])
 
 
-@settings(max_examples=40)
+@examples(40)
 @given(cut=st.floats(0.05, 0.95), scale=st.floats(1e-2, 1e4), bend=st.floats(-0.5, 0.5))
 def test_what_is_cut_off_is_measured_at_any_size(tmp_path_factory, cut, scale, bend):
     # Bent along v alone: what is off is straight.

@@ -109,3 +109,17 @@ def test_closed_surfaces_are_marked(tmp_path):
     (u0, u1), (v0, v1) = found.domain
     points = found.evaluate_grid(np.linspace(u0, u1, 9), np.linspace(v0, v1, 9))
     np.testing.assert_allclose(np.hypot(points[..., 0], points[..., 1]), 2.0, rtol=1e-15)
+
+
+def test_surfaces_of_breps_are_called_by_their_shape(tmp_path):
+    axis = rhino3dm.Circle(rhino3dm.Point3d(1, 2, 3), 2.0)
+    box = rhino3dm.BoundingBox(rhino3dm.Point3d(0, 0, 0), rhino3dm.Point3d(1, 2, 3))
+    breps = {
+        "cylinder": rhino3dm.Cylinder(axis, 3.0).ToBrep(False, False),
+        "sphere": rhino3dm.Sphere(rhino3dm.Point3d(1, 2, 3), 2.0).ToBrep(),
+        "plane": rhino3dm.Brep.CreateFromBoundingBox(box),
+        "surface": rhino3dm.Brep.CreateFromSurface(spline([0, 0, 0, 1, 1, 1], [0, 0, 1, 1], True)),
+    }
+    for kind, brep in breps.items():
+        save(tmp_path / "s.3dm", brep)
+        assert {entry.kind for entry in list_surfaces(tmp_path / "s.3dm")} == {kind}

@@ -184,7 +184,7 @@ def test_revolved_faces_of_the_impeller_are_exact(impeller):
     faces = [face for face in impeller.faces if face.kind == "revolution"]
     assert len(faces) == 30
     for face in faces:
-        surface, exact = face.surface(), face._geometry()
+        surface, exact = face.surface(), BRep_Tool.Surface_s(face.face)
         axis = exact.Axis()
         origin = np.array([axis.Location().X(), axis.Location().Y(), axis.Location().Z()])
         along = np.array([axis.Direction().X(), axis.Direction().Y(), axis.Direction().Z()])
@@ -246,16 +246,15 @@ def test_a_face_on_a_part_of_its_surface_is_trimmed_and_read_whole(tmp_path):
     assert read_occ(path).faces[0].trimmed() is False
 
 
-def test_an_offset_surface_is_listed_and_refused(tmp_path):
+def test_an_offset_surface_is_listed_with_its_error(tmp_path):
     path = tmp_path / "offset.brep"
     offset = Geom_OffsetSurface(occ_surface(BSplineSurface(2, 2, *[[0, 0, 0, 1, 1, 1]] * 2, bump())), 0.1)
     BRepTools.Write_s(BRepBuilderAPI_MakeFace(offset, 1e-7).Face(), str(path))
     (face,) = read_occ(path).faces
     entry = describe(0, face)
-    assert (entry.kind, entry.degree_u) == ("offset", None)
-    assert "no exact B-spline form" in entry.problem
-    with pytest.raises(FileError, match=r"offset.brep#0: .*offset has no exact"):
-        face.surface()
+    assert (entry.kind, entry.problem) == ("offset", None)
+    # Size 4; the kernel's own conversion is off by 2e-6.
+    assert 0 < entry.deviation < 4e-7
 
 
 def bump():

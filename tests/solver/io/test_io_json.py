@@ -16,6 +16,7 @@ from semispline import (
     EdgeError,
     FileError,
     InputError,
+    KnotError,
     OptionError,
     SemiStructuredSurface,
 )
@@ -84,6 +85,22 @@ def test_file_round_trip(tmp_path, surface):
     assert [p.name for p in tmp_path.iterdir()] == ["s.json"]
 
 
+@pytest.mark.parametrize("whole", [np.int64, np.int32, np.uint8])
+def test_whole_numbers_of_numpy_are_stored_as_plain_ones(tmp_path, whole):
+    path = tmp_path / "s.json"
+    plain = mixed_degrees()
+    curves = (BSplineCurve(whole(c.degree), c.knots, c.control_points) for c in plain.control_curves)
+    for surface, expected in (
+        (BSplineSurface(whole(1), whole(1), K, K, SQUARE.control_points), SQUARE),
+        (SemiStructuredSurface(whole(2), plain.knots_u, tuple(curves)), plain),
+    ):
+        write_json_surface(path, surface)
+        assert same(read_json_surface(path), expected)
+    options = BlendOptions(degree_u=whole(4), middle_curves=whole(2))
+    write_problem(path, StoredProblem(SQUARE, "u1", SQUARE, "v0", options))
+    assert read_problem(path).options == BlendOptions(degree_u=4, middle_curves=2)
+
+
 def test_only_curves_of_another_degree_state_it():
     record = surface_record(mixed_degrees())
     assert record["degree_v"] == 3
@@ -133,7 +150,9 @@ def changed(*path, to):
         (changed("knots_u", 3, to=math.inf), ["knots_u[3]", "inf"]),
         (changed("control_points", 1, 0, 2, to="x"), ["control_points[1][0][2]", "'x'"]),
         (changed("control_points", 1, 0, 2, to=math.nan), ["control_points[1][0][2]", "nan"]),
-        (changed("control_points", 1, 0, to=[1, 2]), ["control_points[1][0]", "2 coordinate"]),
+        (changed("control_points", 1, 0, to=[1, 2]), ["control_points[1][0]", "2 coordinate", "3 as in the first"]),
+        (changed("control_points", 1, 0, to=[1]), ["control_points[1][0]", "1 coordinate", "3, or 2 where z is 0"]),
+        (changed("control_points", to=[[], []]), ["control_points"]),
         (changed("control_points", 1, to=[[0, 0, 0]]), ["control_points[1]", "1 points", "expected 2"]),
         (changed("control_points", to=[]), ["control_points"]),
         (changed("control_points", to={}), ["control_points"]),
@@ -169,6 +188,35 @@ def test_unclamped_and_periodic_knots_are_clamped_exactly():
         np.testing.assert_allclose(surface.evaluate(np.full(41, u), v), expected, rtol=0, atol=1e-14)
 
 
+@pytest.mark.parametrize("end", [0, -1])
+def test_an_end_knot_too_many_goes_with_a_point_that_does_nothing(end):
+    knots, net = [0, 0, 1, 2, 2], [[0, 0, 0], [1, 0, 2], [3, 0, 0]]
+    more = ([knots[end], *knots], [[9, 9, 9], *net]) if end == 0 else ([*knots, knots[end]], [*net, [9, 9, 9]])
+    record = surface_record(SQUARE) | {"knots_v": more[0], "control_points": [more[1], np.add(more[1], 1).tolist()]}
+    surface = surface_from_record(record)
+    assert surface.knots_v.tolist() == knots
+    assert surface.control_points.tolist() == [net, np.add(net, 1).tolist()]
+
+
+def test_points_of_the_plane_have_z_0():
+    record = surface_record(SQUARE) | {"control_points": [[[0, 1], [2, 3]], [[4, 5], [6, 7]]]}
+    assert surface_from_record(record).control_points[1].tolist() == [[4, 5, 0], [6, 7, 0]]
+    record = surface_record(mixed_degrees())
+    for curve in record["control_curves"]:
+        curve["control_points"] = [point[:2] for point in curve["control_points"]]
+    found = surface_from_record(record).control_curves[1].control_points
+    np.testing.assert_array_equal(found[:, :2], mixed_degrees().control_curves[1].control_points[:, :2])
+    assert not found[:, 2].any()
+
+
+def test_an_inner_knot_of_too_high_multiplicity_says_what_to_do():
+    record = surface_record(SQUARE) | {"knots_v": [0, 0, 0.5, 0.5, 1, 1]}
+    record["control_points"] = np.zeros((2, 4, 3)).tolist()
+    words = r"knots_v\[2\]: knot 0.5 has multiplicity 2, expected at most 1 \(split the spline there\)"
+    with pytest.raises(KnotError, match=words):
+        surface_from_record(record)
+
+
 @pytest.mark.parametrize(
     ("change", "words"),
     [
@@ -176,7 +224,7 @@ def test_unclamped_and_periodic_knots_are_clamped_exactly():
         (changed("control_curves", 1, "knots_v", 4, to=-1.0), ["control_curves[1].knots[4]", "non-decreasing"]),
         (changed("control_curves", 1, "knots_v", 8, to=2.0), ["control_curves[1].knots[8]"]),
         (changed("control_curves", 2, "degree_v", to=4), ["control_curves[2].degree_v", "4", "3"]),
-        (changed("control_curves", 2, "weights", to=[1]), ["control_curves[2].weights", "no such key"]),
+        (changed("control_curves", 2, "weights", to=[1]), ["control_curves[2].weights", "(1,)", "(4,)"]),
         (
             changed("control_curves", 0, "control_points", 1, to=[0, 0, 0, 0]),
             ["control_curves[0].control_points[1]", "4"],

@@ -22,7 +22,14 @@ MODELS = [
 ]
 
 
-@pytest.mark.parametrize(("name", "faces", "rational", "trimmed"), MODELS)
+# One of each format in `make test`: most of the time goes into starting the kernel.
+QUICK = ("build123d_M6-1x12-countersunk-screw.step", "demos_as1_pe_203.stp", "occt_shell1.brep", "v4_SolidHandle.3dm")
+
+
+@pytest.mark.parametrize(
+    ("name", "faces", "rational", "trimmed"),
+    [pytest.param(*model, marks=[] if model[0] in QUICK else pytest.mark.slow) for model in MODELS],
+)
 def test_faces_of_a_model(shared, name, faces, rational, trimmed):
     found = list_surfaces(shared / "data" / "cad" / name)
     assert (len(found), sum(e.rational for e in found), sum(e.trimmed for e in found)) == (faces, rational, trimmed)

@@ -2,18 +2,19 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 
 from helpers.shapes import torus
 from helpers.splines import surfaces
-from semispline import BSplineCurve, BSplineSurface, SemiStructuredSurface
+from helpers.sweeps import examples
+from semispline import BSplineCurve, SemiStructuredSurface
 from semispline.solver.judge.bezier_pieces import bernstein_by_degree, in_pieces
 from semispline.solver.judge.de_boor import surface_points
 
 ORDERS = [(0, 0), (1, 0), (0, 1), (2, 0), (1, 1), (0, 2)]
 
 
-@settings(max_examples=30, deadline=None)
+@examples(30)
 @given(surfaces())
 def test_points_and_derivatives_are_the_referees(surface):
     pieces = in_pieces(surface)
@@ -21,6 +22,9 @@ def test_points_and_derivatives_are_the_referees(surface):
     # Inside of the spans: at a knot a derivative may jump.
     u, v = (np.concatenate([(x[:-1] + np.diff(x) * t) for t in (0.1, 0.5, 0.8)]) for x in surface.breakpoints)
     uu, vv = (x.ravel() for x in np.meshgrid(u, v, indexing="ij"))
+    # Points where nothing is said of an order.
+    assert np.array_equal(pieces.evaluate(uu, vv), pieces.evaluate(uu, vv, 0, 0))
+    assert np.array_equal(pieces.evaluate_grid(u, v), pieces.evaluate_grid(u, v, 0, 0))
     for du, dv in ORDERS:
         expected = surface_points(surface, uu, vv, du, dv)
         size = np.abs(expected).max()
@@ -47,10 +51,15 @@ def test_rows_of_other_degrees_and_knots_that_follow_a_knot():
         )
 
 
-def test_rational_surfaces_stay_as_they_are():
+def test_rational_surfaces_are_quotients_of_pieces():
     surface = torus(3.0, 1.0)
-    assert in_pieces(surface) is surface
-    pieces = in_pieces(BSplineSurface(1, 1, [0, 0, 1, 1], [0, 0, 1, 1], np.zeros((2, 2, 3))))
+    pieces = in_pieces(surface)
+    u, v = (np.linspace(start, end, 9) for start, end in surface.domain)
+    for du, dv in [(3, 0), (2, 1), *ORDERS[::-1], (0, 3)]:
+        expected = surface.evaluate_grid(u, v, du, dv)
+        size = np.abs(expected).max()
+        np.testing.assert_allclose(pieces.evaluate_grid(u, v, du, dv), expected, atol=1e-12 * size)
+        np.testing.assert_allclose(pieces.evaluate(u, v, du, dv), surface.evaluate(u, v, du, dv), atol=1e-12 * size)
     assert in_pieces(pieces) is pieces
 
 

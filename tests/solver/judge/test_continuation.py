@@ -6,8 +6,8 @@ import pytest
 from helpers.bases import facing_pair, tube
 from helpers.papers_set import blend
 from helpers.shapes import sheets
-from semispline import Base, EdgeError
-from semispline.solver.judge.continuation import continuation
+from semispline import Base, BSplineSurface, EdgeError, transform
+from semispline.solver.judge.continuation import _nearest, continuation
 from semispline.solver.judge.sections import unit_normals
 
 OPTIONS = {"degree_u": 5, "middle_curves": 0, "alpha": "natural"}
@@ -64,3 +64,49 @@ def test_another_edge_is_refused():
     surface, other = sheets(1, 2)
     with pytest.raises(EdgeError, match=r"its edge u1 is .* away from the surface's end u0"):
         continuation(surface, Base(other, "u1"), 0)
+
+
+K1 = [0, 0, 1, 1]
+
+
+def strip(start, end, offset=0.0, knots=K1):
+    """The unit wide strip between two places along x."""
+    places = np.linspace(start, end, len(knots) - 2) + offset
+    return BSplineSurface(1, 1, knots, K1, [[[x, 0, 0], [x, 1, 0]] for x in places])
+
+
+@pytest.mark.parametrize(
+    ("gap", "offset", "is_edge"),
+    # A millionth of the extent; and 256 roundings of what is 1e9 away, 5.7e-5.
+    [(0.5e-6, 0, True), (2e-6, 0, False), (3e-5, 1e9, True), (1e-4, 1e9, False)],
+)
+def test_how_far_apart_edges_may_be(gap, offset, is_edge):
+    surface, base = strip(0, 1, offset), Base(strip(1 + gap, 2, offset), "u0")
+    if is_edge:
+        continuation(surface, base, 1)
+    else:
+        with pytest.raises(EdgeError, match="away from the surface's end u1"):
+            continuation(surface, base, 1)
+
+
+def test_knots_of_the_base_are_counted_from_its_edge():
+    surface, knots = strip(0, 1), [2, 2, 2.25, 3, 3]
+    for end, base, expected in (
+        (1, Base(strip(1, 2, knots=knots), "u0"), [0, 0.25, 1]),
+        (0, Base(strip(-1, 0, knots=knots), "u1"), [0, 0.75, 1]),
+    ):
+        across, along = continuation(surface, base, end).breakpoints
+        assert across.tolist() == expected
+        assert along.tolist() == [0, 1]
+
+
+def test_the_nearest_place_on_a_closed_edge():
+    """Of a flat ring, whose sides are close to each other, and of one that is a circle."""
+    rng = np.random.default_rng(3)
+    ring = tube(rng, 11, noise=0.02)
+    for surface in (ring, transform(ring, np.diag([10.0, 0.3, 1.0]))):
+        base = Base(surface, "u1")
+        first, last = base.range_along
+        for part in np.arange(16) / 16 + 0.01:
+            at = first + part * (last - first)
+            assert _nearest(base, base.derivative(np.array([at]), 0, 0)[0]) == pytest.approx(at, abs=1e-9)

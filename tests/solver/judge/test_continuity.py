@@ -7,7 +7,7 @@ import pytest
 
 from helpers.bases import facing_pair, moved
 from helpers.occ import analyse, edge_point
-from semispline import Base, BSplineSurface, EdgeError, measure_contact
+from semispline import Base, BSplineSurface, EdgeError, map_domain, measure_contact
 from semispline.solver.judge import continuity
 from semispline.solver.judge.edge_normals import check_regular_edge
 from semispline.solver.splines.knots import uniform_knots
@@ -27,6 +27,8 @@ def test_gap_angle_and_curvature_of_parabolas():
     a, b = parabola(2.0), parabola(-1.0, bend=-1.0, offset=0.25)
     contact = measure_contact(Base(a, "u0"), Base(b, "u0"))
     assert contact.gap == pytest.approx(0.25, rel=1e-14)
+    # Rates are measured where they are asked for.
+    assert (contact.rate_jump, contact.second_rate_jump) == (None, None)
     assert contact.angle_degrees == pytest.approx(0, abs=1e-12)
     # Seen with one normal, the curvatures are 2 and -1.
     assert contact.curvature_jump == pytest.approx(3.0, rel=1e-13)
@@ -154,6 +156,7 @@ def test_measured_in_parts_as_measured_at_once(monkeypatch, at_once, edges):
         places = [contact.pop(f"{name}_at") for name in ("gap", "angle", "curvature", "rate", "second_rate")]
         rounding = contact.pop("rounding") | {f"{name} allowed": x for name, x in contact.pop("allowed").items()}
         assert contact.pop("no_normal") == ()
+        assert contact.pop("corresponds") == "affine"
         found.append((rounding, contact, [(p["parameter"], *p["point"]) for p in places]))
     (rounding, measures, places), (other_rounding, others, other_places) = found
     # The same arithmetic: what differs is at most how the processor takes the last few numbers of an array.
@@ -190,3 +193,25 @@ def test_close_knots_along_a_contact_in_common_make_no_angle(width):
     apart = np.array(rows[1:]) + 1e-13 * rng.uniform(-1, 1, (2, 5, 3))
     other = measure_contact(Base(left, "u1"), Base(BSplineSurface(1, 2, [0, 0, 1, 1], knots, apart), "u0"))
     assert other.rounding["angle_degrees"] > contact.rounding["angle_degrees"]
+
+
+@pytest.mark.parametrize("backwards", [False, True])
+def test_how_far_derivatives_along_both_sides_are_apart(monkeypatch, backwards):
+    """Edge a is y = t and b is y = t + t (1 - t) / 10, run through three times as slowly: in the parameter of each."""
+    seen = []
+    noises = continuity.section_noises
+
+    def watched(*words):
+        seen.append(words[-1])
+        return noises(*words)
+
+    monkeypatch.setattr(continuity, "section_noises", watched)
+    a = BSplineSurface(1, 1, BEZIER_1, BEZIER_1, [[[x, 0, 0], [x, 1, 0]] for x in (0, 1)])
+    b = BSplineSurface(1, 2, BEZIER_1, BEZIER_2, [[[x, y, 0] for y in (0, 0.55, 1)] for x in (1, 2)])
+    b = map_domain(b, (0, 1), (5, 8))
+    measure_contact(Base(a, "u1"), Base(reverse_v(b) if backwards else b, "u0"))
+    (first_a, second_a), (first_b, second_b) = seen
+    assert first_a.max() == pytest.approx(0.1)
+    assert second_a == pytest.approx(np.full(len(second_a), 0.2))
+    assert first_b == pytest.approx(first_a / 3)
+    assert second_b == pytest.approx(second_a / 9)

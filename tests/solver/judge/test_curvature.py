@@ -2,10 +2,11 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from helpers.splines import semistructured_surfaces
+from helpers.sweeps import examples
 from semispline import insert_row_knot
 from semispline.solver.errors import InputError
 from semispline.solver.judge.curvature import (
@@ -163,7 +164,7 @@ def test_a_paraboloid_at_its_vertex():
     close(np.abs(geometry.principal_directions[0]), np.array([[1, 0, 0], [0, 1, 0]]))
 
 
-@settings(max_examples=30, deadline=None)
+@examples(30)
 @given(semistructured_surfaces(degrees=(2, 5), most=1), st.integers(0, 2**32 - 1))
 def test_curvature_belongs_to_the_shape_not_to_its_form(surface, seed):
     rng = np.random.default_rng(seed)
@@ -254,6 +255,15 @@ def test_zebra_stripes_on_a_plane_follow_the_mirror_image():
     assert np.isnan(zebra([[0, 0, 0]], [[np.nan] * 3], [0, 0, 3])).all()
 
 
+def test_twenty_light_stripes_from_pole_to_pole():
+    # The middle of each stripe: the eye is far away along x, and the mirrored ray at an angle to the axis z.
+    angles = np.radians((np.arange(40) + 0.5) * 4.5)
+    eye, rays = np.array([1e9, 0, 0]), np.stack([np.sin(angles), np.zeros(40), np.cos(angles)], axis=1)
+    normals = rays + np.array([1.0, 0, 0])
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    assert zebra(np.zeros((40, 3)), normals, eye).tolist() == [0, 1] * 20
+
+
 @pytest.mark.parametrize(("eye", "axis"), [([1, 2], [0, 0, 1]), ([[0, 0, 1]] * 2, [0, 0, 1]), ([0, 0, 1], [0, 0, 0])])
 def test_a_mirror_without_eye_or_axis_is_refused(eye, axis):
     with pytest.raises(InputError, match=r"towards_eye: shape|axis: found"):
@@ -308,3 +318,6 @@ def test_the_limit_of_degenerate_points(width, regular):
     for net in (strip, slanted):
         surface = BSplineSurface(1, 1, BEZIER_1, BEZIER_1, net)
         assert local_geometry(surface, [0.5], [0.5]).regular.tolist() == [regular]
+        # Wherever the parameters are.
+        moved = map_domain(surface, (10, 11), (-6, -5))
+        assert local_geometry(moved, [10.5], [-5.5]).regular.tolist() == [regular]

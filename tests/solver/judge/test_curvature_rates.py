@@ -2,11 +2,12 @@
 
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from helpers.bases import moved, patch
 from helpers.high_order import facing, hand_made
+from helpers.sweeps import examples
 from semispline import Base, BSplineSurface, OptionError, measure_contact
 from semispline.solver.judge.curvature_rates import curvature_rates
 from semispline.solver.judge.de_boor import edge_curves
@@ -131,7 +132,7 @@ def times(f, g):
 FACTORIALS = (1.0, 1.0, 2.0, 6.0, 24.0)
 
 
-@settings(max_examples=60, deadline=None)
+@examples(60)
 @given(st.integers(0, 2**32 - 1), st.sampled_from([1.0, -1.0]), st.sampled_from([1.0, -1.0]))
 def test_a_change_of_parameters_that_keeps_the_edge_changes_nothing(seed, across, along):
     rng = np.random.default_rng(seed)

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from helpers.splines import (
@@ -14,6 +14,7 @@ from helpers.splines import (
     scale,
     semistructured_surfaces,
 )
+from helpers.sweeps import examples
 from semispline import BSplineSurface
 from semispline.solver.judge.de_boor import curve_points, edge_curves, surface_points
 
@@ -22,7 +23,7 @@ from semispline.solver.judge.de_boor import curve_points, edge_curves, surface_p
 TOLERANCE = 1e-13
 
 
-@settings(max_examples=60, deadline=None)
+@examples(60)
 @given(curves(domain=(-2.0, 3.5)), st.integers(0, 2**32 - 1))
 def test_curves_and_all_their_derivatives_are_those_of_the_definition(curve, seed):
     x = parameters(np.random.default_rng(seed), (-2.0, 3.5), curve.knots, count=2)
@@ -45,7 +46,7 @@ def _factor(curve, order):
     return factor
 
 
-@settings(max_examples=25, deadline=None)
+@examples(25)
 @given(st.one_of(bspline_surfaces(degrees=(1, 3), most=1), semistructured_surfaces(degrees=(1, 3), most=1)), st.data())
 def test_surfaces_are_those_of_the_definition(surface, data):
     (u0, u1), (v0, v1) = surface.domain
@@ -56,7 +57,7 @@ def test_surfaces_are_those_of_the_definition(surface, data):
         assert np.abs(found - exact).max() <= 10 * TOLERANCE * scale(surface, du, dv)
 
 
-@settings(max_examples=25, deadline=None)
+@examples(25)
 @given(
     st.one_of(bspline_surfaces(degrees=(1, 3), most=1), semistructured_surfaces(degrees=(1, 3), most=1)),
     st.sampled_from(["u0", "u1", "v0", "v1"]),
@@ -103,3 +104,21 @@ def test_one_curve_for_each_parameter():
 def test_derivatives_above_the_degree_vanish(order):
     found = curve_points(2, np.array([0.0, 0, 0, 1, 1, 1]), np.ones((3, 3)), np.array([0.5]), order)
     assert found.tolist() == [[0, 0, 0]]
+
+
+def test_points_where_no_order_is_asked_for_and_second_derivatives_along_an_edge():
+    # X = (u^2, v, u v) from X(0) = (0, 0, 0).
+    net = [[[0, 0, 0], [0, 1, 0]], [[0, 0, 0], [0, 1, 0.5]], [[1, 0, 0], [1, 1, 1]]]
+    surface = BSplineSurface(2, 1, [0, 0, 0, 1, 1, 1], [0, 0, 1, 1], net)
+    assert surface_points(surface, [0.5], [0.25]).tolist() == [[0.25, 0.25, 0.125]]
+    assert surface_points(surface, [0.5], [0.25], 1).tolist() == [[1, 0, 0.25]]
+    curves = edge_curves(surface, "u0")
+    keys = {(0, 0), (1, 0), (0, 1), (2, 0), (1, 1), (0, 2)}
+    for edge_points in (curves.points(np.array([0.25])), edge_curves(surface, "u0", 3).points(np.array([0.25]))):
+        assert set(edge_points) == keys
+    assert curves.points(np.array([0.25]))[2, 0].tolist() == [[2, 0, 0]]
+    # Rows of the net: as many as second differences read.
+    assert sum(row.control_points.shape[1] for row in curves.rows) == 3 * 3
+    cubic = BSplineSurface(3, 1, [0] * 4 + [1] * 4, [0, 0, 1, 1], [[[x, y, 0] for y in (0, 1)] for x in range(4)])
+    assert sum(row.control_points.shape[1] for row in edge_curves(cubic, "u0").rows) == 3 * 3
+    assert sum(row.control_points.shape[1] for row in edge_curves(cubic, "u0", 3).rows) == 4 * 3

@@ -113,3 +113,14 @@ def test_contact_names_the_places_of_both_sides():
     contact = measure_contact(Base(b, "u1"), Base(a, "u0"), flip="no")
     assert contact.angle_degrees == 180
     assert [place.surface for place in contact.no_normal] == ["a", "b"]
+
+
+@pytest.mark.parametrize("narrow", [1e-1, 1e-3, 1e-4])
+@pytest.mark.parametrize(("surface", "what"), [(cusp, "along the edge vanishes"), (fan, "across the edge vanishes")])
+def test_the_place_is_found_in_and_beside_a_narrow_span(surface, what, narrow):
+    for first in (0.43 - 0.3 * narrow, 0.43 - 1.3 * narrow):
+        base = Base(insert_knots(surface(0.43), knots_v=[first, first + narrow]), "u0")
+        (place,) = places_without_normal(base, "a")
+        assert place.reason.endswith(what)
+        assert place.parameter == pytest.approx(0.43, abs=1e-4)
+        assert place.fraction <= 1e-7

@@ -17,7 +17,8 @@ from semispline import (
     reverse_u,
     transform,
 )
-from semispline.solver.judge.fairness import SETTLED, _wide_spans
+from semispline.solver.judge import fairness
+from semispline.solver.judge.fairness import SETTLED, _Rule, _wide_spans
 
 
 def test_torus():
@@ -251,3 +252,61 @@ def test_a_cluster_at_an_end_is_left_out():
     assert near.settled
     assert near.value == pytest.approx(without.value, rel=1e-3)
     assert np.isfinite(near.value)
+
+
+def measured_as(monkeypatch, *values):
+    """A flat surface whose finer and finer grids give these values, and how many of them were taken."""
+    taken = []
+
+    def smooth_part(*_):
+        taken.append(values[len(taken)])
+        return taken[-1], 1.0
+
+    monkeypatch.setattr(fairness, "_smooth_part", smooth_part)
+    monkeypatch.setattr(fairness, "_jumps", lambda *_: 0.0)
+    k = [0, 0, 1, 1]
+    return measure_fairness(BSplineSurface(1, 1, k, k, [[[0, 0, 0], [0, 1, 0]], [[1, 0, 0], [1, 1, 0]]])), len(taken)
+
+
+@pytest.mark.parametrize(
+    ("values", "count"),
+    [
+        # A hundredth of the last one, and what is below a visible shape by eight digits.
+        ((1.0, 1.0, 9.0), 2),
+        ((0.9901, 1.0, 1.0), 2),
+        ((0.9899, 1.0, 1.0), 3),
+        ((1.0099, 1.0, 1.0), 2),
+        ((1.0101, 1.0, 1.0), 3),
+        ((0.0, 0.99e-8, 9.0), 2),
+        ((0.0, 1.01e-8, 1.01e-8), 3),
+    ],
+)
+def test_a_change_of_a_hundredth_settles(monkeypatch, values, count):
+    found, taken = measured_as(monkeypatch, *values)
+    assert (found.settled, found.value, taken) == (True, values[count - 1], count)
+
+
+def test_the_meter_gives_up_after_five_finer_grids(monkeypatch):
+    found, taken = measured_as(monkeypatch, *(2.0**n for n in range(20)))
+    assert (found.settled, found.value, taken) == (False, 32.0, 6)
+
+
+@pytest.mark.parametrize(("points", "count"), [(2**11, 3), (2**11 + 1, 2)])
+def test_no_grid_holds_more_than_two_million_points(monkeypatch, points, count):
+    sizes = iter([(10, 10), (100, 100), (2**10, points), (4, 4), (4, 4), (4, 4)])
+    monkeypatch.setattr(fairness, "_rules", lambda *_: tuple(_Rule(np.zeros(n), np.zeros(n)) for n in next(sizes)))
+    found, taken = measured_as(monkeypatch, 1.0, 2.0, *([4.0] if count == 2 else [4.0, 4.0]))
+    assert (found.settled, taken) == (count == 3, 2 if count == 2 else 4)
+
+
+def test_pairs_are_found_in_clusters_as_tight_as_knots_may_be():
+    # Twenty knots 2e-10 apart are wider together than a cluster may be of a surface this long; pairs of them are not.
+    knots = 0.5 + 2e-10 * np.arange(20)
+    breaks = np.array([0.0, *np.sort(np.concatenate([knots, knots + 3e-12])), 1.0])
+    assert _wide_spans(breaks, 1e8).tolist() == [True, *[False, True] * 19, False, True]
+
+
+@pytest.mark.parametrize(("part", "narrow"), [(0.045, True), (0.055, False)])
+def test_spans_of_a_cluster_are_below_a_twentieth_of_the_mean_one(part, narrow):
+    # Three spans of a surface one window long: a cluster may be a quarter of it.
+    assert _wide_spans(np.array([0.0, 0.4, 0.4 + part / 3, 1.0]), 1.0).tolist() == [True, not narrow, True]

@@ -5,10 +5,11 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from helpers.bases import moved, patch
+from helpers.sweeps import examples
 from semispline import Base, BSplineSurface, EdgeError, measure_contact
 from semispline.solver.judge import doubtful, local_origin, required_limits, untold
 from semispline.solver.splines.operations import split_u
@@ -132,7 +133,7 @@ def exactly(points):
     return [Fraction(float(x)) for x in np.ravel(points)]
 
 
-@settings(max_examples=60)
+@examples(60)
 @given(st.integers(0, 10**6), st.floats(0, 9), st.booleans())
 def test_points_less_the_local_origin_are_exact(seed, distance, is_far):
     rng = np.random.default_rng(seed)

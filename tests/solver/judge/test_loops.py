@@ -105,6 +105,16 @@ def test_few_samples_turn_nearly_as_many():
         assert measure_loop(surface).largest_turning_degrees == pytest.approx(fine.largest_turning_degrees, abs=1.5)
 
 
+@pytest.mark.parametrize("seed", range(3))
+def test_a_section_of_one_span_is_sampled_as_finely(seed):
+    rng = np.random.default_rng(seed)
+    points = np.column_stack([np.arange(8), 3 * rng.normal(size=(8, 2))])
+    net = np.stack([points, points + np.array([0, 0, 0.1])], axis=1)
+    surface = BSplineSurface(7, 1, [0] * 8 + [1] * 8, [0, 0, 1, 1], net)
+    fine = loop_on_samples(surface, np.linspace(0, 1, 2001), np.linspace(0, 1, 21))
+    assert measure_loop(surface).largest_turning_degrees == pytest.approx(fine.largest_turning_degrees, abs=1.5)
+
+
 def test_ends_without_speed_have_the_next_tangent():
     knots = [0] * 4 + [1] * 4
     net = [[[x, y, z] for y in (0, 1)] for x, z in ((0, 0), (0, 0), (1, 1), (2, 1))]
@@ -136,3 +146,31 @@ def test_exits_straight_away_from_the_chord_need_a_full_turn(tilt):
     away = np.array([[-1.0], [0.0], [tilt]]) / np.hypot(1, tilt)
     back = away * [[1], [1], [-1]]
     assert needed_turn(away, back, np.array([[1.0], [0], [0]])) == pytest.approx(2 * np.pi, abs=1e-5)
+
+
+@pytest.mark.parametrize(("degrees", "sides"), [(1.9, None), (2.1, "same")])
+def test_exits_within_a_degree_of_the_chord_lead_to_no_side(degrees, sides):
+    exits = measure_exits(arch(degrees))
+    assert (exits.sides, exits.side_cosine) == (sides, pytest.approx(1 if sides else 0))
+
+
+@pytest.mark.parametrize(("part", "theta"), [(0.8e-12, 0), (1.2e-12, 90)])
+def test_an_end_slower_than_a_million_millionth_has_the_next_tangent(part, theta):
+    # It is fastest at its end, with a speed of 6; it begins sideways.
+    net = [[[x, y, z] for z in (0, 1)] for x, y in ((0, 0), (0, 2 * part), (1, 0), (3, 0))]
+    exits = measure_exits(BSplineSurface(3, 1, [0] * 4 + [1] * 4, [0, 0, 1, 1], net))
+    assert exits.theta_0 == pytest.approx(theta, abs=0.1)
+
+
+@pytest.mark.parametrize(("part", "has_chord"), [(0.5e-9, False), (2e-9, True)])
+def test_ends_a_billionth_apart_have_no_chord(part, has_chord):
+    # What is farthest from the start of a circle is two radii away.
+    loop = measure_loop(arch(360 - np.degrees(2 * part)))
+    assert loop.turning_degrees == pytest.approx(360, abs=1e-5)
+    assert loop.needed_degrees == pytest.approx(360 if has_chord else 0, abs=1e-3)
+
+
+def test_exits_square_to_each_other_lead_to_no_side():
+    net = [[[x, y + v, z] for v in (0, 1)] for x, y, z in ((0, 0, 0), (1, 1, 0), (2, 0, 1), (3, 0, 0))]
+    exits = measure_exits(BSplineSurface(3, 1, [0] * 4 + [1] * 4, [0, 0, 1, 1], net))
+    assert (exits.sides, exits.side_cosine) == (None, 0)

@@ -2,12 +2,13 @@
 
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
+from helpers.sweeps import examples
 from semispline import Base, BSplineCurve, BSplineSurface, SemiStructuredSurface
 from semispline.solver.judge.curvature_rates import curvature_rates
-from semispline.solver.judge.rounding import derivative_noises
+from semispline.solver.judge.rounding import derivative_noises, edge_noises
 
 KEYS = [(i, j) for i in range(5) for j in range(5 - i)]
 ORIGIN = np.zeros(3)
@@ -39,6 +40,18 @@ def test_factors_across_and_along():
     np.testing.assert_allclose(found[:, 0], ONE * np.array([1, 60, 60 * 40, 60 * 40 * 20, 0]), rtol=1e-13)
 
 
+def test_up_to_second_order_where_none_is_asked_for():
+    base = Base(square(2, [0, 0, 0, 0.25, 1, 1, 1], 3, [0, 0, 0, 0, 0.5, 1, 1, 1, 1]), "u0")
+    np.testing.assert_array_equal(derivative_noises(base, ORIGIN), derivative_noises(base, ORIGIN, 2))
+    noises = edge_noises(base, ORIGIN)
+    np.testing.assert_array_equal(noises.derivatives, derivative_noises(base, ORIGIN, 2))
+    np.testing.assert_allclose(noises.along, [1, 6 / 0.5, 6 / 0.5 * 4 / 0.5])
+    # Where everything is zero nothing is rounded.
+    nothing = edge_noises(Base(BSplineSurface(1, 1, [0, 0, 1, 1], [0, 0, 1, 1], np.zeros((2, 2, 3))), "u0"), ORIGIN)
+    assert nothing.along.tolist() == [1, 1, 1]
+    assert not nothing.derivatives.any()
+
+
 def test_a_narrow_span_counts_only_where_one_divides_by_it():
     # Simple knots 0.3 and 0.30001: first differences reach over three spans.
     surface = square(1, [0, 0, 1, 1], 3, [0, 0, 0, 0, 0.3, 0.30001, 1, 1, 1, 1])
@@ -52,9 +65,18 @@ def test_quotients_have_derivatives_above_their_degree(edge):
     knots = [0, 0, 0, 1, 1, 1]
     plain = derivative_noises(Base(square(2, knots, 2, knots), edge), ORIGIN, 4) / ONE
     np.testing.assert_allclose(plain[:, 0], [1, 4, 8, 0, 0])
-    rational = derivative_noises(Base(square(2, knots, 2, knots, np.ones((3, 3))), edge), ORIGIN, 4) / ONE
-    np.testing.assert_allclose(rational[:, 0], [1, 4, 8, 16, 32])
-    np.testing.assert_allclose(rational[0], [1, 4, 8, 16, 32])
+    equal = derivative_noises(Base(square(2, knots, 2, knots, np.full((3, 3), 2.0)), edge), ORIGIN, 4) / ONE
+    np.testing.assert_array_equal(equal, plain)
+    # Of weights 1 and 2: E_k = 2 F_k + sum C(k, j) F_j E_(k - j) / 2, with F = 1, 4, 8, 0, 0. And what rounding of the
+    # weights does: sum C(k, j) E_j E_(k - j).
+    points = np.array([1, 10, 60, 480, 5280])
+    weights = np.array([1, 20, 320, 4560, 70560])
+    expected = points + weights * 2.0**-52 / ONE
+    uneven = square(2, knots, 2, knots, np.array([[1, 2, 1], [2, 1, 2], [1, 2, 1.0]]))
+    for surface in (uneven, uneven.to_semistructured()):
+        rational = derivative_noises(Base(surface, edge), ORIGIN, 4) / ONE
+        np.testing.assert_allclose(rational[:, 0], expected)
+        np.testing.assert_allclose(rational[0], expected)
 
 
 def test_of_many_curves_those_that_are_read():
@@ -97,12 +119,19 @@ def test_noise_of_rates_by_hand():
     assert noise_of(graph(x30=(5.0, 0, 0)), (1, 0))[0] == pytest.approx(4 * 5.0)
     # Of X_v, where only X_wwv is not zero, c: the plane of the section turns by d.
     assert noise_of(graph(x21=(0, 0, 5.0)), (0, 1))[0] == pytest.approx(3 * 5.0)
+    # With X_w = (1, 1/2, 0) and X_v = (0, g, 0): the normal tilts by (1/2 + 1) d / g, and of three steps of order 1, as
+    # much too long each, X_www makes three times that.
+    for g in (1.0, 2.0, 0.25):
+        slanted = graph(x10=(1.0, 0.5, 0), x01=(0, g, 0), x30=(5.0, 0, 0))
+        assert noise_of(slanted, (0, 1))[0] == pytest.approx((1 + 3) * 1.5 / g * 5.0)
+    # Twice as fast across.
+    assert noise_of(graph(x10=(2.0, 0, 0), x30=(40.0, 0, 0)), (1, 0))[0] == pytest.approx(4 * 5.0 / 2)
     # Of what is read directly.
     assert noise_of(graph(), (3, 0)) == pytest.approx([1, 0])
     assert noise_of(graph(), (4, 0)) == pytest.approx([0, 1])
 
 
-@settings(max_examples=40, deadline=None)
+@examples(40)
 @given(st.integers(0, 2**32 - 1), st.sampled_from(KEYS[1:]))
 def test_no_small_error_of_a_derivative_does_more(seed, place):
     rng = np.random.default_rng(seed)

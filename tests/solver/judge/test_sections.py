@@ -7,7 +7,14 @@ import pytest
 
 from helpers.shapes import arc, extruded, line, revolved, torus
 from semispline import BSplineSurface, transform
-from semispline.solver.judge.sections import closed_directions, just_inside, least_on_grid, spread, turn_window
+from semispline.solver.judge.sections import (
+    closed_directions,
+    just_inside,
+    least_on_grid,
+    spread,
+    turn_window,
+    unit_normals,
+)
 
 
 def test_which_ways_a_surface_closes():
@@ -66,3 +73,46 @@ def test_the_least_on_a_grid_is_found_between_its_nodes():
     half = np.array([0, 0.5, 1])
     least, *_ = least_on_grid(lambda u, v: np.where(u[:, None] > 0.5, np.nan, v[None] - u[:, None]), half, half)
     assert least == pytest.approx(-0.5)
+
+
+def test_at_least_two_steps_in_a_span():
+    assert spread(np.array([0.0, 1.0]), 1).tolist() == [0, 0.5, 1]
+
+
+@pytest.mark.parametrize(
+    ("width", "step"),
+    # A part of the span; of the domain, more than what counts as one knot; and never half a span.
+    [(0.5, 0.5e-8), (1e-6, 2e-12), (4e-12, 1e-12)],
+)
+def test_how_far_just_inside_is(width, step):
+    after, before = just_inside(np.array([0.0, width, 1.0]))
+    assert [after[0], width - before[0]] == pytest.approx([step, step], rel=1e-3)
+
+
+@pytest.mark.parametrize(("sine", "has_normal"), [(0.5e-12, False), (2e-12, True)])
+def test_tangents_all_but_parallel_have_no_normal(sine, has_normal):
+    for pu, pv in (((1, 0, 0), (1, sine, 0)), ((0, 1e-3, 0), (-sine * 1e5, 1e5, 0))):
+        assert np.isfinite(unit_normals(np.array([pu], dtype=float), np.array([pv], dtype=float))).all() == has_normal
+
+
+@pytest.mark.parametrize(
+    ("values", "grids"),
+    [
+        ((1.0, 1 - 0.9e-7, 0.0), 2),
+        ((1.0, 1 - 1.1e-7, 1 - 1.1e-7, 0.0), 3),
+        ((-1.0, -1 - 0.9e-7, -2.0), 2),
+        ((-1.0, -1 - 1.1e-7, -1.0, -2.0), 3),
+        # Eight in all, however much the last one gains.
+        (tuple(np.arange(20.0, 0, -1)), 8),
+    ],
+)
+def test_finer_grids_end_where_they_gain_no_ten_millionth(values, grids):
+    seen = []
+
+    def value(u, v):
+        seen.append(values[len(seen)])
+        return np.full((len(u), len(v)), seen[-1])
+
+    ends = np.array([0.0, 1.0])
+    assert least_on_grid(value, ends, ends)[0] == min(values[:grids])
+    assert len(seen) == grids

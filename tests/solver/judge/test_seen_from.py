@@ -6,7 +6,7 @@ import pytest
 from helpers.shapes import arc, extruded, line, revolved, sheets, torus
 from semispline import Base, BSplineSurface, transform
 from semispline.solver.judge.continuation import continuation
-from semispline.solver.judge.seen_from import seen_from
+from semispline.solver.judge.seen_from import _Border, _faces, _towards_all, seen_from
 
 
 @pytest.mark.parametrize("degrees", [60, 150, 170])
@@ -94,3 +94,76 @@ def test_a_base_that_runs_under_the_blend_is_told_by_the_border_alone():
     swept = BSplineSurface(2, 2, whole.knots_v, whole.knots_u, whole.control_points.transpose(1, 0, 2), whole.weights.T)
     assert seen_from(swept, continuation(swept, strip(0.1), 0)) is not None
     assert seen_from(swept, continuation(swept, strip(0.5), 0)) is None
+
+
+# The figures, each from both sides
+
+
+def directions(*degrees):
+    """Unit vectors at angles above the plane z = 0."""
+    t = np.radians(degrees)
+    return np.stack([np.cos(t), np.zeros_like(t), np.sin(t)], axis=-1)
+
+
+@pytest.mark.parametrize(("height", "faces"), [(0.019, False), (0.021, True), (0.5, True)])
+def test_normals_are_a_fiftieth_from_square_to_the_direction(height, faces):
+    grid = np.broadcast_to([np.sqrt(1 - height**2), 0.0, height], (3, 4, 3))
+    assert _faces(grid, np.array([0.0, 0, 1])) is faces
+
+
+@pytest.mark.parametrize("corner", range(4))
+@pytest.mark.parametrize(("turn", "faces"), [(9, True), (11, False)])
+def test_a_normal_that_turns_further_in_a_cell_than_it_is_from_square_gives_no_answer(corner, turn, faces):
+    degrees = np.full(4, 10.0 + turn)
+    degrees[corner] = 10.0
+    assert _faces(directions(*degrees).reshape(2, 2, 3), np.array([0.0, 0, 1])) is faces
+
+
+@pytest.mark.parametrize(("height", "found"), [(1e-7, True), (1e-10, False), (0.0, False)])
+def test_normals_that_are_all_but_opposite(height, found):
+    direction = _towards_all(np.array([[1.0, 0, height], [-1.0, 0, height], [0.0, 1, height], [0.0, -1, height]]))
+    assert (direction is not None) is found
+    if found:
+        assert direction == pytest.approx([0, 0, 1], abs=1e-6)
+
+
+def is_simple(corners, bulges=None, size=1.0):
+    """Tell it of a polygon, edge k of which is `bulges[k]` off its chord half-way."""
+    corners = size * np.column_stack([corners, np.zeros(len(corners))])
+    ahead = np.roll(corners, -1, axis=0)
+    square = np.cross([0, 0, 1], ahead - corners)
+    off = size * np.array([0.0] * len(corners) if bulges is None else bulges)[:, None]
+    halfway = (corners + ahead) / 2 + off * square / np.linalg.norm(square, axis=1, keepdims=True)
+    return _Border(corners, halfway).is_simple_along(np.array([0.0, 0, 1]))
+
+
+@pytest.mark.parametrize("size", [0.1, 1.0, 100.0])
+def test_polygons(size):
+    assert is_simple([(0, 0), (1, 0), (1, 1), (0, 1)], size=size)
+    assert not is_simple([(0, 0), (1, 1), (1, 0), (0, 1)], size=size)
+    # A pentagon and a star of five: each edge crosses those after the next.
+    t = 2 * np.pi * np.arange(5) / 5
+    assert is_simple(np.column_stack([np.cos(t), np.sin(t)]), size=size)
+    assert not is_simple(np.column_stack([np.cos(2 * t), np.sin(2 * t)]), size=size)
+    # A corner on another side.
+    assert not is_simple([(0, 0), (2, 0), (2, 1), (1, 0), (0, 1)], size=size)
+
+
+@pytest.mark.parametrize("size", [0.1, 1.0])
+@pytest.mark.parametrize(("width", "simple"), [(1e-8, True), (1e-10, False), (0.0, False)])
+def test_a_border_that_turns_straight_back(size, width, simple):
+    assert is_simple([(0, 0), (1, 0), (0, width), (-1, 1)], size=size) is simple
+
+
+@pytest.mark.parametrize(("apart", "simple"), [(0.39, False), (0.41, True)])
+def test_between_samples_the_border_is_twice_as_far_off_as_half_way(apart, simple):
+    # Two long edges whose ways to each other are long, each 0.1 off.
+    corners = [(0, 0), (10, 0), (20, -5), (20, 5), (10, apart), (0, apart), (-10, 5), (-10, -5)]
+    assert is_simple(corners, [0.1, 0, 0, 0, 0.1, 0, 0, 0]) is simple
+
+
+@pytest.mark.parametrize(("way", "simple"), [(0.78, True), (0.84, False)])
+def test_edges_are_neighbours_up_to_four_times_what_they_are_off(way, simple):
+    # Both are 0.05 off half-way, so 0.1; the way from one to the other out to a tip and back is `way`.
+    corners = [(0, -1), (10, 0), (10 + way / 2, 0.05), (10, 0.1), (0, 1.1), (-10, 5), (-10, -5)]
+    assert is_simple(corners, [0.05, 0, 0, 0.05, 0, 0, 0]) is simple

@@ -2,11 +2,12 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from helpers.shapes import sheets
 from helpers.splines import surfaces
+from helpers.sweeps import examples
 from semispline import (
     BSplineSurface,
     InputError,
@@ -35,7 +36,7 @@ MEASURES = (
 )
 
 
-@settings(max_examples=25, deadline=None)
+@examples(25)
 @given(surfaces())
 def test_crumpled_ones(surface):
     turn, loop, exits = measure_turn(surface), measure_loop(surface), measure_exits(surface)
@@ -68,7 +69,7 @@ def test_points_and_curves(measure):
             assert measure in (measure_exits, measure_loop, measure_waist) or found.value == np.inf
 
 
-@settings(max_examples=6, deadline=None)
+@examples(6)
 @given(st.integers(0, 10**6), st.sampled_from([1e-60, 1e-3, 1e60]))
 def test_units_and_parameters(seed, unit):
     (surface,) = sheets(seed, 1)

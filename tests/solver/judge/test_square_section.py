@@ -4,10 +4,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from helpers.bases import moved, patch
+from helpers.sweeps import examples
 from semispline import Base, BSplineSurface, elevate_degree, measure_contact, read_surface
 from semispline.solver.judge import doubtful, shortfalls, untold
 from semispline.solver.judge.de_boor import edge_curves
@@ -45,7 +46,7 @@ def noises_of(at, noises):
     return [float(noise[0]) for noise in section_noises(values, normal[None], section, noises)]
 
 
-@settings(max_examples=100)
+@examples(100)
 @given(seeds, st.sampled_from(KEYS))
 def test_the_error_of_one_derivative_does_this_and_hardly_more(seed, key):
     rng = np.random.default_rng(seed)
@@ -68,7 +69,7 @@ def test_the_error_of_one_derivative_does_this_and_hardly_more(seed, key):
     assert least * (1 - 1e-6) <= bend <= most * (1 + 1e-5) + 1e-14
 
 
-@settings(max_examples=60)
+@examples(60)
 @given(seeds, st.sampled_from(["u0", "u1", "v0", "v1"]))
 def test_no_small_move_of_control_points_does_more(seed, edge):
     rng = np.random.default_rng(seed)
@@ -201,7 +202,7 @@ def sheared(rng, far=True):
     return moved(surface, turn, offset, 10 ** rng.uniform(-2, 2))
 
 
-@settings(max_examples=150)
+@examples(150)
 @given(seeds, st.sampled_from("uv"), st.floats(0.03, 0.97))
 def test_no_smooth_surface_cut_in_two_has_a_seam(seed, direction, fraction):
     contact = contact_of(cut(sheared(np.random.default_rng(seed)), direction, fraction), direction)

@@ -14,7 +14,7 @@ from semispline import (
     transform,
 )
 from semispline.solver.judge.sections import angles, spread, turn_window, unit_normals
-from semispline.solver.judge.turning import turn_on_samples
+from semispline.solver.judge.turning import _turns_of_sections, turn_on_samples
 
 
 def test_an_even_bend_turns_by_a_fiftieth():
@@ -159,3 +159,44 @@ def test_laws():
     # The window belongs to the sections v = const: it is another one in the other direction.
     swapped = swap_directions(surface)
     assert turn_window(swapped) != pytest.approx(turn_window(surface))
+
+
+def along_a_line(degrees, window, *, closed=False):
+    """Turns from samples that are 1 apart on a line, whose normals are at these angles; none where it is nan."""
+    t = np.radians(degrees)
+    points = np.arange(len(t))[:, None] * np.array([1.0, 0.0, 0.0])
+    normals = np.stack([np.zeros(len(t)), np.sin(t), np.cos(t)], axis=-1)
+    turns, ends = _turns_of_sections(np.arange(len(t)) * 1.0, points[None], normals[None], window, closed)
+    return turns[0], ends[0]
+
+
+def test_a_missing_normal_beside_the_end_of_a_window_has_no_say():
+    # Windows that end at samples: at the one before the gap, at the one after it, and at the last one.
+    turns, ends = along_a_line([0, 20, np.nan, 50, 60], 1.0)
+    assert turns == pytest.approx([20, -1, -1, 10, -1], abs=1e-9)
+    assert ends[[0, 3]].tolist() == [1, 4]
+    # All of a short section.
+    assert along_a_line([0, np.nan, 30], 10.0)[0] == pytest.approx([30, -1, -1], abs=1e-9)
+
+
+def test_a_window_that_leaves_the_section_does_not_count():
+    turns, _ = along_a_line([0, 0, 0, 0, 50], 3.5)
+    # Half-way between 0 and 50 degrees; from the other samples 3.5 is too far.
+    assert turns == pytest.approx([25, -1, -1, -1, -1], abs=1e-9)
+    assert along_a_line([0, 0, 0, 0, 50], 4.0)[0][0] == pytest.approx(50)
+
+
+def test_over_a_seam_a_window_reaches_all_samples_that_crowd_behind_it():
+    lengths, t = np.array([0, 0.1, 0.2, 0.3, 0.4, 0.5, 2]), np.radians([0, 10, 20, 30, 40, 50, 0])
+    normals = np.stack([np.zeros(7), np.sin(t), np.cos(t)], axis=-1)
+    points = lengths[:, None] * np.array([1.0, 0.0, 0.0])
+    (turns,), _ = _turns_of_sections(np.arange(7.0), points[None], normals[None], 0.45, True)
+    # The last sample is the first.
+    assert turns[-1] == pytest.approx(turns[0])
+    assert turns[0] == pytest.approx(45)
+
+
+def test_a_curve_has_no_turn():
+    k = [0, 0, 1, 1]
+    with pytest.raises(InputError, match="no tangent plane"):
+        measure_turn(BSplineSurface(1, 1, k, k, [[[0, 0, 0], [0, 0, 0]], [[1, 0, 0], [1, 0, 0]]]))

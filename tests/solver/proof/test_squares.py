@@ -6,10 +6,11 @@ from fractions import Fraction
 import numpy as np
 import pytest
 from flint import fmpq, fmpq_mat
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from helpers.polynomials import polynomial
+from helpers.sweeps import examples
 from semispline import ComputationError
 from semispline.solver.proof import squares as proof_squares
 from semispline.solver.proof.box_search import least_point
@@ -46,7 +47,7 @@ def test_a_slight_tilt_of_a_circle_is_followed_to_its_lowest_point():
     assert certificate.bound == pytest.approx(-tilt, abs=1e-13)
 
 
-@settings(max_examples=5)
+@examples(5)
 @given(st.lists(st.integers(-3, 3), min_size=5, max_size=5).filter(lambda h: h[2] and h[4]), st.integers(-3, 3))
 def test_squares_of_random_conics_are_proved(h, mixed):
     # h0 + h1 x + h2 x^2 + h3 y + h4 y^2 + mixed x y, squared; the samples know nothing of the proof.

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from fractions import Fraction
 from math import comb
 
@@ -207,7 +206,6 @@ curved = BezierFunction([0.4, 0.99, 0.99, 0.2], 0.3, 0.8)
         (lambda: divide_bezier(patch, []), InputError, "found none"),
         (lambda: divide_bezier(patch, [[0.5]]), InputError, "2 dimension"),
         (lambda: divide_bezier(patch, [0.5], "w"), OptionError, "'w', expected 'u' or 'v'"),
-        (lambda: divide_bezier(replace(patch, weights=np.ones((4, 4))), [0.5]), InputError, "rational"),
         (lambda: divide_bezier(divide_bezier(patch, [0.5])[0], [0.5]), InputError, "found SemiStructuredSurface"),
         (
             lambda: divide_bezier(BSplineSurface(1, 1, [0, 0, 0.5, 1, 1], [0, 0, 1, 1], np.zeros((3, 2, 3))), [0.5]),

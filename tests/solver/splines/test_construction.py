@@ -14,15 +14,16 @@ from semispline.solver.splines.construction import (
     interpolate_curve,
     interpolate_grid,
     plane,
-    revolve,
-    revolve_polynomial,
     ruled,
     skin,
 )
-from semispline.solver.splines.surfaces import BSplineCurve
+from semispline.solver.splines.operations import clamped_surface
+from semispline.solver.splines.revolution import revolve, revolve_polynomial, revolve_smooth
+from semispline.solver.splines.surfaces import BSplineCurve, BSplineSurface
 
 UNIT = [0, 0, 1, 1]
 ARC = BSplineCurve(2, [0, 0, 0, 1, 1, 1], [[3, 0, 0], [4, 0, 1], [3, 0, 2]])
+LINE = BSplineCurve(1, UNIT, [[2, 0, 0], [2, 0, 5]])
 GRID = np.linspace(0, 1, 23)
 
 
@@ -95,10 +96,11 @@ def test_skinning_keeps_each_curve():
     assert skin([ARC, other], 1, [2, 2, 5, 5]).domain[0] == (2, 5)
 
 
+@pytest.mark.parametrize("make", [revolve, revolve_smooth])
 @pytest.mark.parametrize("angle", [37.0, 90.0, 200.0, 360.0])
-def test_revolution_is_exact(angle):
+def test_revolution_is_exact(angle, make):
     axis_point, axis = np.array([1.0, 0, 5]), np.array([0, 0, 2.0])
-    surface = revolve(ARC, axis_point, axis, angle)
+    surface = make(ARC, axis_point, axis, angle)
     rng = np.random.default_rng(1)
     u, v = rng.uniform(0, 1, (2, 60))
     p, profile = surface_points(surface, u, v), on_curve(ARC, v)
@@ -112,6 +114,40 @@ def test_revolution_is_exact(angle):
     assert np.abs(surface_points(surface, [1.0], v) - end).max() <= 1e-14 * 8
     if angle == 360.0:
         assert np.array_equal(surface.control_points[0], surface.control_points[-1])
+
+
+# The circle of 11 points as the research on it has it, in exact fractions: (x, y, w).
+UPPER = [(1, 0, 1), (1, 1 / 2, 1), (13 / 20, 1, 19 / 20), (0, 49 / 40, 9 / 10), (-13 / 20, 1, 19 / 20)]
+CIRCLE = np.array([*UPPER, (-27 / 20, 0, 21 / 20), *[(x, -y, w) for x, y, w in UPPER[::-1]]])
+
+
+def test_the_smooth_revolution_of_a_point_of_a_line_is_the_circle_of_eleven_points():
+    surface = revolve_smooth(LINE, [0, 0, 0], [0, 0, 1])
+    assert surface.knots_u.tolist() == [0] * 7 + [0.5] * 4 + [1] * 7
+    circle = surface.homogeneous[:, 0, [0, 1, 3]]
+    assert np.abs(circle - CIRCLE * [2, 2, 1]).max() <= 1e-15 * 4
+    # In angle it is affine to 1.23 degrees, over a whole turn.
+    u = np.linspace(0, 1, 1001)[:-1]
+    x, y, _ = surface_points(surface, u, 0.0).T
+    off = (np.degrees(np.arctan2(y, x)) - 360 * u + 180) % 360 - 180
+    assert 1.22 <= np.abs(off).max() <= 1.23
+
+
+@pytest.mark.parametrize("angle", [270.0, 360.0])
+def test_smooth_revolution_is_c2_in_homogeneous_coordinates_and_no_more(angle):
+    curve = BSplineCurve(2, ARC.knots, ARC.control_points, [1, 0.5, 2])
+    surface = revolve_smooth(curve, [0, 0, 0], [0, 0, 1], angle)
+    net = surface.homogeneous.reshape(len(surface.control_points), -1)
+    pieces = BSpline(surface.knots_u, net, 6)
+    for order in range(4):
+        before, after = pieces(np.nextafter(0.5, 0), order), pieces(0.5, order)
+        jump = np.abs(before - after).max() / np.abs(after).max()
+        assert jump <= 1e-12 if order < 3 else jump > 1e-2
+        if angle == 360:
+            start, end = pieces(0.0, order), pieces(1.0, order)
+            jump = np.abs(start - end).max() / np.abs(start).max()
+            assert jump <= 1e-12 if order < 3 else jump > 1e-2
+    assert np.array_equal(surface.weights[0], curve.weights)
 
 
 def test_a_revolved_line_is_a_cylinder_or_a_cone():
@@ -155,14 +191,11 @@ def test_interpolation_is_scipys():
     assert np.abs(BSpline(curve.knots, curve.control_points, 3)(x) - on_curve(curve, x)).max() <= 1e-14
 
 
-LINE = BSplineCurve(1, UNIT, [[2, 0, 0], [2, 0, 5]])
-
-
 @pytest.mark.parametrize(
     ("call", "error", "message"),
     [
         (lambda: plane([0, 0, 0], [1, 0, 0], [2, 0, 0]), ControlPointError, "edge_v: found .* not parallel"),
-        (lambda: plane([0, 0], [1, 0, 0], [0, 1, 0]), ControlPointError, r"origin: 2 coordinate\(s\), expected 3"),
+        (lambda: plane([0], [1, 0, 0], [0, 1, 0]), ControlPointError, r"origin: 1 coordinate\(s\), expected 3, or 2"),
         (lambda: extrude(LINE, [0, 0, 0]), ControlPointError, "vector: found"),
         (lambda: revolve(LINE, [0, 0, 0], [0, 0, 0]), ControlPointError, "axis_direction: found"),
         (lambda: revolve(LINE, [0, 0, 0], [0, 0, 1], 0), OptionError, "angle: found 0"),
@@ -195,3 +228,18 @@ def test_the_stated_error_holds_far_from_the_origin(far):
     off = np.linalg.norm(surface_points(result.surface, u, v) - far - exact, axis=1).max()
     assert off <= result.error
     assert result.error <= 1e-12 + 100 * np.finfo(float).eps * far
+
+
+def test_what_lies_in_the_plane_has_two_coordinates():
+    corners = np.array([[[0, 0], [0, 1]], [[2, 0], [2, 1]]])
+    flat = BSplineSurface(1, 1, UNIT, UNIT, corners)
+    assert np.array_equal(flat.control_points, np.dstack([corners, np.zeros((2, 2))]))
+    weighted = BSplineSurface(1, 1, UNIT, UNIT, corners, [[1, 2], [3, 4]])
+    assert np.array_equal(weighted.homogeneous[1, 1], [8, 4, 0, 4])
+    assert np.array_equal(BSplineCurve(1, UNIT, [[0, 1], [2, 3]]).control_points, [[0, 1, 0], [2, 3, 0]])
+    assert np.array_equal(plane([0, 0], [2, 0], [0, 1]).control_points, flat.control_points)
+    assert np.array_equal(clamped_surface(1, 1, UNIT, UNIT, corners, [[1, 2], [3, 4]]).weights, weighted.weights)
+    assert interpolate_curve(corners[:, 0], 1).control_points.shape == (2, 3)
+    assert interpolate_grid(corners, 1, 1).control_points.shape == (2, 2, 3)
+    assert np.array_equal(extrude(LINE, [1, 0]).control_points[1, 0], [3, 0, 0])
+    assert np.abs(revolve(LINE, [0, 0], [0, 1], 90).control_points[-1] - [[0, 0, -2], [5, 0, -2]]).max() <= 4e-15

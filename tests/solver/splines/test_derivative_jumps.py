@@ -2,11 +2,12 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 import semispline
 from helpers.splines import knot_vectors, scale
+from helpers.sweeps import examples
 from semispline import derivative_surface
 from semispline.solver.errors import InputError
 from semispline.solver.judge.de_boor import curve_points
@@ -102,7 +103,7 @@ def test_a_narrow_span_elsewhere_does_not_hide_a_jump(degree, order, jump):
         derivative_curve(creased, order)
 
 
-@settings(max_examples=60, deadline=None)
+@examples(60)
 @given(
     st.integers(2, 5).flatmap(lambda p: st.tuples(st.just(p), knot_vectors(p))),
     st.integers(0, 2**32 - 1),

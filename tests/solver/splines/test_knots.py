@@ -2,10 +2,11 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from helpers.splines import knot_vectors
+from helpers.sweeps import examples
 from semispline.solver.errors import KnotError
 from semispline.solver.splines.knots import (
     affine_knots,
@@ -23,7 +24,7 @@ from semispline.solver.splines.knots import (
 VECTORS = st.integers(1, 6).flatmap(lambda p: st.tuples(st.just(p), knot_vectors(p)))
 
 
-@settings(max_examples=50, deadline=None)
+@examples(50)
 @given(VECTORS, st.floats(-1e3, 1e3), st.floats(1e-3, 1e3))
 def test_mapped_knots_hit_their_ends_and_keep_their_multiplicities(given, start, width):
     degree, knots = given
@@ -35,7 +36,7 @@ def test_mapped_knots_hit_their_ends_and_keep_their_multiplicities(given, start,
     assert np.array_equal(affine_knots(knots, 0.0, 1.0), knots)
 
 
-@settings(max_examples=50, deadline=None)
+@examples(50)
 @given(VECTORS, st.integers(0, 6), st.integers(0, 2**32 - 1))
 def test_derivative_points_and_matrices_are_the_same_map(given, order, seed):
     degree, knots = given
@@ -48,7 +49,7 @@ def test_derivative_points_and_matrices_are_the_same_map(given, order, seed):
     )
 
 
-@settings(max_examples=50, deadline=None)
+@examples(50)
 @given(VECTORS)
 def test_greville_abscissae_reproduce_the_identity(given):
     # x = sum of g_i B_i: the derivative of the spline with control points g_i is 1 wherever a function has support.

@@ -4,10 +4,11 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from helpers.splines import basis, knot_vectors
+from helpers.sweeps import examples
 from semispline import insert_row_knot
 from semispline.solver.errors import InputError, KnotError
 from semispline.solver.splines.curves import elevate_curve, insert_curve_knots, reverse_curve, split_curve
@@ -37,7 +38,7 @@ from semispline.solver.splines.surfaces import BSplineCurve, BSplineSurface
 UNIT = [0, 0, 1, 1]
 SQUARE = BSplineSurface(1, 1, UNIT, UNIT, [[[0, 0, 0], [0, 1, 0]], [[1, 0, 0], [1, 1, 0]]])
 PARABOLA = BSplineCurve(2, [0, 0, 0, 1, 1, 1], [[0, 0, 0], [1, 2, 0], [2, 0, 0]])
-laws = settings(max_examples=25, deadline=None)
+laws = examples(25)
 
 
 def exact_basis(degree, knots, x):

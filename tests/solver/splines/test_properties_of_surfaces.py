@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
+from helpers.sweeps import examples
 from semispline.solver.splines.knots import clamped
 from semispline.solver.splines.surfaces import BSplineCurve, SemiStructuredSurface
 
@@ -38,7 +39,7 @@ def with_points(surface, points):
     return SemiStructuredSurface(surface.degree_u, surface.knots_u, tuple(curves))
 
 
-@settings(max_examples=30, deadline=None)
+@examples(30)
 @given(surfaces())
 def test_equal_control_points_give_that_point(case):
     surface, rng = case
@@ -46,7 +47,7 @@ def test_equal_control_points_give_that_point(case):
     np.testing.assert_allclose(constant.evaluate(rng.random(20), rng.random(20)), 0.75, atol=ROUNDING)
 
 
-@settings(max_examples=30, deadline=None)
+@examples(30)
 @given(surfaces())
 def test_points_lie_in_the_hull_of_the_control_points_that_act_there(case):
     surface, rng = case
@@ -64,7 +65,7 @@ def test_points_lie_in_the_hull_of_the_control_points_that_act_there(case):
         assert (height >= heights.min(axis=0) - 10 * ROUNDING).all()
 
 
-@settings(max_examples=30, deadline=None)
+@examples(30)
 @given(surfaces())
 def test_affine_maps_of_control_points_map_the_surface(case):
     surface, rng = case
@@ -74,7 +75,7 @@ def test_affine_maps_of_control_points_map_the_surface(case):
     np.testing.assert_allclose(mapped.evaluate(u, v), surface.evaluate(u, v) @ matrix.T + shift, atol=20 * ROUNDING)
 
 
-@settings(max_examples=40, deadline=None)
+@examples(40)
 @given(surfaces(), st.data())
 def test_a_control_point_acts_on_its_rectangle_and_nowhere_else(case, data):
     surface, rng = case
@@ -94,7 +95,7 @@ def test_a_control_point_acts_on_its_rectangle_and_nowhere_else(case, data):
     assert middle > surface.evaluate([(u0 + u1) / 2], [(v0 + v1) / 2])[0, 2] + 1e-6
 
 
-@settings(max_examples=30, deadline=None)
+@examples(30)
 @given(st.integers(2, 4), st.integers(0, 2**32 - 1), st.data())
 def test_the_continuity_of_one_curve_shows_over_its_support_alone(q, seed, data):
     # Eight curves, all but one without a knot at 1/2; that one is C^(q-r) there.

@@ -6,6 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from semispline.solver.errors import ControlPointError, InputError, KnotError, SemisplineError
+from semispline.solver.splines.refinement import clamp_knots
 from semispline.solver.splines.surfaces import BSplineCurve, BSplineSurface, SemiStructuredSurface
 
 UNIT = [0, 0, 1, 1]
@@ -38,7 +39,7 @@ def surface(**changes):
         ({"degree_v": None}, KnotError, r"knots_v: degree is None"),
         ({"degree_u": 10**30}, KnotError, r"knots_u: 2 control point\(s\) for degree 1000"),
         ({"control_points": []}, ControlPointError, r"control_points: has 1 dimension\(s\), expected 3"),
-        ({"control_points": np.zeros((2, 2, 2))}, ControlPointError, r"points have 2 coordinate\(s\), expected 3"),
+        ({"control_points": np.zeros((2, 2, 4))}, ControlPointError, r": 4 coordinate\(s\), expected 3, or 2"),
         ({"control_points": np.zeros((0, 2, 3))}, KnotError, r"knots_u: 0 control point\(s\)"),
         ({"control_points": [SQUARE[0], [[1, 0, 0]]]}, ControlPointError, r"control_points\[1\]: 1 entries"),
         ({"control_points": [SQUARE[0], [[1, 0, 0], [1, 0]]]}, ControlPointError, r"control_points\[1, 1\]: 2 entries"),
@@ -60,10 +61,13 @@ def test_a_surface_says_what_is_wrong_and_where(changes, error, message):
 def test_inner_multiplicities_are_limited_by_the_degree():
     points = np.zeros((5, 3))
     assert BSplineCurve(1, [0, 0, 0.3, 0.5, 0.7, 1, 1], points).degree == 1
-    with pytest.raises(KnotError, match=r"knots\[3\]: knot 0.5 has multiplicity 2, expected at most 1"):
+    with pytest.raises(KnotError, match=r"knots\[3\]: knot 0.5 has multiplicity 2, expected at most 1 \(split"):
         BSplineCurve(1, [0, 0, 0.3, 0.5, 0.5, 1, 1], points)
-    with pytest.raises(KnotError, match=r"knots\[4\]: knot 1.0 has multiplicity 3, expected at most 2"):
+    with pytest.raises(KnotError, match=r"knots\[4\]: knot 1.0 has multiplicity 3, expected at most 2 \(clamped_"):
         BSplineCurve(1, [0, 0, 0.3, 0.5, 1, 1, 1], points)
+    # What the hint names does take them.
+    knots, net = clamp_knots(1, [0, 0, 0.3, 0.5, 1, 1, 1], np.column_stack([np.arange(5.0), np.ones((5, 2))]))
+    assert (knots.tolist(), net[:, 0].tolist()) == ([0, 0, 0.3, 0.5, 1, 1], [0, 1, 2, 3])
 
 
 def test_curves_of_a_semistructured_surface_are_named():

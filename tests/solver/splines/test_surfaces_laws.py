@@ -1,7 +1,7 @@
 """Evaluation against the referee and the definition, and what every exact operation must leave as it is."""
 
 import numpy as np
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from helpers.splines import (
@@ -13,6 +13,7 @@ from helpers.splines import (
     semistructured_surfaces,
     surfaces,
 )
+from helpers.sweeps import examples
 from semispline import insert_row_knot
 from semispline.solver.judge.de_boor import curve_points, surface_points
 from semispline.solver.splines.curves import insert_curve_knots, reverse_curve, split_curve
@@ -35,7 +36,7 @@ from semispline.solver.splines.surfaces import BSplineSurface, SemiStructuredSur
 # Both sides are short convex combinations of the same control points: 1e-12 leaves a hundred roundings for each level.
 TOLERANCE = 1e-12
 SEEDS = st.integers(0, 2**32 - 1)
-laws = settings(max_examples=30, deadline=None)
+laws = examples(30)
 
 
 def knots_of(surface):
@@ -80,7 +81,7 @@ def test_grids_are_the_points_one_by_one(surface, seed):
         agree(grid.reshape(-1, 3), surface_points(surface, uu, vv, du, dv), surface, du, dv)
 
 
-@settings(max_examples=15, deadline=None)
+@examples(15)
 @given(
     st.one_of(bspline_surfaces(degrees=(1, 3), most=1), semistructured_surfaces(degrees=(1, 3), most=1)),
     st.floats(0, 1),

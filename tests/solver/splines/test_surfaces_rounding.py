@@ -4,10 +4,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from helpers.splines import surfaces
+from helpers.sweeps import examples
 from semispline import merge_knots
 from semispline.solver.errors import KnotError
 from semispline.solver.judge.curvature import mean_curvature
@@ -67,7 +68,7 @@ def test_pieces_of_a_curve_leave_no_sliver(degree):
     assert inner(restrict_curve(curve, 0.0, 0.3 - 0.9e-12)) == []
 
 
-@settings(max_examples=30, deadline=None)
+@examples(30)
 @given(surfaces(), st.sampled_from([-1, 1]))
 def test_a_cut_next_to_a_knot_means_the_knot(surface, side):
     for direction, split in ((0, split_u), (1, split_v)):

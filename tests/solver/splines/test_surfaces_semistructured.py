@@ -346,7 +346,7 @@ def test_compatible_curves_keep_the_shared_vector():
     curves = [curve_over([0.5], seed=i) for i in range(3)]
     same = compatible_curves(curves)
     assert np.array_equal(same.knots, curves[0].knots)
-    assert np.array_equal(same.control_points, np.stack([c.control_points for c in curves]))
+    assert np.array_equal(same.homogeneous, np.stack([c.control_points for c in curves]))
 
 
 def test_points_outside_the_domain_are_refused_not_extrapolated():

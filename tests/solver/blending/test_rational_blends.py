@@ -1,0 +1,168 @@
+"""Blends of rational bases, whole: laws, known answers, contact that the referee and Open CASCADE measure."""
+
+import numpy as np
+import pytest
+
+from helpers.cases import CASES
+from helpers.rational import FULL, HALF, QUARTER, THIRDS, cylinder, meridian, random_pair
+from semispline import Base, BSplineSurface, OptionError, blend, measure_contact, read_surface, transform
+from semispline.solver.judge import required_limits
+from semispline.solver.judge.creases import worst_inside
+
+
+def case(name):
+    return read_surface(CASES / f"{name}.json")
+
+
+def radii(surface, n=40):
+    (u_0, u_1), (v_0, v_1) = surface.domain
+    points = surface.evaluate_grid(np.linspace(u_0, u_1, n), np.linspace(v_0, v_1, n))
+    return np.linalg.norm(points[..., :2], axis=2)
+
+
+@pytest.mark.parametrize("cuts", [(QUARTER, QUARTER), (HALF, HALF), (FULL, FULL), (FULL, THIRDS)])
+@pytest.mark.parametrize("continuity", ["G2", "G3"])
+def test_two_pipes_of_one_radius_are_joined_by_that_pipe(cuts, continuity):
+    a, b = cylinder(5.0, 0.0, 4.0, cuts[0]), cylinder(5.0, 14.0, 4.0, cuts[1])
+    result = blend(Base(a, "u1"), Base(b, "u0"), continuity=continuity)
+    assert np.abs(radii(result.surface) / 5 - 1).max() < 1e-9
+    assert not result.warnings
+
+
+def test_what_both_sides_share_is_left_and_what_they_do_not_is_cured():
+    a = cylinder(5.0, 0.0, 4.0, FULL)
+    same = blend(Base(a, "u1"), Base(cylinder(5.0, 14.0, 4.0, FULL), "u0"))
+    other = blend(Base(a, "u1"), Base(cylinder(5.0, 14.0, 4.0, THIRDS), "u0"))
+    assert same.cures == (None, None)
+    assert same.surface.degree_v == 2
+    assert same.contact_a.corresponds == "affine"
+    assert [cure.name for cure in other.cures] == ["conic", "conic"]
+    assert "degree 6" in other.cures[0].words
+    assert {len(curve.control_points) for curve in other.surface.control_curves} == {11}
+    assert other.contact_a.corresponds == "foot points"
+    assert worst_inside(other.creases) is None
+
+
+def test_without_the_cure_a_tilted_ring_creases(monkeypatch):
+    """The control: nine points against seven, no cure."""
+    from semispline.solver.blending import problem
+
+    a = cylinder(5.0, 0.0, 4.0, FULL)
+    b = transform(cylinder(3.0, 0.0, 4.0, THIRDS), np.diag([1.0, 0.6, 1.0]), (1.5, 0, 14.0))
+    cured = blend(Base(a, "u1"), Base(b, "u0"))
+    assert worst_inside(cured.creases) is None
+    monkeypatch.setattr(problem, "smooth_along", lambda a, b, options: ((a, None), (b, None)))
+    raw = blend(Base(a, "u1"), Base(b, "u0"))
+    assert worst_inside(raw.creases).angle_degrees > 0.5
+    assert any("creased" in warning for warning in raw.warnings)
+    assert raw.contact_a.angle_degrees < 1e-9
+
+
+@pytest.mark.parametrize(("continuity", "least"), [("G2", 4.6), ("G3", 4.6), ("G4", 4.55)])
+def test_a_pipe_and_its_cap(continuity, least):
+    result = blend(Base(case("pipe_rational"), "v1"), Base(case("dome_rational"), "v0"), continuity=continuity)
+    assert least <= radii(result.surface).min()
+    assert radii(result.surface).max() <= 5 + 1e-9
+    assert not result.warnings
+
+
+def test_a_duct_from_flat_to_round():
+    result = blend(Base(case("duct_flat"), "u0"), Base(case("duct_ring_rational"), "v0"))
+    assert worst_inside(result.creases) is None
+    assert result.surface.n_control_points <= 18
+    assert result.contact_b.curvature_jump_relative < 1e-9
+    assert not result.warnings
+
+
+def test_a_straight_edge_whose_speed_jumps_is_no_crease():
+    a, b = case("speeds_straight"), case("speeds_other")
+    result = blend(Base(a, "u1"), Base(b, "u0"))
+    assert result.cures[0].name == "spans"
+    assert result.cures[1] is None
+    assert result.creases == ()
+    assert not result.warnings
+    assert max(result.contact_a.angle_degrees, result.contact_b.angle_degrees) < 1e-9
+
+
+def test_weights_say_how_they_were_made_tame():
+    a, b = cylinder(5.0, 0.0, 4.0, QUARTER), cylinder(5.0, 14.0, 4.0, QUARTER)
+    first, _ = blend(Base(a, "u1"), Base(b, "u0")).weights
+    assert (first.rung, first.constant) == ("mean", True)
+    assert first.ratio == pytest.approx(np.sqrt(2))
+    plain = BSplineSurface(1, 1, [0, 0, 1, 1], [0, 0, 1, 1], [[[0, 0, 0], [1, 0, 0]], [[0, 1, 0], [1, 1, 0]]])
+    assert blend(Base(plain, "u1"), Base(transform(plain, np.eye(3), (0, 3, 1)), "u0")).weights == (None, None)
+
+
+def test_the_certificate_is_about_the_quadrature_form():
+    a = cylinder(5.0, 0.0, 4.0, QUARTER)
+    b = transform(meridian(2.0, (4.0, 12.0), (-0.4, 1.0), QUARTER), np.eye(3), (1.0, 0.0, 2.0))
+    result = blend(Base(a, "u1"), Base(b, "u0"), alpha="energy")
+    assert result.certificate is not None
+    assert "quadrature form" in result.objective.known
+    assert 0 < result.quadrature_error < 1e-4 * result.energy
+    # Nothing near has less.
+    for factor in (0.9, 1.1):
+        alpha = (np.sqrt(result.alpha2) * factor, np.sqrt(result.beta2))
+        other = blend(
+            Base(a, "u1"), Base(b, "u0"), alpha=alpha, degree_u=3, middle_curves=1, v_scale="paper", p2="zero"
+        )
+        assert other.energy > result.energy
+
+
+@pytest.mark.parametrize("method", ["casadi", "bfgs"])
+def test_methods_for_polynomials_say_so(method):
+    a, b = cylinder(5.0, 0.0, 4.0, QUARTER), cylinder(5.0, 14.0, 4.0, QUARTER)
+    with pytest.raises(OptionError, match=f"{method} with a rational base, expected method reduced"):
+        blend(Base(a, "u1"), Base(b, "u0"), method=method)
+
+
+def test_units_and_a_common_factor_of_the_weights_change_nothing():
+    a, b, _ = random_pair(11)
+    first = blend(Base(a, "u1"), Base(b, "u0"))
+    heavier = BSplineSurface(a.degree_u, a.degree_v, a.knots_u, a.knots_v, a.control_points, 7.0 * a.weights)
+    weighed = blend(Base(heavier, "u1"), Base(b, "u0"))
+    assert weighed.alpha2 == pytest.approx(first.alpha2, rel=1e-6)
+    larger = blend(Base(transform(a, 25.4 * np.eye(3)), "u1"), Base(transform(b, 25.4 * np.eye(3)), "u0"))
+    assert larger.alpha2 == pytest.approx(first.alpha2, rel=1e-6)
+    assert larger.shape.fairness.value == pytest.approx(first.shape.fairness.value, rel=1e-5)
+
+
+def check_pair(seed):
+    a, b, continuity = random_pair(seed)
+    result = blend(Base(a, "u1"), Base(b, "u0"), continuity=continuity)
+    for contact, wanted in zip((result.contact_a, result.contact_b), continuity, strict=True):
+        for name, value, limit in required_limits(contact, wanted):
+            assert value <= limit, (seed, name)
+        assert contact.gap <= 1e-12 * contact.size
+        if wanted[1] != "0":
+            assert contact.angle_degrees <= 1e-8
+    for curve in result.surface.control_curves:
+        assert curve.weights is None or (curve.weights > 0).all()
+    # What is creased inside is creased in a base.
+    inside = worst_inside(result.creases)
+    if inside is not None and inside.parameter == "v" and inside.angle_degrees > 1e-6:
+        assert any(cure is not None and cure.left for cure in result.cures), seed
+    return result
+
+
+@pytest.mark.parametrize("seed", range(24))
+def test_random_rational_pairs(seed):
+    check_pair(seed)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("first", range(24, 500, 28))
+def test_five_hundred_random_rational_pairs(first):
+    for seed in range(first, first + 28):
+        check_pair(seed)
+
+
+def test_contact_by_the_referee_is_that_of_the_written_surface():
+    """The same blend as an ordinary rational B-spline: one judge, another representation."""
+    a, b, _ = random_pair(3)
+    result = blend(Base(a, "u1"), Base(b, "u0"))
+    converted = result.surface.to_bspline()
+    assert converted.is_rational
+    found = measure_contact(Base(a, "u1"), Base(converted, "u0"))
+    assert found.angle_degrees < 1e-8
+    assert found.curvature_jump_relative < 1e-7

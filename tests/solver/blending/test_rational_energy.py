@@ -1,0 +1,143 @@
+"""The energy of rational blends: by quadrature, its free rows stationary, its gradient in the fair search exact."""
+
+import numpy as np
+import pytest
+
+from helpers.rational import QUARTER, cylinder, meridian
+from semispline import Base, BlendOptions, BSplineSurface, transform
+from semispline.solver.blending.fair_objective import FairObjective, make_unknowns
+from semispline.solver.blending.fairness_grid import across, along
+from semispline.solver.blending.fairness_table import FairnessTable
+from semispline.solver.blending.gram import EnergyForm
+from semispline.solver.blending.measured_energy import measure_energy, thin_plate_energy
+from semispline.solver.blending.pipeline import state_problem
+from semispline.solver.blending.rational_energy import RationalForm
+from semispline.solver.splines import Basis
+
+
+def stated(**named):
+    tilted = np.array([[0.9, 0, 0.3], [0, 1, 0], [-0.3, 0, 0.9]])
+    a = cylinder(5.0, 0.0, 4.0, QUARTER)
+    b = transform(meridian(2.0, (4.0, 12.0), (-0.4, 1.0), QUARTER), tilted, (1.0, 0.0, 2.0))
+    return state_problem(Base(a, "u1"), Base(b, "u0"), BlendOptions(**named)).problem
+
+
+def made_form(weights):
+    u = Basis(3, np.array([0, 0, 0, 0, 0.4, 1, 1, 1, 1.0]))
+    rows = tuple(Basis(3, np.array([0, 0, 0, 0, *inner, 2, 2, 2, 2.0])) for inner in ([], [0.7], [0.7], [], [1.1, 1.5]))
+    size = sum(row.size for row in rows)
+    return RationalForm(u, rows, np.ones(size) if weights is None else weights(size))
+
+
+def test_with_weights_of_one_it_is_the_polynomial_form():
+    form, rng = made_form(None), np.random.default_rng(4)
+    plain = EnergyForm(form.u, form.rows)
+    points = rng.normal(size=(3, form.offsets[-1], 3))
+    assert form.products(points) == pytest.approx(plain.products(points), rel=1e-12)
+    rows = range(1, 4)
+    low, high = form.offsets[1], form.offsets[4]
+    dense = plain.matrix().toarray()
+    assert form.system(rows).toarray() == pytest.approx(dense[low:high, low:high], rel=1e-10, abs=1e-9)
+    assert form.gradient(points[0], rows) == pytest.approx((dense @ points[0])[low:high], rel=1e-9, abs=1e-8)
+
+
+def test_gradient_and_matrix_are_those_of_the_energy():
+    form = made_form(lambda n: 1 + np.random.default_rng(1).uniform(0, 0.6, n))
+    points = np.random.default_rng(2).normal(size=(form.offsets[-1], 3))
+    rows = range(1, 3)
+    gradient, matrix = form.gradient(points, rows), form.system(rows).toarray()
+
+    def energy(x):
+        return form.products(x[None])[0, 0]
+
+    for k, c in ((0, 0), (4, 1), (9, 2)):
+        step = np.zeros_like(points)
+        step[form.offsets[1] + k, c] = 1e-3
+        # A quadratic form: differences of any step are exact but for rounding.
+        slope = (energy(points + step) - energy(points - step)) / 2e-3
+        assert 2 * gradient[k, c] == pytest.approx(slope, rel=1e-8)
+        bend = (energy(points + step) + energy(points - step) - 2 * energy(points)) / 1e-6
+        assert 2 * matrix[k, k] == pytest.approx(bend, rel=1e-5)
+
+
+def test_the_energy_of_a_rational_surface_is_that_of_its_points():
+    """Finite differences of evaluated points, on a fine midpoint rule: nothing of quotients."""
+    surface = meridian(2.0, (4.0, 12.0), (-0.4, 1.0), QUARTER)
+    n, h = 120, 1e-4
+    x = (np.arange(n) + 0.5) / n
+    at = {(i, j): surface.evaluate_grid(x + i * h, x + j * h) for i in (-1, 0, 1) for j in (-1, 0, 1)}
+    uu = (at[1, 0] + at[-1, 0] - 2 * at[0, 0]) / h**2
+    vv = (at[0, 1] + at[0, -1] - 2 * at[0, 0]) / h**2
+    uv = (at[1, 1] + at[-1, -1] - at[1, -1] - at[-1, 1]) / (4 * h**2)
+    wanted = np.sum(uu**2 + 2 * uv**2 + vv**2) / n**2
+    found = measure_energy(surface)
+    assert found.value == pytest.approx(wanted, rel=3e-4)
+    assert 0 < found.quadrature_error < 1e-3 * found.value
+    # Numbers of its parts do not depend on where it is.
+    moved = transform(surface, np.eye(3), (1e4, -3e4, 0.0))
+    assert thin_plate_energy(moved) == pytest.approx(found.value, rel=1e-8)
+
+
+def test_equal_weights_do_not_change_the_energy():
+    net = np.random.default_rng(3).normal(size=(4, 5, 3))
+    plain = BSplineSurface(3, 2, [0] * 4 + [1] * 4, [0, 0, 0, 0.3, 0.6, 1, 1, 1], net)
+    weighted = BSplineSurface(3, 2, plain.knots_u, plain.knots_v, net, np.full((4, 5), 0.7))
+    assert measure_energy(plain).quadrature_error is None
+    assert thin_plate_energy(weighted) == pytest.approx(thin_plate_energy(plain), rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    "named", [{"middle_curves": 1}, {"continuity": "G1"}, {"continuity": "C1", "middle_curves": 2}]
+)
+def test_free_rows_have_least_energy(named):
+    problem = stated(**named)
+    points = problem.control_points(*problem.start)
+    system = problem.free_system
+    assert system.size > 0
+    assert system.excess(points) < 1e-20
+    fine = RationalForm(problem.form.u, problem.form.rows, points[:, 3], finer=3)
+    least = fine.products(points[None, :, :3])[0, 0]
+    rng = np.random.default_rng(5)
+    for _ in range(5):
+        other = points[:, :3].copy()
+        other[system.plain.free] += 1e-3 * rng.normal(size=(system.size, 3))
+        assert fine.products(other[None])[0, 0] > least
+    assert (points[:, 3] > 0).all()
+
+
+def test_the_energy_is_a_polynomial_in_both_shape_parameters():
+    """15 coefficients from 25 values predict others: weights do not depend on alpha here."""
+    problem = stated(alpha="energy")
+    natural = np.array(problem.natural)
+
+    def energy(x):
+        points = problem.control_points(*(natural * x))
+        return problem.energy_products(points[None])[0, 0]
+
+    places = [(x, y) for x in np.linspace(0.2, 3, 5) for y in np.linspace(0.2, 3, 5)]
+
+    def terms(x):
+        return [x[0] ** i * x[1] ** j for i in range(5) for j in range(5 - i)]
+
+    solution = np.linalg.lstsq(np.array([terms(x) for x in places]), np.array([energy(x) for x in places]), rcond=None)[
+        0
+    ]
+    for x in ((0.5, 0.7), (1.9, 2.2), (2.8, 0.3)):
+        assert terms(x) @ solution == pytest.approx(energy(x), rel=1e-9)
+
+
+def test_the_gradient_of_the_fair_search_is_its_own():
+    problem = stated()
+    layers, exponents = problem.shape_layers()
+    assert layers.shape[2] == 4
+    unknowns = make_unknowns(problem, exponents)
+    table = FairnessTable(problem, layers, across(problem.form.u, 20), along(problem.rows))
+    objective = FairObjective(unknowns, table)
+    middle = (unknowns.low + unknowns.high) / 2 + 0.05 * (unknowns.high - unknowns.low)
+    value, gradient = objective(middle)
+    assert np.isfinite(value)
+    for k in np.flatnonzero(unknowns.low < unknowns.high):
+        step = np.zeros_like(middle)
+        step[k] = 1e-5
+        slope = (objective(middle + step)[0] - objective(middle - step)[0]) / 2e-5
+        assert gradient[k] == pytest.approx(slope, rel=1e-5, abs=1e-7)
