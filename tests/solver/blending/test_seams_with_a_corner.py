@@ -68,7 +68,7 @@ def test_a_linear_alpha_is_refused_where_the_seam_is_closed(monkeypatch, order, 
     monkeypatch.setattr(candidates, "try_linear_alpha", lambda *_, **__: LinearTrial(None, None, False, "not tried"))
     constant = SimpleNamespace(
         found=SimpleNamespace(fair=object()),
-        problem=SimpleNamespace(seam_order=order),
+        problem=SimpleNamespace(seam_order=order, has_constant_weights=True),
         options=SimpleNamespace(box=None),
     )
     assert candidates._with_linear_alpha(constant, "auto") == (constant, ())
