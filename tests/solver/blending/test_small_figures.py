@@ -6,9 +6,10 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from semispline import Base, BSplineSurface, blend
+from semispline import Base, BSplineSurface, EdgeError, OptionError, blend
 from semispline.solver.blending import fair_search, pipeline
 from semispline.solver.blending.fairness_grid import across
+from semispline.solver.blending.layout import blend_u_basis
 from semispline.solver.blending.pipeline import state_problem
 from semispline.solver.blending.projected import Point
 from semispline.solver.splines import clamped
@@ -217,3 +218,30 @@ def test_of_the_ends_of_two_starts_the_finer_grid_says_which_is_best(monkeypatch
     monkeypatch.setattr(fair_search, "_solution", solution)
     fair_search.solve_fair(state_problem(*strips()).problem)
     assert found[0][0] > 1
+
+
+@pytest.mark.parametrize(("orders", "least", "most"), [((2, 2), 2, 5), ((1, 0), 2, 5), ((3, 2), 4, 6), ((4, 4), 5, 9)])
+def test_a_degree_that_does_not_fit_is_told_what_would(orders, least, most):
+    for degree in (1, most + 1):
+        with pytest.raises(OptionError, match=rf"degree_u: found {degree}, expected {least} to {most} with 0 middle"):
+            blend_u_basis(degree, 0, None, orders)
+    assert blend_u_basis(most, 0, None, orders).degree == most
+
+
+def test_where_two_directions_tie_the_less_turning_one_is_taken(monkeypatch):
+    less_turning = SimpleNamespace(warnings=(), flipped=True)
+    monkeypatch.setattr(pipeline, "_less_turning", lambda *_: less_turning)
+    assert pipeline.blend(*strips()) is not less_turning
+    assert not state_problem(*strips()).matched.flipped
+    monkeypatch.setattr(pipeline, "_tied", lambda a, b, flip: ("no", "yes"))
+    assert pipeline.blend(*strips()) is less_turning
+    assert state_problem(*strips()).matched.flipped
+
+
+@pytest.mark.parametrize("continuity", ["C0", "G0"])
+def test_for_position_alone_a_base_need_not_leave_its_edge(continuity):
+    still = BSplineSurface(1, 1, LINE, LINE, [[[0, y, 0] for y in (0, 1)]] * 2)
+    pair = Base(still, "u1"), Base(strip(3), "u0")
+    assert state_problem(*pair, continuity=(continuity, "G1")).problem.natural[0] == 1.0
+    with pytest.raises(EdgeError, match="base a: the cross derivative vanishes"):
+        state_problem(*pair, continuity="G1")
