@@ -10,6 +10,7 @@ import numpy as np
 
 from semispline.solver.arrays import FloatArray, require
 from semispline.solver.blending.candidates import Layout, find_layout
+from semispline.solver.blending.matching import directions_to_try, matched_edges
 from semispline.solver.blending.measured_energy import measure_energy
 from semispline.solver.blending.problem import BlendProblem, make_problem
 from semispline.solver.blending.result import BlendResult, Objective
@@ -33,15 +34,12 @@ from semispline.solver.judge import (
     Correspondence,
     ShapeReport,
     check_regular_edge,
-    correspond,
     local_origin,
     measure_contact,
     measure_creases,
     measure_regularity,
     measure_shape,
     required_limits,
-    snapped_seam,
-    tied_directions,
     untold,
 )
 from semispline.solver.options import BlendOptions, Flip, named_options
@@ -115,7 +113,8 @@ def blend(
         check_certificate(found.certificate)
     seam = _seam(surface, problem)
     regularity = measure_regularity(surface)
-    creases = measure_creases(surface)
+    # Cures leave rows that are C1: there curvature may jump.
+    creases = measure_creases(surface, c1_lines=problem.is_cured or problem.is_rational)
     shape = _measured_shape(surface, a, b, chosen)
     warnings = (
         shape_warnings(shape, regularity, creases, options=chosen, cures=problem.cures)
@@ -221,7 +220,7 @@ def place_sides(a: Base, b: Base, options: BlendOptions, flip: Flip) -> PlacedSi
     """Bring both contacts to one parameter v and to coordinates of size 1."""
     at_a, at_b = options.continuities
     sides = make_side(a, at_a, "base a"), make_side(b, at_b, "base b")
-    matched = snapped_seam(a, b, correspond(a, b, flip))
+    matched = matched_edges(a, b, flip)
     # Far from the origin each operation would round by the distance: there is but one rounding, of the result.
     origin = local_origin(a.surface, b.surface)
     local = matched_sides(sides[0].moved(origin, 1.0), sides[1].moved(origin, 1.0), matched)
@@ -262,7 +261,7 @@ def _tied(a: Base, b: Base, flip: Flip) -> tuple[Flip, ...]:
     """Return the directions of b to be tried: more than one only where closeness is to decide, and cannot."""
     require(a, "a", Base)
     require(b, "b", Base)
-    return tied_directions(a, b) if flip == "auto" else (flip,)
+    return directions_to_try(a, b) if flip == "auto" else (flip,)
 
 
 def _less_turning(a: Base, b: Base, directions: tuple[Flip, ...], options: BlendOptions) -> BlendResult:
@@ -310,6 +309,12 @@ def _surface(
         points[:, :3] = points[:, :3] * size + points[:, 3:] * centre
     else:
         points = points * size + centre
+    if problem.is_rational and not (np.isfinite(points).all() and (points[:, 3] > 0).all()):
+        shape = ", ".join(f"{float(np.max(x)):.1e}" for x in (found.a, found.b))
+        raise ComputationError(
+            f"the blend has no proper control points for the shape parameters {shape}: numbers overflow, or weights "
+            "are not positive there; try an alpha nearer to the natural one, or other bases"
+        )
     pieces = np.split(points, problem.form.offsets[1:-1])
     if not (problem.is_rational or problem.is_cured):
         # The contact curves themselves are the bases' own, to the last bit.

@@ -94,7 +94,7 @@ def smooth_along(a: Side, b: Side, options: BlendOptions) -> tuple[tuple[Side, C
 
 
 def _cured(side: Side, order: int) -> CuredRows:
-    return cured_rows(
+    found = cured_rows(
         read_rows(side),
         side.along,
         side.degree,
@@ -103,6 +103,10 @@ def _cured(side: Side, order: int) -> CuredRows:
         closed=_is_closed(side),
         largest=side.largest,
     )
+    if found.cure == "slopes" and side.continuity[0] == "C":
+        # Slopes bend w(u, v), which has to be u.
+        return replace(found, rows=read_rows(side), along=side.along, degree=side.degree, cure="none", left=found.found)
+    return found
 
 
 def _jump_alike(a: Side, b: Side, found_a: CuredRows, found_b: CuredRows) -> bool:

@@ -168,7 +168,8 @@ def make_side(base: Base, continuity: Continuity, name: str = "base") -> Side:
     surface = base.surface
     if not isinstance(surface, BSplineSurface):
         raise EdgeError(f"{name}: a semi-structured surface, expected a B-spline surface; convert it with to_bspline()")
-    net = surface.homogeneous
+    # Equal weights cancel.
+    net = surface.control_points if _has_equal_weights(surface) else surface.homogeneous
     across, along = (surface.degree_u, surface.knots_u), (surface.degree_v, surface.knots_v)
     if base.edge[0] == "v":
         net, across, along = net.transpose(1, 0, 2), along, across
@@ -181,7 +182,7 @@ def make_side(base: Base, continuity: Continuity, name: str = "base") -> Side:
     order = int(continuity[1])
     rows = net[[min(i, len(net) - 1) for i in range(max(ROWS_PER_SIDE, order + 1))]]
     spans = tuple(float(steps[min(degree + i, len(steps) - 1)]) for i in range(1, max(2, order) + 1))
-    # Equal weights cancel: to this order such a surface is polynomial.
+    # So do those that are equal to this order.
     if rows.shape[2] == 4 and np.ptp(rows[: max(order, 1) + 1, :, 3]) == 0:
         rows = rows[..., :3] / rows[0, 0, 3]
     side = Side(continuity, degree, spans, Basis(*along), rows, float(np.abs(euclidean(rows)[0]).max()))
@@ -192,6 +193,10 @@ def make_side(base: Base, continuity: Continuity, name: str = "base") -> Side:
             "further apart, or ask for position only"
         )
     return side
+
+
+def _has_equal_weights(surface: BSplineSurface) -> bool:
+    return surface.weights is None or bool(np.ptp(surface.weights) == 0)
 
 
 def matched_sides(a: Side, b: Side, matched: Correspondence) -> tuple[Side, Side]:

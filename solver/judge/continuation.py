@@ -147,13 +147,15 @@ def continuation(surface: ParametricSurface, base: Base, end: int) -> Continuati
     most = _APART * size + _ROUNDINGS * np.finfo(np.float64).eps * float(np.abs(target).max())
     if distances[best] <= most:
         return ways[best]
-    feet = foot_map(_end_run(surface, end), ways[best].edge_run(), most, closed)
-    if feet is None:
-        raise EdgeError(
-            f"base: its edge {base.edge} is {distances[best]:.3g} away from the surface's end u{end}, "
-            "expected the edge that the surface was made for"
-        )
-    return replace(ways[best], feet=feet)
+    # By feet: the other direction may be nearer affinely all the same.
+    for way in (ways[best], ways[1 - best]):
+        feet = foot_map(_end_run(surface, end), way.edge_run(), most, closed)
+        if feet is not None:
+            return replace(way, feet=feet)
+    raise EdgeError(
+        f"base: its edge {base.edge} is {distances[best]:.3g} away from the surface's end u{end}, "
+        "expected the edge that the surface was made for"
+    )
 
 
 def _end_run(surface: ParametricSurface, end: int) -> Run:

@@ -62,8 +62,10 @@ class Crease:
         return f"G2 inside at {place}"
 
 
-def measure_creases(surface: SemiStructuredSurface) -> tuple[Crease, ...]:
+def measure_creases(surface: SemiStructuredSurface, *, c1_lines: bool = False) -> tuple[Crease, ...]:
     """Return all inner knots of full multiplicity, in u and in v, each with the turn of the normal across it.
+
+    With `c1_lines` also those of one less, where rows are C1 and no more, if curvature jumps there.
 
     Examples
     --------
@@ -76,7 +78,9 @@ def measure_creases(surface: SemiStructuredSurface) -> tuple[Crease, ...]:
     """
     straight = _STRAIGHT / (float(np.ptp(bounding_box(surface), axis=0).max()) or 1.0)
     first_u, last_u = _full([(surface.degree_u, surface.knots_u)])
-    first_v, last_v = _full([(curve.degree, curve.knots) for curve in surface.control_curves])
+    rows = [(curve.degree, curve.knots) for curve in surface.control_curves]
+    full_v, _ = _full(rows)
+    first_v, last_v = _full(rows, less=int(c1_lines))
     u, v = (_between(breaks) for breaks in surface.breakpoints)
     found: list[Crease] = []
     if first_u.size:
@@ -86,7 +90,7 @@ def measure_creases(surface: SemiStructuredSurface) -> tuple[Crease, ...]:
     if first_v.size:
         below = _Lines.of(reverse_v(surface), _reversed(first_v, surface.domain[1]), u, "v")
         found += _creases("v", first_v, _Lines.of(surface, last_v, u, "v"), below, straight)
-    return tuple(found)
+    return tuple(one for one in found if one.parameter == "u" or one.at in full_v or worst_inside([one]) is not None)
 
 
 def worst_inside(creases: Sequence[Crease]) -> Crease | None:
@@ -147,8 +151,8 @@ def _creases(
     return [Crease(parameter, *row) for row in np.stack([knots, angles, jumps, relative], axis=1).tolist()]
 
 
-def _full(rows: list[tuple[int, FloatArray]]) -> tuple[FloatArray, FloatArray]:
-    """Return the inner knots of full multiplicity in some row, and the last of those that count as one with each."""
+def _full(rows: list[tuple[int, FloatArray]], less: int = 0) -> tuple[FloatArray, FloatArray]:
+    """Return the inner knots of full multiplicity, or so much less, in some row; and the last that counts as each."""
     breaks = merge_breakpoints(*(breakpoints(knots) for _, knots in rows))
     between = (breaks[:-1] + breaks[1:]) / 2
     full = np.zeros(len(breaks), dtype=bool)
@@ -156,7 +160,7 @@ def _full(rows: list[tuple[int, FloatArray]]) -> tuple[FloatArray, FloatArray]:
     for degree, knots in rows:
         inner = knots[degree + 1 : -degree - 1]
         places = np.searchsorted(between, inner)
-        full |= np.bincount(places, minlength=len(breaks)) >= degree
+        full |= np.bincount(places, minlength=len(breaks)) >= max(degree - less, 1)
         np.minimum.at(first, places, inner)
         np.maximum.at(last, places, inner)
     full[[0, -1]] = False

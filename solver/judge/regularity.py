@@ -149,11 +149,13 @@ def _bernstein_product(
     total = np.zeros((m + k + 1, n + r + 1, *b.shape[2:]))
     for i in range(m + 1):
         for j in range(n + 1):
-            one = (comb(m, i) * comb(n, j) * a[i, j])[None, None]
+            one = (float(comb(m, i) * comb(n, j)) * a[i, j])[None, None]
             total[i : i + k + 1, j : j + r + 1] += product(one, scaled)
     return np.asarray(total / _binomials(m + k, n + r))
 
 
 def _binomials(m: int, n: int) -> FloatArray:
     """Return products of binomial coefficients, to multiply coefficients of shape (m + 1, n + 1, 3, U, S)."""
-    return np.outer([comb(m, i) for i in range(m + 1)], [comb(n, j) for j in range(n + 1)])[:, :, None, None, None]
+    # As floats: whole numbers of 64 bits overflow from degrees of about 30 on.
+    rows, columns = ([float(comb(k, i)) for i in range(k + 1)] for k in (m, n))
+    return np.outer(rows, columns)[:, :, None, None, None]

@@ -35,6 +35,13 @@ def cylinder(radius, z, height, cuts):
     return turned(_line((radius, z), (radius, z + height)), cuts)
 
 
+def repaced(surface, knots):
+    """The same surface run through unevenly: other knots in v."""
+    return BSplineSurface(
+        surface.degree_u, surface.degree_v, surface.knots_u, knots, surface.control_points, surface.weights
+    )
+
+
 def cone(radius, end_radius, z, height, cuts):
     return turned(_line((radius, z), (end_radius, z + height)), cuts)
 

@@ -4,8 +4,20 @@ import numpy as np
 import pytest
 
 from helpers.cases import CASES
-from helpers.rational import FULL, HALF, QUARTER, THIRDS, cylinder, meridian, random_pair
-from semispline import Base, BSplineSurface, ContactError, OptionError, blend, measure_contact, read_surface, transform
+from helpers.rational import FULL, HALF, QUARTER, THIRDS, cylinder, meridian, random_pair, repaced
+from semispline import (
+    Base,
+    BSplineSurface,
+    ComputationError,
+    ContactError,
+    OptionError,
+    blend,
+    measure_contact,
+    read_surface,
+    reverse_v,
+    swap_directions,
+    transform,
+)
 from semispline.solver.judge import required_limits
 from semispline.solver.judge.creases import worst_inside
 
@@ -27,6 +39,60 @@ def test_two_pipes_of_one_radius_are_joined_by_that_pipe(cuts, continuity):
     result = blend(Base(a, "u1"), Base(b, "u0"), continuity=continuity)
     assert np.abs(radii(result.surface) / 5 - 1).max() < 1e-9
     assert not result.warnings
+
+
+@pytest.mark.parametrize("inner", [(0.5, 0.6, 0.9), (0.7, 0.8, 0.9), (0.05, 0.1, 0.9), (0.9, 0.93, 0.97)])
+@pytest.mark.parametrize("start", [0.0, 37.0, 90.0, 200.0])
+def test_rims_face_each_other_by_angle_whatever_their_parameters(inner, start):
+    """Else the blend twists, and is pinched, without a word: the contacts stay exact."""
+    turned = tuple(np.radians(start) + np.linspace(0, 2 * np.pi, 5))
+    knots = np.array([0, 0, 0, *np.repeat(inner, 2), 1, 1, 1])
+    result = blend(
+        Base(cylinder(5.0, 0.0, 4.0, FULL), "u1"), Base(repaced(cylinder(5.0, 14.0, 4.0, turned), knots), "u0")
+    )
+    assert np.abs(radii(result.surface) / 5 - 1).max() < 1e-3
+    v = np.linspace(*result.surface.domain[1], 50)
+    rims = result.surface.evaluate_grid([0, 1], v)
+    angles = np.unwrap(np.arctan2(rims[..., 1], rims[..., 0]), axis=1)
+    # The smooth circle is off the angle by at most 1.23 degrees.
+    assert np.degrees(np.abs(angles[1] - angles[0])).max() < 2.5
+
+
+def test_rims_of_v_edges_and_turned_directions_face_each_other_too():
+    a, b = cylinder(5.0, 0.0, 4.0, FULL), cylinder(5.0, 14.0, 4.0, THIRDS)
+    b = reverse_v(repaced(b, np.array([0, 0, 0, 0.8, 0.8, 0.9, 0.9, 1, 1, 1])))
+    result = blend(Base(swap_directions(a), "v1"), Base(b, "u0"))
+    assert result.flipped
+    assert np.abs(radii(result.surface) / 5 - 1).max() < 1e-9
+
+
+def test_a_jump_of_curvature_that_a_cure_leaves_is_said():
+    a, b = case("speeds_straight"), case("speeds_other")
+    result = blend(Base(a, "u1"), Base(b, "u0"), continuity="G1")
+    assert result.cures[0].name == "spans"
+    inside = worst_inside(result.creases)
+    assert inside.angle_degrees < 1e-6
+    assert inside.curvature_jump_relative > 0.02
+    assert any("G1 inside" in warning for warning in result.warnings)
+
+
+def test_a_huge_alpha_is_no_number():
+    a, b = cylinder(5.0, 0.0, 4.0, QUARTER), cylinder(5.0, 14.0, 4.0, QUARTER)
+    with pytest.raises(ComputationError, match=r"shape parameters 1.0e\+28, 1.0e\+28"):
+        blend(Base(a, "u1"), Base(b, "u0"), alpha=1e14)
+
+
+def test_equal_weights_cancel_to_the_last_bit():
+    rng = np.random.default_rng(5)
+    net = np.stack(np.meshgrid(np.arange(4.0), np.arange(5.0), indexing="ij"), axis=-1)
+    net = np.concatenate([net, rng.normal(size=(4, 5, 1))], axis=-1)
+    knots = [0] * 4 + [1] * 4, [0] * 4 + [0.4] + [1] * 4
+    plain = BSplineSurface(3, 3, *knots, net)
+    weighted = BSplineSurface(3, 3, *knots, net, np.full((4, 5), 3.0))
+    other = transform(plain, np.eye(3), (6.0, 0.5, 1.0))
+    results = [blend(Base(a, "u1"), Base(other, "u0")) for a in (plain, weighted)]
+    for one, two in zip(*(r.surface.control_curves for r in results), strict=True):
+        assert np.array_equal(one.control_points, two.control_points)
 
 
 def test_what_both_sides_share_is_left_and_what_they_do_not_is_cured():

@@ -8,7 +8,7 @@ from helpers.bases import facing_pair
 from helpers.papers_set import blend
 from helpers.splines import surfaces
 from helpers.sweeps import examples
-from semispline import BSplineCurve, BSplineSurface, SemiStructuredSurface, measure_regularity, revolve
+from semispline import BSplineCurve, BSplineSurface, SemiStructuredSurface, elevate_degree, measure_regularity, revolve
 from semispline.solver.judge import bezier_pieces, regularity
 from semispline.solver.judge.de_boor import surface_points
 from semispline.solver.judge.regularity import area_bound
@@ -151,3 +151,11 @@ def test_knots_that_nearly_agree_are_one_span():
     same = measure_regularity(SemiStructuredSurface(1, BEZIER_1, exact))
     assert near.least_area_ratio == pytest.approx(same.least_area_ratio, rel=1e-11)
     assert near.proved_area_ratio == pytest.approx(same.proved_area_ratio, rel=1e-11)
+
+
+@pytest.mark.parametrize("degrees", [(9, 10), (9, 15), (9, 20), (9, 25)])
+def test_high_degrees_do_not_overflow(degrees):
+    """A flat square, elevated: its area element is 1, and whole numbers of 64 bits would not hold the products."""
+    square = BSplineSurface(1, 1, [0, 0, 1, 1], [0, 0, 1, 1], [[[0, 0, 0], [0, 1, 0]], [[1, 0, 0], [1, 1, 0]]])
+    found = measure_regularity(elevate_degree(square, *degrees).to_semistructured())
+    assert found.proved_area_ratio == pytest.approx(1.0, abs=1e-6)
