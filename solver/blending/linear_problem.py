@@ -119,7 +119,9 @@ def try_linear_alpha(
     solution = solve_fair(linear, constant)
     share = solution.value / constant.value if constant.value > 0 else 1.0
     if len(solution.condoned) > len(constant.condoned):
-        return LinearTrial(linear, solution, False, f"every candidate is refused ({' and '.join(solution.condoned)})")
+        return LinearTrial(
+            linear, solution, False, f"every cell that was tried is refused ({' and '.join(solution.condoned)})"
+        )
     if share <= TAKEN_SHARE or always or len(solution.condoned) < len(constant.condoned):
         return LinearTrial(linear, solution, True, f"fairness is {share:.3g} of that with a constant alpha")
     return LinearTrial(
