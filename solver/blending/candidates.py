@@ -107,17 +107,18 @@ def find_layout(a: Side, b: Side, said: BlendOptions) -> tuple[Layout, tuple[Can
     best = attempt(replace(first, alpha_v="constant") if "fair" in first.alphas else first)
     if best is not None and not _is_searched(best.problem, first):
         return best, ()
-    if best is not None:
-        best = _away_from_ends(best, search)
-    if (best is None or _is_doubtful(best)) and said.degree_u == "auto" and first.degree_u == 5:
-        best = _fairer(best, attempt(replace(first, degree_u=4, alpha_v="constant")))
+    # The quartic suits U-turns that want little alpha, whatever becomes of the quintic in a lower window.
+    doubtful = best is None or (best.problem.exits.u_turn and _is_doubtful(best))
+    best = None if best is None else _away_from_ends(best, search)
+    if (doubtful or _is_doubtful(cast("Layout", best))) and said.degree_u == "auto" and first.degree_u == 5:
+        quartic = attempt(replace(first, degree_u=4, alpha_v="constant"))
+        best = _fairer(best, quartic)
+        best = _away_from_ends(best, search) if best is not None and best is quartic else best
     if best is None:
         raise cast("ComputationError", tried[0].result)
     best, linear = _with_linear_alpha(best, first.alpha_v)
-    # What a linear alpha would follow, a middle curve follows less well; closed rims it would pull together.
-    varies = best.options.alpha_v == "constant" and gap_ratio(best.problem) >= MIDDLE_RATIO
-    varies = varies and best.problem.has_constant_weights
-    if said.middle_curves == "auto" and varies:
+    # What a linear alpha would follow, a middle curve follows less well.
+    if said.middle_curves == "auto" and _may_want_a_middle_curve(best):
         best = cast("Layout", _fairer(best, attempt(replace(first, middle_curves=1, alpha_v="constant"))))
     return best, (*(_candidate(one, best) for one in tried), *linear)
 
@@ -149,8 +150,15 @@ def _wants_less(layout: Layout) -> bool:
 def _is_doubtful(layout: Layout) -> bool:
     """Tell whether another layout is worth a search: for what was let pass, an end that was met, or a refusal."""
     found = layout.found
-    stopped = found.fair is not None and found.fair.stopped_by
-    return bool(found.condoned or stopped or alpha_bounds(layout.problem, found))
+    return bool(found.condoned or found.stopped_by or alpha_bounds(layout.problem, found))
+
+
+def _may_want_a_middle_curve(layout: Layout) -> bool:
+    """Tell whether a middle curve may follow what a constant alpha does not; closed rims it would pull together."""
+    problem = layout.problem
+    if layout.options.alpha_v != "constant" or problem.seam_order >= 0 or not problem.has_constant_weights:
+        return False
+    return bool(layout.found.stopped_by) or gap_ratio(problem) >= MIDDLE_RATIO
 
 
 def _away_from_ends(layout: Layout, search: _Search) -> Layout:

@@ -159,6 +159,10 @@ def _solved(problem: BlendProblem, refusable: tuple[int, ...], known: FairSoluti
         raise _AllRefusedError(refused)
     starts = [*_starts(cells, values), *([] if known is None else [_known_start(problem, unknowns, known)])]
     ends = [_descended(rough, rough.point(start), _NEAR) for start in starts]
+    # What is known of the same rows was found on finer grids: a rough one would only lead away from it.
+    exact = len(starts) - 1 if known is not None and problem.linear == (None, None) else None
+    if exact is not None:
+        ends[exact] = _with_finite_model(rough.point(starts[exact]))
     nodes = HIGH_ORDER_NODES_U if max(problem.a.order, problem.b.order) > 2 else NODES_U
     search = grid(across(u, nodes), along(rows, 1, narrow))
 
@@ -177,7 +181,8 @@ def _solved(problem: BlendProblem, refusable: tuple[int, ...], known: FairSoluti
     kept = cells[np.isfinite(values.ravel())]
     others = np.concatenate([kept, starts, [end.x for end in ends]])
     for k in order:
-        found = _settled(_refined(ends[k], starts[k], levels), starts[k], finer, others, times_v)
+        of_end = levels[-1:] if k == exact else levels
+        found = _settled(_refined(ends[k], starts[k], of_end), starts[k], finer, others, times_v)
         if found is not None:
             break
     if found is None and len(kept):
@@ -275,11 +280,15 @@ def _admitted(objective: FairObjective, point: Point, start: FloatArray) -> Poin
 
 def _descended(objective: FairObjective, start: Point, tolerance: float) -> Point:
     unknowns = objective.unknowns
-    if not np.isfinite(start.hessian).all():
-        # What is known from elsewhere may have no value here: finer grids start from it as it is.
-        return replace(start, gradient=np.zeros_like(start.x), hessian=np.eye(len(start.x)))
     longest = np.where(unknowns.logarithmic, _STEP, _STEP_P2)
-    return descend(objective, start, unknowns.low, unknowns.high, longest, tolerance)
+    return descend(objective, _with_finite_model(start), unknowns.low, unknowns.high, longest, tolerance)
+
+
+def _with_finite_model(point: Point) -> Point:
+    """Return a place with a model that can be used: what is known from elsewhere may have no value on another grid."""
+    if np.isfinite(point.hessian).all() and np.isfinite(point.gradient).all():
+        return point
+    return replace(point, gradient=np.zeros_like(point.x), hessian=np.eye(len(point.x)))
 
 
 def _solution(

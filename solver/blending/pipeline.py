@@ -24,6 +24,7 @@ from semispline.solver.blending.warnings import (
     fairness_warning,
     remedy,
     seam_warning,
+    stopped_warning,
 )
 from semispline.solver.errors import ComputationError, ContactError, FoldError, InputError
 from semispline.solver.judge import (
@@ -119,6 +120,7 @@ def blend(
     warnings = (
         shape_warnings(shape, regularity, creases, is_fair=found.fairness is not None, cures=problem.cures)
         + bound_warnings(problem, layout.found)
+        + stopped_warning(layout.found)
         + (fairness_warning(found.fairness, shape.fairness.value) if chosen.bulges == (1.0, 1.0) else ())
         + rounding_warning(rounding, surface, energy)
         + seam_warning(a, b)

@@ -36,8 +36,13 @@ class Found:
         return None if self.fair is None else self.fair.value
 
     @property
+    def stopped_by(self) -> str:
+        """The refusal that stopped the search, "fold" or "loop", if one did."""
+        return "" if self.fair is None else self.fair.stopped_by
+
+    @property
     def condoned(self) -> tuple[str, ...]:
-        """What was let pass because every candidate has it."""
+        """What was let pass because every cell that was tried has it."""
         return () if self.fair is None else self.fair.condoned
 
 
