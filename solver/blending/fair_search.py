@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cache
+from math import log2
 
 import numpy as np
 
@@ -158,11 +159,12 @@ def _solved(problem: BlendProblem, refusable: tuple[int, ...], known: FairSoluti
     if known is None and not np.isfinite(values).any():
         raise _AllRefusedError(refused)
     starts = [*_starts(cells, values), *([] if known is None else [_known_start(problem, unknowns, known)])]
-    ends = [_descended(rough, rough.point(start), _NEAR) for start in starts]
+    points = [_with_finite_model(rough.point(start)) for start in starts]
+    ends = [_descended(rough, point, _NEAR) for point in points]
     # What is known of the same rows was found on finer grids: a rough one would only lead away from it.
     exact = len(starts) - 1 if known is not None and problem.linear == (None, None) else None
     if exact is not None:
-        ends[exact] = _with_finite_model(rough.point(starts[exact]))
+        ends[exact] = points[exact]
     nodes = HIGH_ORDER_NODES_U if max(problem.a.order, problem.b.order) > 2 else NODES_U
     search = grid(across(u, nodes), along(rows, 1, narrow))
 
@@ -180,11 +182,19 @@ def _solved(problem: BlendProblem, refusable: tuple[int, ...], known: FairSoluti
     order = np.argsort(search.values(np.stack([end.x for end in ends])), kind="stable") if len(ends) > 1 else [0]
     kept = cells[np.isfinite(values.ravel())]
     others = np.concatenate([kept, starts, [end.x for end in ends]])
+
+    def gone_down(k: int) -> tuple[Point, bool] | None:
+        at = _refined(ends[k], starts[k], levels[-1:] if k == exact else levels)
+        return _settled(at, starts[k], finer, others, times_v)
+
     for k in order:
-        of_end = levels[-1:] if k == exact else levels
-        found = _settled(_refined(ends[k], starts[k], of_end), starts[k], finer, others, times_v)
+        found = gone_down(k)
         if found is not None:
             break
+    if exact is not None and k != exact and found is not None:
+        # What looked better than what is known may end up worse.
+        again = gone_down(exact)
+        found = again if again is not None and again[0].value < found[0].value else found
     if found is None and len(kept):
         # What the rough grid let pass is refused: what else does the finer one let pass?
         start = kept[np.argmin(search.values(kept))]
@@ -204,7 +214,7 @@ def _cells(problem: BlendProblem) -> int:
     """
     ratio = max(high / low for low, high in problem.bounds)
     least = _WIDE_CELLS if problem.exits.u_turn else _CELLS
-    return min(max(least, _CELLS + round(np.log2(ratio / 16))), _MOST_CELLS)
+    return min(max(least, _CELLS + round(log2(ratio / 16))), _MOST_CELLS)
 
 
 def _scan(objective: FairObjective, cells: int) -> tuple[FloatArray, FloatArray]:
@@ -281,7 +291,7 @@ def _admitted(objective: FairObjective, point: Point, start: FloatArray) -> Poin
 def _descended(objective: FairObjective, start: Point, tolerance: float) -> Point:
     unknowns = objective.unknowns
     longest = np.where(unknowns.logarithmic, _STEP, _STEP_P2)
-    return descend(objective, _with_finite_model(start), unknowns.low, unknowns.high, longest, tolerance)
+    return descend(objective, start, unknowns.low, unknowns.high, longest, tolerance)
 
 
 def _with_finite_model(point: Point) -> Point:

@@ -283,6 +283,26 @@ def test_a_search_that_is_stopped_by_a_refusal_says_by_which():
     assert "it ended" not in found_fair(free, "reduced").known
 
 
+@pytest.mark.parametrize(
+    ("ratio", "is_u_turn", "cells"),
+    [
+        (2.0, False, 6),
+        (16.0, False, 6),
+        (16.000000000000004, False, 6),
+        (32.0, False, 7),
+        (64.0, False, 8),
+        (400.0, False, 11),
+        (1e30, False, 30),
+        (16.0, True, 8),
+        (64.0, True, 8),
+        (256.0, True, 10),
+    ],
+)
+def test_cells_of_the_scan_keep_their_size(ratio, is_u_turn, cells):
+    bounds = ((1.0, 1.0), (0.3, 0.3 * ratio))
+    assert fair_search._cells(SimpleNamespace(bounds=bounds, exits=SimpleNamespace(u_turn=is_u_turn))) == cells
+
+
 def test_a_candidate_that_passes_comes_before_a_fairer_one_that_was_let_pass():
     solutions = [
         FairSolution(1.0, 1.0, (0.0, 0.0), value, 0.0, 1, {}, condoned)

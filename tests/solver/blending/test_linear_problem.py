@@ -35,7 +35,7 @@ def solution(value, *condoned):
         # Nothing of nothing is all of it.
         (solution(0.0), solution(0.0), False, "fairness is 1 of"),
         # What is refused less often comes first, however fair.
-        (solution(1.0), solution(0.1, "folds"), False, "every candidate is refused .folds."),
+        (solution(1.0), solution(0.1, "folds"), False, "every cell that was tried is refused .folds."),
         (solution(1.0, "folds"), solution(9.0), True, "fairness is 9 of"),
         (solution(1.0, "folds"), solution(0.71, "folds"), False, "fairness is 0.71 of"),
         (solution(1.0, "folds"), solution(0.69, "folds"), True, "fairness is 0.69 of"),
