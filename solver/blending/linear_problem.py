@@ -125,8 +125,8 @@ def try_linear_alpha(
         return LinearTrial(
             linear, solution, False, f"every cell that was tried is refused ({' and '.join(solution.condoned)})"
         )
-    goes_on = bool(constant.stopped_by) and not solution.stopped_by and share < 1
-    if share <= TAKEN_SHARE or always or goes_on or len(solution.condoned) < len(constant.condoned):
+    pays = share <= TAKEN_SHARE or always or len(solution.condoned) < len(constant.condoned)
+    if pays or (constant.stopped_by and not solution.stopped_by and share < 1):
         return LinearTrial(linear, solution, True, f"fairness is {share:.3g} of that with a constant alpha")
     return LinearTrial(
         linear, solution, False, f"fairness is {share:.3g} of that with a constant alpha, {TAKEN_SHARE} would pay"

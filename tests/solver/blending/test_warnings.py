@@ -9,8 +9,9 @@ import pytest
 from helpers.bases import turned
 from helpers.papers_set import blend
 from semispline import Base, BSplineSurface, ContactError, FoldError
+from semispline.solver.blending.fair_search import FairSolution
 from semispline.solver.blending.shape_parameters import Found
-from semispline.solver.blending.warnings import contact_warnings, remedy
+from semispline.solver.blending.warnings import contact_warnings, remedy, stopped_warning
 from semispline.solver.judge import NoNormal
 from semispline.solver.splines import greville
 from semispline.solver.splines.operations import all_control_points
@@ -117,3 +118,14 @@ def test_five_places_without_a_normal_are_named(places, named):
     said = contact_warnings((FLOOR, WALL), result.surface, contacts, ("G1", "G1"), found)
     assert ["base b: " in text and "G1 says nothing there" in text for text in said] == [True] * named
     assert not contact_warnings((FLOOR, WALL), result.surface, contacts, ("G1", "C1"), found)
+
+
+@pytest.mark.parametrize("reason", ["fold", "loop"])
+def test_a_search_that_a_refusal_stopped_is_told_of(reason):
+    def found(stopped_by):
+        fair = FairSolution(1.0, 1.0, (0.0, 0.0), 1.0, 0.5, 1, {}, stopped_by=stopped_by)
+        return Found(1.0, 1.0, "reduced", fair=fair)
+
+    (text,) = stopped_warning(found(reason))
+    assert f"beside this blend lie fairer ones that {reason}, which are refused; try alpha_v linear" in text
+    assert stopped_warning(found("")) == stopped_warning(Found(1.0, 1.0, "casadi")) == ()
