@@ -8,7 +8,7 @@ import pytest
 from helpers.facing import random_facing
 from semispline import Base, BSplineSurface, FoldError, OptionError, blend, measure_fairness
 from semispline.papers.reproduction.families.suite import shape_problem
-from semispline.solver.blending import candidates
+from semispline.solver.blending import candidates, shape_parameters
 from semispline.solver.blending.fair_search import FairSolution, solve_fair
 from semispline.solver.blending.linear_problem import gap_ratio
 from semispline.solver.blending.pipeline import state_problem
@@ -268,8 +268,31 @@ def test_a_linear_alpha_that_no_refusal_stops_is_taken_if_it_is_fairer():
     assert result.options.alpha_v == "linear"
     assert not result.warnings
     # A constant one is stopped, and says so.
-    assert (5, 1, "constant") in tried(constant)
     assert any("the fairest shape was not reached" in text for text in constant.warnings)
+
+
+def test_a_middle_curve_is_tried_where_a_refusal_stopped_a_constant_alpha():
+    rough = shape_problem("rough", 51)
+    assert gap_ratio(state_problem(rough.a, rough.b).problem) < candidates.MIDDLE_RATIO
+    result = blend(rough.a, rough.b, alpha_v="constant")
+    assert tried(result) == [(5, 0, "constant"), (4, 0, "constant"), (5, 1, "constant")]
+    assert result.options.middle_curves == 1
+    assert not result.warnings
+
+
+def test_lower_windows_start_from_what_is_known(monkeypatch):
+    asked = []
+
+    def search(problem, known=None):
+        asked.append((problem, known, solve_fair(problem, known)))
+        return asked[-1][-1]
+
+    monkeypatch.setattr(shape_parameters, "solve_fair", search)
+    problem = shape_problem("u-turn", 20)
+    blend(problem.a, problem.b, degree_u=5)
+    assert [known for _, known, _ in asked] == [None, asked[0][2], asked[1][2]]
+    lows = [stated.bounds[0][0] for stated, *_ in asked]
+    assert lows == pytest.approx([lows[0], lows[0] / 2, lows[0] / 4], rel=1e-12)
 
 
 def test_closed_rims_refuse_a_linear_alpha():

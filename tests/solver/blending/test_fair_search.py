@@ -303,6 +303,41 @@ def test_cells_of_the_scan_keep_their_size(ratio, is_u_turn, cells):
     assert fair_search._cells(SimpleNamespace(bounds=bounds, exits=SimpleNamespace(u_turn=is_u_turn))) == cells
 
 
+def test_what_is_known_is_kept_where_every_cell_folds(monkeypatch):
+    problem = state_problem(*sheets(), **FAIR).problem
+    known = solve_fair(problem)
+    scan = fair_search._scan
+
+    def folded(*words):
+        cells, values = scan(*words)
+        return cells, np.full_like(values, np.inf)
+
+    monkeypatch.setattr(fair_search, "_scan", folded)
+    again = solve_fair(problem, known)
+    assert again.condoned == ()
+    assert again.value == pytest.approx(known.value, rel=1e-6)
+    with pytest.raises(ComputationError, match="no candidate is left"):
+        solve_fair(problem)
+
+
+def test_what_is_known_goes_to_the_fine_grid_alone(monkeypatch):
+    problem = state_problem(*sheets(), **FAIR).problem
+    known = solve_fair(problem)
+    gone, refined = [], fair_search._refined
+
+    def watched(end, start, levels):
+        gone.append((end, start, len(levels)))
+        return refined(end, start, levels)
+
+    monkeypatch.setattr(fair_search, "_refined", watched)
+    monkeypatch.setattr(fair_search, "_LARGE", 0)
+    solve_fair(problem, known)
+    # As it is, where others come down from a rough grid over one between.
+    assert [levels for end, start, levels in gone if end.x is start] == [1]
+    solve_fair(problem)
+    assert gone[-1][2] == 2
+
+
 def test_a_candidate_that_passes_comes_before_a_fairer_one_that_was_let_pass():
     solutions = [
         FairSolution(1.0, 1.0, (0.0, 0.0), value, 0.0, 1, {}, condoned)
