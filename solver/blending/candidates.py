@@ -6,16 +6,21 @@ on closed rims, where free rows pull circles together (docs/shapes.md).
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import cast
 
+from semispline.solver.blending.fair_search import FairSolution
 from semispline.solver.blending.linear_problem import WIDER, gap_ratio, try_linear_alpha
-from semispline.solver.blending.problem import LOWER, BlendProblem, make_problem
+from semispline.solver.blending.problem import LOWER, BlendProblem, SecondParameter, make_problem
 from semispline.solver.blending.shape_parameters import Found, alpha_bounds, find_shape_parameters, found_fair
 from semispline.solver.blending.sides import Side
 from semispline.solver.errors import ComputationError, OptionError
 from semispline.solver.options import AlphaV, BlendOptions
 
+# A p2 that leads to an end of the window is left out where that leads away from it, and fairness grows to at most this
+# multiple.
+WITHOUT_P2 = 1.1
 # A middle curve is tried where gap / |R_w| varies by this factor along a contact and alpha is constant all the same.
 MIDDLE_RATIO = 2.0
 
@@ -58,6 +63,20 @@ class Layout:
     found: Found
 
 
+@dataclass(frozen=True, eq=False)
+class _Tried:
+    """An attempt: its options, what came of it, and how it differs from what the options say."""
+
+    options: BlendOptions
+    result: Layout | ComputationError
+    remark: str = ""
+
+
+# Options, problem, what is known, a remark.
+_Search = Callable[..., Layout | None]
+_TwoP2 = tuple[SecondParameter, SecondParameter]
+
+
 def find_layout(a: Side, b: Side, said: BlendOptions) -> tuple[Layout, tuple[Candidate, ...]]:
     """Find the layout of a blend and its shape parameters.
 
@@ -67,36 +86,41 @@ def find_layout(a: Side, b: Side, said: BlendOptions) -> tuple[Layout, tuple[Can
         That of the first candidate, where all are refused.
     """
     first = said.decided()
-    tried: list[tuple[BlendOptions, Layout | ComputationError]] = []
+    tried: list[_Tried] = []
 
-    def attempt(options: BlendOptions, low: float = 1.0) -> Layout | None:
-        problem = _with_low_window(make_problem(a, b, options), low)
+    def search(
+        options: BlendOptions, problem: BlendProblem, known: FairSolution | None, remark: str = ""
+    ) -> Layout | None:
         try:
-            result: Layout | ComputationError = Layout(options, problem, find_shape_parameters(problem, options))
+            found = find_shape_parameters(problem, options, known)
+            result: Layout | ComputationError = Layout(options, problem, found)
         except ComputationError as refusal:
             if not _is_searched(problem, options):
                 raise
             result = refusal
-        tried.append((options, result))
+        tried.append(_Tried(options, result, remark))
         return result if isinstance(result, Layout) else None
+
+    def attempt(options: BlendOptions) -> Layout | None:
+        return search(options, make_problem(a, b, options), _known_within(a, b, options))
 
     best = attempt(replace(first, alpha_v="constant") if "fair" in first.alphas else first)
     if best is not None and not _is_searched(best.problem, first):
         return best, ()
-    if best is not None and first.box is None and _wants_less(best):
-        best = _fairer(best, attempt(best.options, LOWER))
-    doubtful = best is None or best.found.condoned or alpha_bounds(best.problem, best.found)
-    if doubtful and said.degree_u == "auto" and first.degree_u == 5:
-        best = _fairer(best, attempt(replace(first, degree_u=4, alpha_v="constant")))
+    # The quartic suits U-turns that want little alpha, whatever becomes of the quintic in a lower window.
+    doubtful = best is None or (best.problem.exits.u_turn and _is_doubtful(best))
+    best = None if best is None else _away_from_ends(best, search)
+    if (doubtful or _is_doubtful(cast("Layout", best))) and said.degree_u == "auto" and first.degree_u == 5:
+        quartic = attempt(replace(first, degree_u=4, alpha_v="constant"))
+        best = _fairer(best, quartic)
+        best = _away_from_ends(best, search) if best is not None and best is quartic else best
     if best is None:
-        raise cast("ComputationError", tried[0][1])
+        raise cast("ComputationError", tried[0].result)
     best, linear = _with_linear_alpha(best, first.alpha_v)
-    # What a linear alpha would follow, a middle curve follows less well; closed rims it would pull together.
-    varies = best.options.alpha_v == "constant" and gap_ratio(best.problem) >= MIDDLE_RATIO
-    varies = varies and best.problem.has_constant_weights
-    if said.middle_curves == "auto" and varies:
+    # What a linear alpha would follow, a middle curve follows less well.
+    if said.middle_curves == "auto" and _may_want_a_middle_curve(best):
         best = cast("Layout", _fairer(best, attempt(replace(first, middle_curves=1, alpha_v="constant"))))
-    return best, (*(_candidate(options, result, best) for options, result in tried), *linear)
+    return best, (*(_candidate(one, best) for one in tried), *linear)
 
 
 def _with_linear_alpha(constant: Layout, alpha_v: AlphaV) -> tuple[Layout, tuple[Candidate, ...]]:
@@ -115,13 +139,79 @@ def _with_linear_alpha(constant: Layout, alpha_v: AlphaV) -> tuple[Layout, tuple
     tried = Layout(options, trial.problem, found_fair(trial.solution, constant.found.method))
     best = tried if trial.taken else constant
     verdict = "chosen" if trial.taken else trial.verdict
-    return best, (replace(_candidate(options, tried, tried), verdict=verdict),)
+    return best, (replace(_candidate(_Tried(options, tried), tried), verdict=verdict),)
 
 
 def _wants_less(layout: Layout) -> bool:
-    """Tell whether the lower end of a window stopped the search; U-turns end there for want of a better shape."""
-    active = alpha_bounds(layout.problem, layout.found)
-    return not layout.problem.exits.u_turn and any("lower" in name for name in active)
+    """Tell whether the lower end of a window stopped the search."""
+    return any("lower" in name for name in alpha_bounds(layout.problem, layout.found))
+
+
+def _is_doubtful(layout: Layout) -> bool:
+    """Tell whether another layout is worth a search: for what was let pass, an end that was met, or a refusal."""
+    found = layout.found
+    return bool(found.condoned or found.stopped_by or alpha_bounds(layout.problem, found))
+
+
+def _may_want_a_middle_curve(layout: Layout) -> bool:
+    """Tell whether a middle curve may follow what a constant alpha does not; closed rims it would pull together."""
+    problem = layout.problem
+    if layout.options.alpha_v != "constant" or problem.seam_order >= 0 or not problem.has_constant_weights:
+        return False
+    return bool(layout.found.stopped_by) or gap_ratio(problem) >= MIDDLE_RATIO
+
+
+def _away_from_ends(layout: Layout, search: _Search) -> Layout:
+    """Return what is better than a blend at an end of its window: in a lower window, or else without p2.
+
+    A box that was asked for stays.
+    """
+    best, problem = layout, layout.problem
+    # The weights of rational bases are made for one step.
+    for low in (LOWER,) if problem.is_rational else (LOWER, LOWER**2):
+        if layout.options.box is None and _wants_less(best):
+            lower = search(layout.options, _with_low_window(problem, low), best.found.fair)
+            best = cast("Layout", _fairer(best, lower))
+    if problem.exits.u_turn:
+        # Here p2 is worth more than a window that is not met.
+        return best
+    for every in (False, True):
+        # Alpha and p2 can be traded one for the other until the window ends: such a side, or both, goes without p2.
+        at_end = _at_end(best)
+        p2 = tuple(
+            SecondParameter() if (every or ended) and second.free else second
+            for ended, second in zip(at_end, best.problem.p2, strict=True)
+        )
+        if any(at_end) and p2 != best.problem.p2:
+            without = search(layout.options, replace(best.problem, p2=cast("_TwoP2", p2)), None, "without p2")
+            best = without if without is not None and _pays_without_p2(without, best) else best
+    return best
+
+
+def _pays_without_p2(without: Layout, best: Layout) -> bool:
+    """Tell whether a side is better without p2: it leaves an end for little fairness, or there is less to let pass."""
+    if len(without.found.condoned) != len(best.found.condoned):
+        return len(without.found.condoned) < len(best.found.condoned)
+    return sum(_at_end(without)) < sum(_at_end(best)) and _fairness(without) <= WITHOUT_P2 * _fairness(best)
+
+
+def _at_end(layout: Layout) -> tuple[bool, bool]:
+    return cast("FairSolution", layout.found.fair).at_end
+
+
+def _known_within(a: Side, b: Side, options: BlendOptions) -> FairSolution | None:
+    """Return what is found in the window that a box replaces, where it is wider: that cannot be worse."""
+    if options.box is None:
+        return None
+    wide, narrow = make_problem(a, b, options), make_problem(a, b, replace(options, box=None))
+    pairs = zip(wide.bounds, narrow.bounds, strict=True)
+    is_wider = wide.bounds != narrow.bounds and all(w[0] <= n[0] and n[1] <= w[1] for w, n in pairs)
+    if not (is_wider and _is_searched(wide, options)):
+        return None
+    try:
+        return find_shape_parameters(narrow, options).fair
+    except ComputationError:
+        return None
 
 
 def _with_low_window(problem: BlendProblem, factor: float) -> BlendProblem:
@@ -149,16 +239,19 @@ def _loser(layout: Layout, best: Layout) -> str:
     """Say why a layout was not taken."""
     let_pass = set(layout.found.condoned) - set(best.found.condoned)
     if let_pass:
-        return f"every candidate {' or '.join(sorted(let_pass))}"
+        return f"every cell that was tried {' or '.join(sorted(let_pass))}"
+    if _fairness(layout) < _fairness(best) and any(_at_end(layout)):
+        return f"fairness {_fairness(layout):.4g} is less, at an end of its window"
     more = "is no less" if _fairness(layout) <= _fairness(best) else "is more"
     window = "" if layout.problem.bounds == best.problem.bounds else ", in another window"
     return f"fairness {_fairness(layout):.4g} {more}{window}"
 
 
-def _candidate(options: BlendOptions, result: Layout | ComputationError, best: Layout) -> Candidate:
+def _candidate(one: _Tried, best: Layout) -> Candidate:
+    options, result = one.options, one.result
     fairness = _fairness(result) if isinstance(result, Layout) else None
     said = _loser(result, best) if isinstance(result, Layout) else str(result)
-    verdict = "chosen" if result is best else said
+    verdict = "chosen" if result is best else f"{one.remark}: {said}" if one.remark else said
     return Candidate(
         cast("int", options.degree_u), cast("int", options.middle_curves), options.alpha_v, fairness, verdict
     )

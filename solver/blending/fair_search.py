@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cache
+from math import log2
 
 import numpy as np
 
@@ -25,13 +26,14 @@ from semispline.solver.blending.fairness_grid import (
 )
 from semispline.solver.blending.fairness_table import FOLDS, LEAST_COSINE, LOOPS, FairnessTable, narrow_width
 from semispline.solver.blending.linear_alpha import LinearInV
-from semispline.solver.blending.problem import BlendProblem, SecondParameter
+from semispline.solver.blending.problem import BlendProblem
 from semispline.solver.blending.projected import Point, descend, unbound
 from semispline.solver.errors import ComputationError
 
-# Cells of the scan in each direction; more where the window is wider. It looks at half the nodes in u, where normals of
-# neighbours may turn further.
-_CELLS, _WIDE_CELLS = 6, 8
+# Cells of the scan in each direction, at least, and for U-turns; one more for each factor of 2 by which the ends of the
+# window are further apart than 16, up to the last. It looks at half the nodes in u, where normals of neighbours may
+# turn further.
+_CELLS, _WIDE_CELLS, _MOST_CELLS = 6, 8, 30
 _SCAN_COSINE = 0.0
 _STARTS = 3
 # Gradients of log J at the end of a start, and of the search.
@@ -71,7 +73,7 @@ class FairSolution:
     refused : dict
         How many candidates were refused for each reason, "folds" and "loops".
     condoned : tuple of str
-        What is no longer refused, because every candidate was: "folds", then "loops" too.
+        What is no longer refused, because every cell that was tried was: "folds", then "loops" too.
     at_end : (bool, bool)
         Whether alpha^2 and beta^2 are at an end of their window.
     p2_ends : (str, str)
@@ -99,37 +101,21 @@ class FairSolution:
 def solve_fair(problem: BlendProblem, known: FairSolution | None = None) -> FairSolution:
     """Find the shape parameters of the fairest blend.
 
-    Where the bases are so rough, or face each other so badly, that every candidate is refused, the fairest of them is
-    taken all the same: what is wrong with it is measured on the finished surface, and said.
+    Where the bases are so rough, or face each other so badly, that every cell that is tried is refused, the fairest is
+    taken all the same, by what is refused as little as can be: what is wrong with it is measured on the finished
+    surface, and said.
 
     Parameters
     ----------
     problem : BlendProblem
     known : FairSolution, optional
-        That for constant alpha, from where the search for a linear one starts, too.
+        That of a narrower window, or for constant alpha: the search starts from there, too.
 
     Raises
     ------
     ComputationError
         No candidate can be measured.
     """
-    found = _searched(problem, known)
-    if problem.exits.u_turn:
-        # Here p2 is worth more than a window that is not met.
-        return found
-    at_end = found.at_end
-    for dropped in (at_end, (True, True)):
-        # Alpha and p2 can be traded one for the other until the window ends: such a side, or both, goes without p2.
-        p2_a, p2_b = (SecondParameter() if d and p2.free else p2 for d, p2 in zip(dropped, problem.p2, strict=True))
-        if any(found.at_end) and (p2_a, p2_b) != problem.p2:
-            without = _searched(replace(problem, p2=(p2_a, p2_b)), known)
-            better = (len(without.condoned), sum(without.at_end)) < (len(found.condoned), sum(found.at_end))
-            found = replace(without if better else found, tried=found.tried + without.tried)
-    return found
-
-
-def _searched(problem: BlendProblem, known: FairSolution | None) -> FairSolution:
-    """Find them with folds and loops refused, or else as much of that as leaves a candidate."""
     refused: dict[str, int] = {}
     for refusable, condoned in (((FOLDS, LOOPS), ()), ((LOOPS,), ("folds",))):
         try:
@@ -168,10 +154,17 @@ def _solved(problem: BlendProblem, refusable: tuple[int, ...], known: FairSoluti
     # The tips of U-turns are sharp.
     rough_u = across(u, NODES_U) if problem.exits.u_turn else across(u, ROUGH_U)
     rough = grid(rough_u, rough_along(rows, narrow), _SCAN_COSINE)
-    cells, values = _scan(rough, _WIDE_CELLS if problem.exits.u_turn else _CELLS)
+    cells, values = _scan(rough, _cells(problem))
     refused = dict(rough.refused)
+    if known is None and not np.isfinite(values).any():
+        raise _AllRefusedError(refused)
     starts = [*_starts(cells, values), *([] if known is None else [_known_start(problem, unknowns, known)])]
-    ends = [_descended(rough, rough.point(start), _NEAR) for start in starts]
+    points = [_with_finite_model(rough.point(start)) for start in starts]
+    ends = [_descended(rough, point, _NEAR) for point in points]
+    # What is known of the same rows was found on finer grids: a rough one would only lead away from it.
+    exact = len(starts) - 1 if known is not None and problem.linear == (None, None) else None
+    if exact is not None:
+        ends[exact] = points[exact]
     nodes = HIGH_ORDER_NODES_U if max(problem.a.order, problem.b.order) > 2 else NODES_U
     search = grid(across(u, nodes), along(rows, 1, narrow))
 
@@ -189,11 +182,20 @@ def _solved(problem: BlendProblem, refusable: tuple[int, ...], known: FairSoluti
     order = np.argsort(search.values(np.stack([end.x for end in ends])), kind="stable") if len(ends) > 1 else [0]
     kept = cells[np.isfinite(values.ravel())]
     others = np.concatenate([kept, starts, [end.x for end in ends]])
+
+    def gone_down(k: int) -> tuple[Point, bool] | None:
+        at = _refined(ends[k], starts[k], levels[-1:] if k == exact else levels)
+        return _settled(at, starts[k], finer, others, times_v)
+
     for k in order:
-        found = _settled(_refined(ends[k], starts[k], levels), starts[k], finer, others, times_v)
+        found = gone_down(k)
         if found is not None:
             break
-    else:
+    if exact is not None and k != exact and found is not None:
+        # What looked better than what is known may end up worse.
+        again = gone_down(exact)
+        found = again if again is not None and again[0].value < found[0].value else found
+    if found is None and len(kept):
         # What the rough grid let pass is refused: what else does the finer one let pass?
         start = kept[np.argmin(search.values(kept))]
         found = _settled(_refined(search.point(start), start, levels[-1:]), start, finer, others, times_v)
@@ -205,6 +207,16 @@ def _solved(problem: BlendProblem, refusable: tuple[int, ...], known: FairSoluti
     return replace(solution, settled=found[1], stopped_by=next(filter(None, shut), ""))
 
 
+def _cells(problem: BlendProblem) -> int:
+    """Return how many cells a scan has in each direction: they are of one size in log alpha^2, however wide a window.
+
+    The wider windows of the ends of a linear alpha^2 have those of its constant.
+    """
+    ratio = max(high / low for low, high in problem.bounds)
+    least = _WIDE_CELLS if problem.exits.u_turn else _CELLS
+    return min(max(least, _CELLS + round(log2(ratio / 16))), _MOST_CELLS)
+
+
 def _scan(objective: FairObjective, cells: int) -> tuple[FloatArray, FloatArray]:
     """Return the cells of the window, shape (B, n), and their values, with one axis for both ends of each side."""
     unknowns = objective.unknowns
@@ -214,8 +226,6 @@ def _scan(objective: FairObjective, cells: int) -> tuple[FloatArray, FloatArray]
         ends = unknowns.ends[side]
         points[..., ends] = unknowns.low[ends] + part[..., None] * (unknowns.high - unknowns.low)[ends]
     values = objective.values(points.reshape(-1, points.shape[-1])).reshape(points.shape[:-1])
-    if not np.isfinite(values).any():
-        raise _AllRefusedError(dict(objective.refused))
     return points.reshape(-1, points.shape[-1]), values
 
 
@@ -284,6 +294,13 @@ def _descended(objective: FairObjective, start: Point, tolerance: float) -> Poin
     return descend(objective, start, unknowns.low, unknowns.high, longest, tolerance)
 
 
+def _with_finite_model(point: Point) -> Point:
+    """Return a place with a model that can be used: what is known from elsewhere may have no value on another grid."""
+    if np.isfinite(point.hessian).all() and np.isfinite(point.gradient).all():
+        return point
+    return replace(point, gradient=np.zeros_like(point.x), hessian=np.eye(len(point.x)))
+
+
 def _solution(
     problem: BlendProblem, unknowns: Unknowns, found: Point, fine: FairObjective, tried: int, refused: dict[str, int]
 ) -> FairSolution:
@@ -334,7 +351,7 @@ def _side_values(problem: BlendProblem, unknowns: Unknowns, y: FloatArray, side:
 
 
 def _known_start(problem: BlendProblem, unknowns: Unknowns, known: FairSolution) -> FloatArray:
-    """Return the unknowns at what was found for a constant alpha."""
+    """Return the unknowns at what was found in a narrower window, or for a constant alpha."""
     y = np.zeros(len(unknowns.low))
     for side, (value, second) in enumerate(zip((known.a, known.b), known.p2, strict=True)):
         if problem.free[side]:

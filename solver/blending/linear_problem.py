@@ -101,6 +101,9 @@ def try_linear_alpha(
 ) -> LinearTrial:
     """Try a linear alpha^2 where the gap varies along the contact, and take it where it is worth its control points.
 
+    Where a refusal stopped the search for a constant one, it is tried too, and taken where none stops it and it is
+    fairer.
+
     Parameters
     ----------
     problem : BlendProblem
@@ -113,14 +116,17 @@ def try_linear_alpha(
     if problem.seam_order >= 0:
         return LinearTrial(None, None, False, "contacts are closed: alpha has to be constant along them")
     ratio = gap_ratio(problem)
-    if ratio < TRIED_RATIO and not always:
+    if ratio < TRIED_RATIO and not always and not constant.stopped_by:
         return LinearTrial(None, None, False, f"gap over speed varies by {ratio:.3g} along the contact, not tried")
     linear = with_linear_alpha(problem, wider)
     solution = solve_fair(linear, constant)
     share = solution.value / constant.value if constant.value > 0 else 1.0
     if len(solution.condoned) > len(constant.condoned):
-        return LinearTrial(linear, solution, False, f"every candidate is refused ({' and '.join(solution.condoned)})")
-    if share <= TAKEN_SHARE or always or len(solution.condoned) < len(constant.condoned):
+        return LinearTrial(
+            linear, solution, False, f"every cell that was tried is refused ({' and '.join(solution.condoned)})"
+        )
+    pays = share <= TAKEN_SHARE or always or len(solution.condoned) < len(constant.condoned)
+    if pays or (constant.stopped_by and not solution.stopped_by and share < 1):
         return LinearTrial(linear, solution, True, f"fairness is {share:.3g} of that with a constant alpha")
     return LinearTrial(
         linear, solution, False, f"fairness is {share:.3g} of that with a constant alpha, {TAKEN_SHARE} would pay"

@@ -25,6 +25,7 @@ from semispline.solver.blending.warnings import (
     fairness_warning,
     remedy,
     seam_warning,
+    stopped_warning,
     strained_by,
 )
 from semispline.solver.errors import ComputationError, ContactError, FoldError, InputError
@@ -119,6 +120,7 @@ def blend(
     warnings = (
         shape_warnings(shape, regularity, creases, options=chosen, cures=problem.cures)
         + bound_warnings(problem, layout.found)
+        + stopped_warning(layout.found)
         + (fairness_warning(found.fairness, shape.fairness.value) if chosen.bulges == (1.0, 1.0) else ())
         + rounding_warning(rounding, surface, energy)
         + seam_warning(a, b)

@@ -36,14 +36,20 @@ class Found:
         return None if self.fair is None else self.fair.value
 
     @property
+    def stopped_by(self) -> str:
+        """The refusal that stopped the search, "fold" or "loop", if one did."""
+        return "" if self.fair is None else self.fair.stopped_by
+
+    @property
     def condoned(self) -> tuple[str, ...]:
-        """What was let pass because every candidate has it."""
+        """What was let pass because every cell that was tried has it."""
         return () if self.fair is None else self.fair.condoned
 
 
-def find_shape_parameters(problem: BlendProblem, options: BlendOptions) -> Found:
+def find_shape_parameters(problem: BlendProblem, options: BlendOptions, known: FairSolution | None = None) -> Found:
     """Find alpha^2 and beta^2 of least energy or fairest shape; where both are fixed there is nothing to find.
 
+    A search for the fairest shape starts from what is known of a narrower window, too.
     Each method waits inside the function until it is asked for: CasADi alone takes longer to load than to solve.
     """
     method = options.method
@@ -51,7 +57,7 @@ def find_shape_parameters(problem: BlendProblem, options: BlendOptions) -> Found
         a, b = problem.given
         return Found(a, b, method="linear", p2=(problem.p2[0].at(a), problem.p2[1].at(b)))
     if "fair" in options.alphas:
-        return found_fair(solve_fair(problem), method)
+        return found_fair(solve_fair(problem, known), method)
     if method == "reduced":
         from semispline.solver.blending.reduced import solve_reduced
 

@@ -49,6 +49,16 @@ def bound_warnings(problem: BlendProblem, found: Found) -> tuple[str, ...]:
     return tuple(warnings)
 
 
+def stopped_warning(found: Found) -> tuple[str, ...]:
+    """Return a warning where a refusal stopped the search before the fairest shape was reached."""
+    if not found.stopped_by:
+        return ()
+    return (
+        f"the fairest shape was not reached: beside this blend lie fairer ones that {found.stopped_by}, which are "
+        "refused; try alpha_v linear, a middle curve, or edges that face each other more evenly",
+    )
+
+
 def fairness_warning(minimised: float | None, measured: float) -> tuple[str, ...]:
     """Return a warning where the fairness that was minimised is not that of the finished surface.
 

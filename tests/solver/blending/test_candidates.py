@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from helpers.facing import random_facing
-from semispline import Base, BSplineSurface, OptionError, blend, measure_fairness
+from semispline import Base, BSplineSurface, FoldError, OptionError, blend, measure_fairness
 from semispline.papers.reproduction.families.suite import shape_problem
-from semispline.solver.blending import candidates, fair_search
+from semispline.solver.blending import candidates, shape_parameters
 from semispline.solver.blending.fair_search import FairSolution, solve_fair
 from semispline.solver.blending.linear_problem import gap_ratio
 from semispline.solver.blending.pipeline import state_problem
@@ -44,8 +44,9 @@ def test_a_linear_alpha_is_tried_from_a_ratio_on(ratio, is_tried):
 
 def test_a_wide_wedge_takes_a_linear_alpha_and_says_what_it_costs():
     result, constant = blend(*wedge(5.0)), blend(*wedge(5.0), alpha_v="constant")
-    assert tried(result) == [(5, 0, "constant"), (5, 0, "linear")]
-    assert [c.verdict == "chosen" for c in result.candidates] == [False, True]
+    # A loop stops the search for a constant one, so that the quartic is tried, too.
+    assert tried(result) == [(5, 0, "constant"), (4, 0, "constant"), (5, 0, "linear")]
+    assert [c.verdict == "chosen" for c in result.candidates] == [False, False, True]
     assert result.objective.value < 0.7 * constant.objective.value
     assert result.rows_converted > constant.rows_converted
     low, high = result.alpha2
@@ -71,7 +72,7 @@ def test_a_candidate_whose_folds_were_let_pass_is_not_called_less_fair():
     solutions = [FairSolution(1.0, 1.0, (0.0, 0.0), value, 0.0, 1, {}, condoned) for value, condoned in values]
     best, *others = (candidates.Layout(None, problem, Found(1.0, 1.0, "reduced", fair=one)) for one in solutions)
     said = [candidates._loser(layout, best) for layout in others]
-    assert said == ["every candidate folds", "fairness 5 is no less", "fairness 6 is more"]
+    assert said == ["every cell that was tried folds", "fairness 5 is no less", "fairness 6 is more"]
 
 
 def facing(seed):
@@ -79,18 +80,117 @@ def facing(seed):
     return problem.a, problem.b
 
 
-def test_where_alpha_and_p2_are_traded_until_the_window_ends_p2_is_left_out():
-    a, b = facing(57)
-    result, without = blend(a, b), blend(a, b, p2="zero")
-    assert result.p2 == (0.0, 0.0)
-    assert result.active_bounds == without.active_bounds == ()
-    assert result.objective.value == pytest.approx(without.objective.value, rel=1e-6)
-    # With p2 alone it would have ended there.
-    assert solve_fair_with_p2(a, b).at_end == (False, True)
+# Seed, fairness without p2 or with one of the two at most, and the least in a window that begins lower.
+@pytest.mark.parametrize(("seed", "was", "least"), [(57, 634, 492), (218, 386, 118), (234, 745, 566), (250, 142, 133)])
+def test_where_alpha_and_p2_are_traded_until_the_window_ends_p2_stays_in_a_lower_window(seed, was, least):
+    a, b = facing(seed)
+    # In the window itself it ends there.
+    assert any(solve_fair(state_problem(a, b).problem).at_end)
+    result = blend(a, b)
+    assert result.shape.fairness.value < least < was
+    assert all(result.p2)
+    assert not result.active_bounds
+    assert not result.warnings
+    first, second = result.candidates
+    assert first.verdict.endswith(" is more, in another window")
+    assert second.verdict == "chosen"
 
 
-def solve_fair_with_p2(a, b):
-    return fair_search._searched(state_problem(a, b).problem, None)
+def test_p2_is_left_out_where_that_leaves_an_end_for_little_fairness():
+    # A box is not widened, and here one p2 costs 7 %.
+    a, b = facing(250)
+    result = blend(a, b, box=(1 / 4, 4))
+    assert result.p2[0] != 0
+    assert result.p2[1] == 0
+    assert not result.active_bounds
+    with_p2, without = result.candidates
+    assert with_p2.verdict == f"fairness {with_p2.fairness:.4g} is less, at an end of its window"
+    assert without.verdict == "chosen"
+    assert 1.0 < without.fairness / with_p2.fairness < 1.1
+
+
+def test_p2_stays_where_it_is_worth_more_than_an_end_that_is_not_met():
+    # Without it fairness is 1.28 times as much.
+    a, b = facing(4)
+    result = blend(a, b, box=(1 / 4, 4), degree_u=5)
+    assert all(result.p2)
+    assert result.active_bounds == ("beta2 lower",)
+    assert any("beta2 is at its lower bound" in text for text in result.warnings)
+    # One side goes without, then both.
+    first, *others = (c.verdict for c in result.candidates)
+    assert first == "chosen"
+    assert [text.split(" ")[:3] for text in others] == [["without", "p2:", "fairness"]] * 2
+
+
+@pytest.mark.parametrize(
+    ("fairness", "condoned", "ends", "pays"),
+    [
+        (1.1, (), (False, False), True),
+        (1.1 + 1e-9, (), (False, False), False),
+        (0.9, (), (True, False), False),
+        # What folds with p2 is left, at any price; what folds without it is not gone to.
+        (1.0, ("folds",), (False, False), False),
+    ],
+)
+def test_what_a_blend_without_p2_may_cost(fairness, condoned, ends, pays):
+    problem = state_problem(*wedge(1.0)).problem
+
+    def layout(value, condoned, at_end):
+        fair = FairSolution(1.0, 1.0, (0.0, 0.0), value, 0.0, 1, {}, condoned, at_end)
+        return candidates.Layout(None, problem, Found(1.0, 1.0, "reduced", fair=fair))
+
+    without = layout(fairness, condoned, ends)
+    assert candidates._pays_without_p2(without, layout(1.0, (), (True, False))) is pays
+    assert candidates._pays_without_p2(layout(9.0, (), (True, True)), layout(1.0, ("folds",), (True, False)))
+
+
+def test_a_u_turn_at_an_end_is_searched_in_lower_windows_too():
+    problem = shape_problem("u-turn", 20)
+    result = blend(problem.a, problem.b)
+    # It folded by 136 degrees, with both at their lower ends.
+    assert result.shape.turn.degrees < 70
+    assert not result.active_bounds
+    assert not any("folds" in text for text in result.warnings)
+    low, _ = state_problem(problem.a, problem.b).problem.bounds[0]
+    assert result.alpha2_bounds[0] == pytest.approx(low / 4, rel=1e-12)
+    # The quartic is tried as before.
+    assert tried(result) == [(5, 0, "constant")] * 3 + [(4, 0, "constant")]
+
+
+def test_the_quartic_of_a_u_turn_at_an_end_goes_to_lower_windows_if_it_wins():
+    problem = shape_problem("u-turn", 62)
+    result = blend(problem.a, problem.b)
+    chosen = next(c for c in result.candidates if c.verdict == "chosen")
+    assert chosen.degree_u == 4
+    assert chosen.fairness == min(c.fairness for c in result.candidates)
+    assert not result.active_bounds
+
+
+# What was said to be worse in a wider box: by far, or where every cell of six by six folds.
+@pytest.mark.parametrize(
+    ("family", "seed", "box"),
+    [("rough", 17, (0.01, 4)), ("u-turn", 44, (1 / 64, 16)), ("u-turn", 12, (1 / 64, 16)), ("rough", 51, (1 / 8, 4))],
+)
+def test_a_wider_box_is_never_worse(family, seed, box):
+    problem = shape_problem(family, seed)
+    # Of one layout: which ones are tried depends on what is found.
+    layout = {"degree_u": 5, "middle_curves": 0, "alpha_v": "constant"}
+    narrow, wide = (
+        state_problem(problem.a, problem.b, **layout).problem,
+        blend(problem.a, problem.b, box=box, **layout),
+    )
+    assert "let pass" not in wide.objective.known
+    assert wide.objective.value <= 1.01 * solve_fair(narrow).value
+
+
+def test_what_is_known_is_a_start_where_every_cell_folds():
+    problem = shape_problem("rough", 17)
+    narrow, wide = (state_problem(problem.a, problem.b, **more).problem for more in ({}, {"box": (1 / 8, 4)}))
+    known = solve_fair(narrow)
+    assert solve_fair(wide).condoned == ("folds",)
+    again = solve_fair(wide, known)
+    assert again.condoned == ()
+    assert again.value < known.value
 
 
 def test_where_the_lower_end_stops_the_search_the_window_begins_lower():
@@ -145,6 +245,54 @@ def test_where_nothing_is_searched_there_are_no_candidates():
     a, b = random_facing(np.random.default_rng(0))
     for options in ({"alpha": "energy"}, {"alpha": 0.7}, {"continuity": "C2"}, {"method": "casadi"}):
         assert blend(a, b, **options).candidates == ()
+
+
+def test_a_search_that_a_refusal_stopped_tries_other_layouts_and_says_what_is_left():
+    rough = shape_problem("rough", 13)
+    result = blend(rough.a, rough.b)
+    # Its gap varies too little for a linear alpha to be tried otherwise.
+    assert gap_ratio(state_problem(rough.a, rough.b).problem) < 1.5
+    assert tried(result) == [(5, 0, "constant"), (4, 0, "constant"), (5, 0, "linear")]
+    assert result.options.alpha_v == "linear"
+    assert result.shape.fairness.value < 0.7 * result.candidates[0].fairness
+    (text,) = result.warnings
+    assert text.startswith("the fairest shape was not reached: beside this blend lie fairer ones that loop")
+    with pytest.raises(FoldError, match="the fairest shape was not reached"):
+        blend(rough.a, rough.b, strict=True)
+
+
+def test_a_linear_alpha_that_no_refusal_stops_is_taken_if_it_is_fairer():
+    a, b = facing(217)
+    result, constant = blend(a, b), blend(a, b, alpha_v="constant")
+    assert 0.7 * result.candidates[0].fairness < result.objective.value < result.candidates[0].fairness
+    assert result.options.alpha_v == "linear"
+    assert not result.warnings
+    # A constant one is stopped, and says so.
+    assert any("the fairest shape was not reached" in text for text in constant.warnings)
+
+
+def test_a_middle_curve_is_tried_where_a_refusal_stopped_a_constant_alpha():
+    rough = shape_problem("rough", 51)
+    assert gap_ratio(state_problem(rough.a, rough.b).problem) < candidates.MIDDLE_RATIO
+    result = blend(rough.a, rough.b, alpha_v="constant")
+    assert tried(result) == [(5, 0, "constant"), (4, 0, "constant"), (5, 1, "constant")]
+    assert result.options.middle_curves == 1
+    assert not result.warnings
+
+
+def test_lower_windows_start_from_what_is_known(monkeypatch):
+    asked = []
+
+    def search(problem, known=None):
+        asked.append((problem, known, solve_fair(problem, known)))
+        return asked[-1][-1]
+
+    monkeypatch.setattr(shape_parameters, "solve_fair", search)
+    problem = shape_problem("u-turn", 20)
+    blend(problem.a, problem.b, degree_u=5)
+    assert [known for _, known, _ in asked] == [None, asked[0][2], asked[1][2]]
+    lows = [stated.bounds[0][0] for stated, *_ in asked]
+    assert lows == pytest.approx([lows[0], lows[0] / 2, lows[0] / 4], rel=1e-12)
 
 
 def test_closed_rims_refuse_a_linear_alpha():

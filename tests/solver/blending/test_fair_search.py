@@ -283,6 +283,61 @@ def test_a_search_that_is_stopped_by_a_refusal_says_by_which():
     assert "it ended" not in found_fair(free, "reduced").known
 
 
+@pytest.mark.parametrize(
+    ("ratio", "is_u_turn", "cells"),
+    [
+        (2.0, False, 6),
+        (16.0, False, 6),
+        (16.000000000000004, False, 6),
+        (32.0, False, 7),
+        (64.0, False, 8),
+        (400.0, False, 11),
+        (1e30, False, 30),
+        (16.0, True, 8),
+        (64.0, True, 8),
+        (256.0, True, 10),
+    ],
+)
+def test_cells_of_the_scan_keep_their_size(ratio, is_u_turn, cells):
+    bounds = ((1.0, 1.0), (0.3, 0.3 * ratio))
+    assert fair_search._cells(SimpleNamespace(bounds=bounds, exits=SimpleNamespace(u_turn=is_u_turn))) == cells
+
+
+def test_what_is_known_is_kept_where_every_cell_folds(monkeypatch):
+    problem = state_problem(*sheets(), **FAIR).problem
+    known = solve_fair(problem)
+    scan = fair_search._scan
+
+    def folded(*words):
+        cells, values = scan(*words)
+        return cells, np.full_like(values, np.inf)
+
+    monkeypatch.setattr(fair_search, "_scan", folded)
+    again = solve_fair(problem, known)
+    assert again.condoned == ()
+    assert again.value == pytest.approx(known.value, rel=1e-6)
+    with pytest.raises(ComputationError, match="no candidate is left"):
+        solve_fair(problem)
+
+
+def test_what_is_known_goes_to_the_fine_grid_alone(monkeypatch):
+    problem = state_problem(*sheets(), **FAIR).problem
+    known = solve_fair(problem)
+    gone, refined = [], fair_search._refined
+
+    def watched(end, start, levels):
+        gone.append((end, start, len(levels)))
+        return refined(end, start, levels)
+
+    monkeypatch.setattr(fair_search, "_refined", watched)
+    monkeypatch.setattr(fair_search, "_LARGE", 0)
+    solve_fair(problem, known)
+    # As it is, where others come down from a rough grid over one between.
+    assert [levels for end, start, levels in gone if end.x is start] == [1]
+    solve_fair(problem)
+    assert gone[-1][2] == 2
+
+
 def test_a_candidate_that_passes_comes_before_a_fairer_one_that_was_let_pass():
     solutions = [
         FairSolution(1.0, 1.0, (0.0, 0.0), value, 0.0, 1, {}, condoned)

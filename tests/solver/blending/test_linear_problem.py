@@ -22,8 +22,12 @@ def strips(ratio=2.0):
     return state_problem(Base(near, "u1"), Base(far, "u0")).problem
 
 
-def solution(value, *condoned):
-    return FairSolution(1.0, 1.0, (0.0, 0.0), value, 0.0, 1, {}, condoned)
+def solution(value, *condoned, stopped_by=""):
+    return FairSolution(1.0, 1.0, (0.0, 0.0), value, 0.0, 1, {}, condoned, stopped_by=stopped_by)
+
+
+def stopped(value):
+    return solution(value, stopped_by="loop")
 
 
 @pytest.mark.parametrize(
@@ -35,11 +39,16 @@ def solution(value, *condoned):
         # Nothing of nothing is all of it.
         (solution(0.0), solution(0.0), False, "fairness is 1 of"),
         # What is refused less often comes first, however fair.
-        (solution(1.0), solution(0.1, "folds"), False, "every candidate is refused .folds."),
+        (solution(1.0), solution(0.1, "folds"), False, "every cell that was tried is refused .folds."),
         (solution(1.0, "folds"), solution(9.0), True, "fairness is 9 of"),
         (solution(1.0, "folds"), solution(0.71, "folds"), False, "fairness is 0.71 of"),
         (solution(1.0, "folds"), solution(0.69, "folds"), True, "fairness is 0.69 of"),
         (solution(1.0, "folds"), solution(0.1, "folds", "loops"), False, "refused .folds and loops."),
+        # One that goes on where a constant one is stopped only has to be fairer.
+        (stopped(1.0), solution(0.99), True, "fairness is 0.99 of"),
+        (stopped(1.0), solution(1.01), False, "fairness is 1.01 of"),
+        (stopped(1.0), stopped(0.71), False, "fairness is 0.71 of"),
+        (solution(1.0), stopped(0.71), False, "fairness is 0.71 of"),
     ],
 )
 def test_what_is_taken(monkeypatch, constant, linear, taken, said):
@@ -50,7 +59,7 @@ def test_what_is_taken(monkeypatch, constant, linear, taken, said):
     assert trial.solution is linear
     assert asked == [(trial.problem, constant)]
     assert re.search(said, trial.verdict)
-    # Where it is asked for it is taken, unless every candidate is refused.
+    # Where it is asked for it is taken, unless every cell that was tried is refused.
     assert try_linear_alpha(strips(), constant, always=True).taken is ("refused" not in said)
 
 
@@ -59,3 +68,5 @@ def test_what_is_even_is_not_tried_unless_asked(monkeypatch):
     assert try_linear_alpha(strips(1.4), solution(1.0)).problem is None
     assert try_linear_alpha(strips(1.4), solution(1.0), always=True).taken
     assert try_linear_alpha(strips(1.6), solution(1.0)).taken
+    # Or unless a refusal stopped the search for a constant one.
+    assert try_linear_alpha(strips(1.4), stopped(1.0)).taken

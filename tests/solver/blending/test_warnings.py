@@ -11,8 +11,9 @@ from helpers.papers_set import blend
 from semispline import Base, BlendOptions, BSplineSurface, ContactError, FoldError
 from semispline import blend as blend_by_default
 from semispline.papers.reproduction.families.suite import shape_problem
+from semispline.solver.blending.fair_search import FairSolution
 from semispline.solver.blending.shape_parameters import Found
-from semispline.solver.blending.warnings import contact_warnings, remedy, strained_by
+from semispline.solver.blending.warnings import contact_warnings, remedy, stopped_warning, strained_by
 from semispline.solver.judge import NoNormal
 from semispline.solver.reports import print_result
 from semispline.solver.splines import greville
@@ -160,3 +161,14 @@ def test_what_was_minimised_is_before_the_bulge(capsys):
         print_result(facing(7, bulge=bulge))
         (line,) = (line for line in capsys.readouterr().out.splitlines() if line.startswith("minimised"))
         assert (" before the bulge: least of" in line) is (bulge != 1.0)
+
+
+@pytest.mark.parametrize("reason", ["fold", "loop"])
+def test_a_search_that_a_refusal_stopped_is_told_of(reason):
+    def found(stopped_by):
+        fair = FairSolution(1.0, 1.0, (0.0, 0.0), 1.0, 0.5, 1, {}, stopped_by=stopped_by)
+        return Found(1.0, 1.0, "reduced", fair=fair)
+
+    (text,) = stopped_warning(found(reason))
+    assert f"beside this blend lie fairer ones that {reason}, which are refused; try alpha_v linear" in text
+    assert stopped_warning(found("")) == stopped_warning(Found(1.0, 1.0, "casadi")) == ()
