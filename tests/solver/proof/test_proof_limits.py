@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from flint import fmpq
 
 from helpers.polynomials import polynomial
 from semispline import ComputationError
@@ -135,3 +136,13 @@ def test_a_net_that_is_just_convex(xx, xy, yy, is_convex):
     line, square = (0, 1, 2), (0, 0, 4)
     net = [[xx * square[i] + xy * line[i] * line[j] + yy * square[j] for j in range(3)] for i in range(3)]
     assert box_search._is_convex(net) is is_convex
+
+
+@pytest.mark.parametrize(
+    ("at", "least"),
+    # x^2 + 2 y^2 over a square from -1 to 1: value, and slopes down to the corner across.
+    [((0.25, 0.75), 0.75 - 1.5 - 3.0), ((0.75, 0.25), 0.75 - 1.5 - 3.0), ((0.5, 0.5), 0.0), ((0.5, 1.0), 2.0 - 8.0)],
+)
+def test_the_least_of_a_tangent_plane(at, least):
+    part = (fmpq(-1), fmpq(2))
+    assert box_search._tangent_bound(polynomial(x2y0=1, x0y2=2), (part, part), at) == fmpq(*least.as_integer_ratio())
