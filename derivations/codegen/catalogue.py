@@ -19,7 +19,7 @@ from semispline.derivations.contact import (
 )
 from semispline.derivations.energy import SECOND_DERIVATIVES, gram_block, thin_plate_density
 from semispline.derivations.fairness import fairness_program
-from semispline.derivations.homogeneous import jet, leibniz, quotient_program, reciprocal_jet
+from semispline.derivations.homogeneous import quotient_program
 from semispline.derivations.linear_alpha import linear_powers
 from semispline.derivations.shape import MAX_POWER, contact_row_powers, energy_polynomial, product_symbol
 from semispline.derivations.splines import end_derivatives, span_symbols
@@ -156,22 +156,6 @@ def linear_powers_routine(order: int) -> Routine:
     )
 
 
-def normalising_routine(order: int) -> Routine:
-    """Return `normalising_n(m0, .., mn)`: what takes the jet of a rational base to that of it over a mean weight."""
-    means = jet("m", order)
-    return Routine(
-        name=f"normalising_{order}",
-        summary=f"Jet of R^h / m of order 0..{order} from that of R^h: [k, j] multiplies the j-th derivative.",
-        source="product rule, derivations/homogeneous.py",
-        arguments=tuple(
-            Argument(s.name, "number", f"Derivative {k} of m at the contact.") for k, s in enumerate(means)
-        ),
-        form="matrix",
-        values=_rows(leibniz(reciprocal_jet(means))),
-        names=("L",),
-    )
-
-
 def row_powers_routine(order: int) -> Routine:
     """Return `contact_row_powers_n(a0, p, h1, .., q, H1, ..)`: the contact rows as a polynomial in a - a0."""
     p, blend = _degree("p", None, "Degree of the blend in u.", order)
@@ -291,14 +275,11 @@ def generated_files() -> dict[str, str]:
     rows = tuple(
         routine(order)
         for order in range(1, MAX_ORDER + 1)
-        for routine in (derivative_rows_routine, chain_monomials_routine, chain_table_routine, normalising_routine)
+        for routine in (derivative_rows_routine, chain_monomials_routine, chain_table_routine)
     )
     title = "Rows of a blend from its derivatives at a contact, and these from the chain rule"
     files["rows_numpy.py"] = python_module(
-        title,
-        (*contact_sources, "derivations/linear_alpha.py", "derivations/homogeneous.py"),
-        (*rows, linear_powers_routine(MAX_ORDER)),
-        NUMPY,
+        title, (*contact_sources, "derivations/linear_alpha.py"), (*rows, linear_powers_routine(MAX_ORDER)), NUMPY
     )
     source, program = "derivations/fairness.py", fairness_program()
     summary = "|grad H|^2 per du dv, area element, mean curvature, speed along u"

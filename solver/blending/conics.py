@@ -68,13 +68,6 @@ class Conic:
         knots = affine_knots(basis.knots, float(self.along.knots[0]), float(self.along.knots[-1]))
         return np.asarray(np.einsum("nc,kcd->knd", points, self.frames)), Basis(basis.degree, knots)
 
-    def begun_at(self, v: float) -> Conic:
-        """Return the closed rim begun at the parameter v of the base; `along` and `points` stay those of the base."""
-        x, y, _ = (basis_matrix(self.along.degree, self.along.knots, np.array([v])) @ self.points)[0]
-        cos, sin = np.array([x, y]) / np.hypot(x, y)
-        turn = np.array([[cos, sin, 0], [-sin, cos, 0], [0, 0, 1]])
-        return Conic(self.along, self.points, self.turn, np.asarray(turn @ self.frames))
-
 
 def cured_conic(rows: FloatArray, along: Basis, order: int) -> tuple[FloatArray, Basis] | None:
     """Return rows of the same surface that are C^order along (2 at least), or None where they are not one conic.

@@ -84,7 +84,7 @@ def normalised_rows(rows: FloatArray, along: Basis, degree: int, spans: tuple[fl
 
     Source: with m_k the mean of the k-th derivative of om across, the jet c of 1 / m is c_0 = 1 / m_0,
     c_k = -c_0 sum_(j=1..k) binom(k, j) m_j c_(k-j), and the new derivatives are sum_j binom(k, j) c_(k-j) (those of
-    order j).
+    order j), as `semispline.derivations.homogeneous` derives; step by step, since the expanded jet loses digits.
 
     Examples
     --------

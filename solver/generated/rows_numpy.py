@@ -1,8 +1,8 @@
 """Rows of a blend from its derivatives at a contact, and these from the chain rule (NumPy).
 
-Written by `semispline generate` from derivations/splines.py and derivations/contact.py and derivations/linear_alpha.py and derivations/homogeneous.py.
+Written by `semispline generate` from derivations/splines.py and derivations/contact.py and derivations/linear_alpha.py.
 Do not edit: change the derivation and generate again.
-Operations: 187 in 17 functions.
+Operations: 78 in 13 functions.
 """
 
 from __future__ import annotations
@@ -84,34 +84,6 @@ def chain_table_1() -> FloatArray:
     return np.array([[1.0, 0.0], [0.0, 0.0], [0.0, 0.0], [0.0, -1.0]], dtype=np.float64)
 
 
-def normalising_1(m0: float, m1: float) -> FloatArray:
-    """Jet of R^h / m of order 0..1 from that of R^h: [k, j] multiplies the j-th derivative.
-
-    Parameters
-    ----------
-    m0 : a number
-        Derivative 0 of m at the contact.
-    m1 : a number
-        Derivative 1 of m at the contact.
-
-    Returns
-    -------
-    L : matrix, shape (2, 2)
-
-    Raises
-    ------
-    ValueError
-        Naming the argument and what it should be.
-
-    Source: product rule, derivations/homogeneous.py. Operations: 4.
-    """
-    m0 = _number("m0", m0)
-    m1 = _number("m1", m1)
-    x0 = 1 / m0
-    c1_0 = -m1 / m0**2
-    return np.array([[x0, 0.0], [c1_0, x0]], dtype=np.float64)
-
-
 def rows_from_derivatives_2(p: float, h1: float, h2: float) -> FloatArray:
     """Rows P_i = sum_k W[i, k] D_k of a blend with u-derivatives D_0..D_2 at the contact.
 
@@ -183,41 +155,6 @@ def chain_table_2() -> FloatArray:
         ],
         dtype=np.float64,
     )
-
-
-def normalising_2(m0: float, m1: float, m2: float) -> FloatArray:
-    """Jet of R^h / m of order 0..2 from that of R^h: [k, j] multiplies the j-th derivative.
-
-    Parameters
-    ----------
-    m0 : a number
-        Derivative 0 of m at the contact.
-    m1 : a number
-        Derivative 1 of m at the contact.
-    m2 : a number
-        Derivative 2 of m at the contact.
-
-    Returns
-    -------
-    L : matrix, shape (3, 3)
-
-    Raises
-    ------
-    ValueError
-        Naming the argument and what it should be.
-
-    Source: product rule, derivations/homogeneous.py. Operations: 13.
-    """
-    m0 = _number("m0", m0)
-    m1 = _number("m1", m1)
-    m2 = _number("m2", m2)
-    x0 = 1 / m0
-    x1 = 1 / m0**2
-    x2 = m1 * x1
-    c1_0 = -x2
-    c2_0 = 2 * m1**2 / m0**3 - m2 * x1
-    c2_1 = -2 * x2
-    return np.array([[x0, 0.0, 0.0], [c1_0, x0, 0.0], [c2_0, c2_1, x0]], dtype=np.float64)
 
 
 def rows_from_derivatives_3(p: float, h1: float, h2: float, h3: float) -> FloatArray:
@@ -314,52 +251,6 @@ def chain_table_3() -> FloatArray:
             [0.0, 0.0, 0.0, -1.0],
         ],
         dtype=np.float64,
-    )
-
-
-def normalising_3(m0: float, m1: float, m2: float, m3: float) -> FloatArray:
-    """Jet of R^h / m of order 0..3 from that of R^h: [k, j] multiplies the j-th derivative.
-
-    Parameters
-    ----------
-    m0 : a number
-        Derivative 0 of m at the contact.
-    m1 : a number
-        Derivative 1 of m at the contact.
-    m2 : a number
-        Derivative 2 of m at the contact.
-    m3 : a number
-        Derivative 3 of m at the contact.
-
-    Returns
-    -------
-    L : matrix, shape (4, 4)
-
-    Raises
-    ------
-    ValueError
-        Naming the argument and what it should be.
-
-    Source: product rule, derivations/homogeneous.py. Operations: 30.
-    """
-    m0 = _number("m0", m0)
-    m1 = _number("m1", m1)
-    m2 = _number("m2", m2)
-    m3 = _number("m3", m3)
-    x0 = 1 / m0
-    x1 = 1 / m0**2
-    x2 = m1 * x1
-    x3 = m2 * x1
-    x4 = 1 / m0**3
-    x5 = m1**2
-    c1_0 = -x2
-    c2_0 = 2 * x4 * x5 - x3
-    c2_1 = -2 * x2
-    c3_0 = 6 * m1 * m2 * x4 - m3 * x1 - 6 * m1**3 / m0**4
-    c3_1 = 6 * x4 * x5 - 3 * x3
-    c3_2 = -3 * x2
-    return np.array(
-        [[x0, 0.0, 0.0, 0.0], [c1_0, x0, 0.0, 0.0], [c2_0, c2_1, x0, 0.0], [c3_0, c3_1, c3_2, x0]], dtype=np.float64
     )
 
 
@@ -501,69 +392,6 @@ def chain_table_4() -> FloatArray:
             [0.0, 0.0, 0.0, 0.0, 0.0],
             [0.0, 0.0, 0.0, 0.0, 0.0],
             [0.0, 0.0, 0.0, 0.0, 1.0],
-        ],
-        dtype=np.float64,
-    )
-
-
-def normalising_4(m0: float, m1: float, m2: float, m3: float, m4: float) -> FloatArray:
-    """Jet of R^h / m of order 0..4 from that of R^h: [k, j] multiplies the j-th derivative.
-
-    Parameters
-    ----------
-    m0 : a number
-        Derivative 0 of m at the contact.
-    m1 : a number
-        Derivative 1 of m at the contact.
-    m2 : a number
-        Derivative 2 of m at the contact.
-    m3 : a number
-        Derivative 3 of m at the contact.
-    m4 : a number
-        Derivative 4 of m at the contact.
-
-    Returns
-    -------
-    L : matrix, shape (5, 5)
-
-    Raises
-    ------
-    ValueError
-        Naming the argument and what it should be.
-
-    Source: product rule, derivations/homogeneous.py. Operations: 62.
-    """
-    m0 = _number("m0", m0)
-    m1 = _number("m1", m1)
-    m2 = _number("m2", m2)
-    m3 = _number("m3", m3)
-    m4 = _number("m4", m4)
-    x0 = 1 / m0
-    x1 = 1 / m0**2
-    x2 = m1 * x1
-    x3 = m2 * x1
-    x4 = 1 / m0**3
-    x5 = m1**2
-    x6 = m3 * x1
-    x7 = 1 / m0**4
-    x8 = m1**3 * x7
-    c1_0 = -x2
-    c2_0 = 2 * x4 * x5 - x3
-    c2_1 = -2 * x2
-    c3_0 = 6 * m1 * m2 * x4 - x6 - 6 * x8
-    c3_1 = 6 * x4 * x5 - 3 * x3
-    c3_2 = -3 * x2
-    c4_0 = 8 * m1 * m3 * x4 + 6 * m2**2 * x4 + 24 * m1**4 / m0**5 - 36 * m2 * x5 * x7 - m4 * x1
-    c4_1 = 24 * m1 * m2 * x4 - 4 * x6 - 24 * x8
-    c4_2 = 12 * x4 * x5 - 6 * x3
-    c4_3 = -4 * x2
-    return np.array(
-        [
-            [x0, 0.0, 0.0, 0.0, 0.0],
-            [c1_0, x0, 0.0, 0.0, 0.0],
-            [c2_0, c2_1, x0, 0.0, 0.0],
-            [c3_0, c3_1, c3_2, x0, 0.0],
-            [c4_0, c4_1, c4_2, c4_3, x0],
         ],
         dtype=np.float64,
     )

@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from helpers.conics import occ_net, standard_arcs
-from helpers.same_surface import departure, stacked
+from helpers.same_surface import departure
 from semispline.derivations.circles import circle_points
 from semispline.solver.blending.conics import cured_conic, recognised_conic, same_arcs
 from semispline.solver.blending.knot_lines import knot_lines, least_continuity
@@ -232,18 +232,6 @@ def test_the_same_arcs_are_told():
     assert not same_arcs(one, conic(quarters, [1, 1.1, 1, 1, 1]))
     assert not same_arcs(one, conic(quarters, degree=3))
     assert not same_arcs(one, conic(quarters * 0.9))
-
-
-@pytest.mark.parametrize("v", [0.0, 0.7, 2.0, 3.9])
-def test_the_seam_of_a_full_circle_is_anywhere(v):
-    rows, along = nine_points()
-    conic = recognised_conic(rows, along)
-    new, basis = conic.begun_at(v).smooth_rows(2)
-    assert basis.size == 11
-    found = stacked(along, rows, v)[0]
-    assert new[:, 0].ravel() / new[0, 0, 3] == pytest.approx(found / found[3], abs=1e-12)
-    assert least_continuity(new, basis, closed=True) == 3 - 1
-    assert departure((rows, along), (new, basis)) < 1e-12
 
 
 def test_derivatives_at_knot_lines():
