@@ -14,8 +14,8 @@ from semispline.solver.splines import Basis, clamped, elevation_matrix, refineme
 from semispline.solver.splines.refinement import elevated_knots
 
 TURN = 2 * np.pi
-# Some thousand roundings of coordinates of a few units: the order of sums in a kernel's products shows in the fourteenth
-# digit. Another circle, or another parametrisation, is off by 1e-2 and more.
+# Some thousand roundings of coordinates of a few units: the order in which a kernel sums products shows in the
+# fourteenth digit. Another circle, or another parametrisation, is off by 1e-2 and more.
 ROUNDING = 1e-12
 CIRCLES = {
     "9 points": np.linspace(0, TURN, 5),

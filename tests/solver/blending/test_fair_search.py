@@ -390,7 +390,7 @@ class Wells:
 
     left: float
     right: float
-    table = SimpleNamespace(size=100)
+    table = SimpleNamespace(size=100, refusable=(FOLDS, LOOPS))
     unknowns = SimpleNamespace(logarithmic=np.array([True]), low=np.array([-3.0]), high=np.array([3.0]))
 
     def __call__(self, x):

@@ -9,6 +9,7 @@ import pytest
 from semispline import Base, BSplineSurface, EdgeError, OptionError, blend
 from semispline.solver.blending import fair_search, pipeline
 from semispline.solver.blending.fairness_grid import across
+from semispline.solver.blending.fairness_table import FOLDS, LOOPS
 from semispline.solver.blending.layout import blend_u_basis
 from semispline.solver.blending.pipeline import state_problem
 from semispline.solver.blending.projected import Point
@@ -97,13 +98,24 @@ def test_steps_are_at_most_a_third_of_alpha_and_twice_the_size_of_p2(monkeypatch
     asked = []
     monkeypatch.setattr(fair_search, "descend", lambda *words: asked.append(words))
     unknowns = SimpleNamespace(logarithmic=np.array([True, False]), low=np.zeros(2), high=np.ones(2))
-    grid = SimpleNamespace(unknowns=unknowns)
+    grid = SimpleNamespace(unknowns=unknowns, table=SimpleNamespace(refusable=(FOLDS, LOOPS)))
     fair_search._descended(grid, "start", 0.5)
-    ((function, start, low, high, longest, tolerance),) = asked
+    ((function, start, low, high, longest, tolerance, most),) = asked
+    assert most == 60
     assert (function, start, tolerance) == (grid, "start", 0.5)
     assert longest.tolist() == [0.35, 2.0]
     assert low.tolist() == [0, 0]
     assert high.tolist() == [1, 1]
+
+
+def test_where_folds_are_let_pass_there_are_at_most_12_steps(monkeypatch):
+    asked = []
+    monkeypatch.setattr(fair_search, "descend", lambda *words: asked.append(words[-1]))
+    unknowns = SimpleNamespace(logarithmic=np.array([True]), low=np.zeros(1), high=np.ones(1))
+    for refusable in ((LOOPS,), ()):
+        grid = SimpleNamespace(unknowns=unknowns, table=SimpleNamespace(refusable=refusable))
+        fair_search._descended(grid, "start", 0.5)
+    assert asked == [12, 12]
 
 
 @pytest.mark.parametrize(
@@ -148,7 +160,7 @@ class Large:
 
     @property
     def table(self):
-        return SimpleNamespace(size=self.size)
+        return SimpleNamespace(size=self.size, refusable=(FOLDS, LOOPS))
 
     unknowns = SimpleNamespace(logarithmic=np.array([True]), low=np.array([0.0]), high=np.array([0.0]))
 
