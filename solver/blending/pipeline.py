@@ -245,7 +245,6 @@ def _objective(layout: Layout, energy: float, size: float) -> Objective:
         rows = f"thin plate, v_scale {options.v_scale}, within {excess:.0e} of the least for these shape parameters"
     if found.fairness is not None:
         return Objective("fairness", found.fairness, found.known, rows)
-    value = energy if options.v_scale == "paper" else float(problem.energy_products(points[None])[0, 0]) * size**2
     if found.proven_gap is not None:
         known = f"proved least over the box to {found.proven_gap:.1e} of itself"
         if problem.is_rational:
@@ -256,6 +255,7 @@ def _objective(layout: Layout, energy: float, size: float) -> Objective:
         return Objective("nothing", None, "contacts and options prescribe all", rows)
     else:
         known = "nothing but the rows was free"
+    value = energy if options.v_scale == "paper" else float(problem.energy_products(points[None])[0, 0]) * size**2
     return Objective("thin plate", value, known, rows)
 
 
