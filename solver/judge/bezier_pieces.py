@@ -61,8 +61,7 @@ def parts_of(surface: Surface, cuts: int = 1) -> Iterator[Part]:
             matrix = bezier_matrix(degree, group.knots[low - degree : high + degree + 2], breaks)
             points = (matrix @ group.points[low - degree : high + 1]).reshape(-1, degree + 1, len(group.rows), d)
             own = points.transpose(2, 3, 0, 1)
-            ends = np.repeat([0.0, 1.0], degree + 1)
-            nets[group.rows] = own @ elevation_matrix(degree, ends, q).toarray().T if degree < q else own
+            nets[group.rows] = own @ _elevation(degree, q).T if degree < q else own
         yield Part(np.diff(breaks), nets)
 
 
@@ -298,6 +297,12 @@ def _counted_from(surface: Surface, origin: FloatArray) -> Surface:
         return replace(surface, control_points=surface.control_points - origin)
     curves = (replace(curve, control_points=curve.control_points - origin) for curve in surface.control_curves)
     return replace(surface, control_curves=tuple(curves))
+
+
+@cache
+def _elevation(degree: int, raised: int) -> FloatArray:
+    """Return the matrix from Bezier points to those of a higher degree."""
+    return np.asarray(elevation_matrix(degree, np.repeat([0.0, 1.0], degree + 1), raised).toarray())
 
 
 @cache
