@@ -112,7 +112,7 @@ class BlendResult:
     constraint_rank : (int, int) or None
         Rank of the constraint Jacobian at the solution, and its number of rows; only for method casadi.
     seconds : float
-        For the solve, without the final checks.
+        For the solve, in both directions of b where both were tried, without the final checks.
     """
 
     surface: SemiStructuredSurface
