@@ -42,6 +42,7 @@ from semispline.solver.judge import (
     measure_shape,
     measure_turn,
     required_limits,
+    rounding_causes,
     untold,
 )
 from semispline.solver.options import BlendOptions, Flip, named_options
@@ -341,7 +342,8 @@ def _checked_contacts(
         hidden = untold(contact, wanted)
         if hidden:
             shown = shape if wanted[0] == "G" else None
-            said = remedy(base, surface, bare_places(contact, name), shown, int(wanted[1]), strained)
+            causes = rounding_causes(base, Base(surface, "u1" if index else "u0"), int(wanted[1]))
+            said = remedy(base, causes, bare_places(contact, name), shown, int(wanted[1]), strained)
             raise ContactError(f"contact {name}: {'; '.join(hidden)} for {wanted}; {said}")
         for measure, value, limit in measured:
             if not value <= limit:
