@@ -165,6 +165,37 @@ def test_open_conics_that_are_no_ellipse(kind):
     assert departure((one, basis_of(np.array([0, 0, 0, 1, 1, 1.0]))), cured) < 1e-12
 
 
+def framed(x, y, weight=(0.0, 0.0, 1.0)):
+    """Images of (cos, sin, 1) with given radii and weight, far from the origin."""
+    frame = np.zeros((1, 3, 4))
+    frame[0, 0, :3], frame[0, 1, :3], frame[0, :, 3] = x, y, weight
+    frame[0, :, :3] += np.multiply.outer(weight, [30.0, -20.0, 10.0])
+    return frame
+
+
+@pytest.mark.parametrize(
+    ("frame", "kind"),
+    [
+        (framed([3, 0, 4], [0, 5, 0]), "circle"),
+        (framed([3, 0, 4], [0, 5 * (1 + 1e-10), 0]), "circle"),
+        (framed([3, 0, 4], [0, 5 * (1 + 1e-6), 0]), "ellipse"),
+        (framed([3, 0, 4], [3e-6, 5, 4e-6]), "ellipse"),
+        (framed([1, 0, 0], [0, 2, 0]), "ellipse"),
+        # A circle seen from aside, the line at infinity of its plane left alone, is an ellipse: x' = x / (1 + x / 2).
+        (framed([1, 0, 0], [0, 1, 0], (0.5, 0, 1)), "ellipse"),
+        # And with radii in that proportion a circle again: of radius 1 / sqrt(1 - 1/4).
+        (framed([1, 0, 0], [0, np.sqrt(4 / 3), 0], (0.5, 0, 1)), "circle"),
+        (framed([1, 0, 0], [0, 1, 0], (1, 0, 1)), "parabola"),
+        (framed([1, 0, 0], [0, 1, 0], (0, 1.5, 1)), "hyperbola"),
+    ],
+)
+def test_a_conic_is_named_by_what_it_is(frame, kind):
+    # Where the weight is positive, in two arcs that a factor makes uneven.
+    knots, points = standard_arcs([0.3, 0.9, 2.0], [1, 2, 0.5])
+    conic = recognised_conic(images(points, frame), basis_of(knots))
+    assert conic.kind == kind
+
+
 def nine_points():
     knots, points = standard_arcs(np.linspace(0, TURN, 5))
     frames = random_frames(np.random.default_rng(7), 3)

@@ -103,10 +103,23 @@ def test_what_both_sides_share_is_left_and_what_they_do_not_is_cured():
     assert same.surface.degree_v == 2
     assert same.contact_a.corresponds == "affine"
     assert [cure.name for cure in other.cures] == ["conic", "conic"]
-    assert "degree 6" in other.cures[0].words
+    assert other.cures[0].words == "circle reparametrised, degree 6, corresponds by angle"
     assert {len(curve.control_points) for curve in other.surface.control_curves} == {11}
     assert other.contact_a.corresponds == "foot points"
     assert worst_inside(other.creases) is None
+
+
+def test_a_parabola_is_not_called_a_circle():
+    """z = x^2 in two arcs whose weights jump."""
+    rim = np.array([[-1, 1], [-0.5, 0], [0, 0], [0.5, 0], [1, 1.0]])
+    knots = [0, 0, 0, 0.5, 0.5, 1, 1, 1]
+    weights = np.array([1, 2, 4, 4, 4.0])
+    net = [[[x, y, z] for x, z in rim] for y in (0.0, 1.0)]
+    a = BSplineSurface(1, 2, [0, 0, 1, 1], knots, net, np.stack([weights, weights]))
+    b = BSplineSurface(1, 1, [0, 0, 1, 1], [0, 0, 1, 1], [[[x, y, 1.0] for x in (-1, 1)] for y in (3, 4)])
+    result = blend(Base(a, "u1"), Base(b, "u0"))
+    assert result.cures[0].words == "parabola reparametrised, degree 6"
+    assert worst_inside(result.creases) is None
 
 
 def test_without_the_cure_a_tilted_ring_creases(monkeypatch):
