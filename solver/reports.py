@@ -249,7 +249,7 @@ def _quadrature(result: BlendResult) -> str:
     """Say how well the energy of a rational blend is known."""
     if result.quadrature_error is None:
         return ""
-    return f", by quadrature, relative error {result.quadrature_error / max(result.energy, 1e-300):.1e}"
+    return f", by quadrature, error {result.quadrature_error:.1e}"
 
 
 def _objective(result: BlendResult) -> str:
