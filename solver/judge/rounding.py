@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from math import comb
 
@@ -164,6 +165,18 @@ def edge_noises(base: Base, origin: FloatArray, order: int = 2) -> EdgeNoises:
     else:
         return EdgeNoises(noises, np.diag(noises[:3, 0]), along)
     return EdgeNoises(noises, one * end_differences(degree, knots, base.edge[1] == "1", 2), along)
+
+
+def noises_of_derivatives(at: Mapping[tuple[int, int], FloatArray], order: int) -> EdgeNoises:
+    """Return the same where derivatives, each of shape (K, 3), were rounded but once, and some operations follow."""
+    noises = np.zeros((order + 1, order + 1))
+    for key, values in at.items():
+        noises[key] = _ROUNDINGS * float(np.finfo(float).eps * np.abs(values).max())
+    rows, along = noises[:3, 0], np.ones(3)
+    for j in (1, 2):
+        across = rows[: 3 - j]
+        along[j] = np.max(np.divide(noises[: 3 - j, j], across, out=np.zeros(3 - j), where=across > 0))
+    return EdgeNoises(noises, np.diag(rows), along)
 
 
 def _directions(base: Base, order: int) -> tuple[list[tuple[int, FloatArray]], list[tuple[int, FloatArray]]]:
