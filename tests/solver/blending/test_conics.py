@@ -6,10 +6,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from helpers.conics import occ_net, standard_arcs
+from helpers.knot_lines import least_continuity
 from helpers.same_surface import departure
 from semispline.derivations.circles import circle_points
 from semispline.solver.blending.conics import cured_conic, recognised_conic, same_arcs
-from semispline.solver.blending.knot_lines import knot_lines, least_continuity
+from semispline.solver.blending.knot_lines import knot_lines
 from semispline.solver.splines import Basis, clamped, elevation_matrix, refinement_matrix
 from semispline.solver.splines.refinement import elevated_knots
 
