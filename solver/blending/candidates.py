@@ -13,9 +13,10 @@ from typing import cast
 
 from semispline.solver.blending.fair_search import MOST_CONDONED, AllRefusedError, FairSolution
 from semispline.solver.blending.linear_problem import WIDER, gap_ratio, try_linear_alpha
-from semispline.solver.blending.problem import LOWER, BlendProblem, SecondParameter, make_problem
+from semispline.solver.blending.problem import BlendProblem, make_problem
 from semispline.solver.blending.shape_parameters import Found, alpha_bounds, find_shape_parameters, found_fair
 from semispline.solver.blending.sides import Side
+from semispline.solver.blending.windows import LOWER, SecondParameter
 from semispline.solver.errors import ComputationError, OptionError
 from semispline.solver.options import AlphaV, BlendOptions
 

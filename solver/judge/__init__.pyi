@@ -45,6 +45,8 @@ from .parametric import geometry as geometry
 from .parametric import geometry_grid as geometry_grid
 from .regularity import Regularity as Regularity
 from .regularity import measure_regularity as measure_regularity
+from .rounding import RoundingCauses as RoundingCauses
+from .rounding import rounding_causes as rounding_causes
 from .sections import extent as extent
 from .shape import ShapeReport as ShapeReport
 from .shape import measure_shape as measure_shape

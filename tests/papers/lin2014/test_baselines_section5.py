@@ -213,12 +213,13 @@ def test_least_energy_is_least(figure, compared):
 
 
 @pytest.mark.parametrize("figure", EACH_FIGURE)
-def test_the_fairest_blend_is_fairer_than_each_of_the_papers_with_fewer_points(figure, compared):
+def test_the_fairest_blend_is_fairer_than_each_of_the_papers_with_a_middle_curve_more_at_most(figure, compared):
     rows = {name: row.measures for name, row in compared(figure).items() if row.measures is not None}
     fair = rows["semistructured-fair"]
     for name in ("paper-corrected", "semistructured-c2", "semistructured-reduced"):
         assert fair.fairness < 0.75 * rows[name].fairness, name
-        assert fair.control_points <= rows[name].control_points, name
+        # The figures have none themselves: six rows may become seven.
+        assert fair.control_points <= 7 / 6 * rows[name].control_points, name
     assert fair.turn_degrees < 7
     assert fair.energy >= rows["semistructured-reduced"].energy * 0.98
 

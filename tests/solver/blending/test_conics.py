@@ -6,10 +6,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from helpers.conics import occ_net, standard_arcs
+from helpers.knot_lines import least_continuity
 from helpers.same_surface import departure
 from semispline.derivations.circles import circle_points
 from semispline.solver.blending.conics import cured_conic, recognised_conic, same_arcs
-from semispline.solver.blending.knot_lines import knot_lines, least_continuity
+from semispline.solver.blending.knot_lines import knot_lines
 from semispline.solver.splines import Basis, clamped, elevation_matrix, refinement_matrix
 from semispline.solver.splines.refinement import elevated_knots
 
@@ -166,6 +167,37 @@ def test_open_conics_that_are_no_ellipse(kind):
     cured = cured_conic(one, basis_of(knots[[0, 0, 0, 3, 3, 3]]), 2)
     assert cured is not None
     assert departure((one, basis_of(np.array([0, 0, 0, 1, 1, 1.0]))), cured) < ROUNDING
+
+
+def framed(x, y, weight=(0.0, 0.0, 1.0)):
+    """Images of (cos, sin, 1) with given radii and weight, far from the origin."""
+    frame = np.zeros((1, 3, 4))
+    frame[0, 0, :3], frame[0, 1, :3], frame[0, :, 3] = x, y, weight
+    frame[0, :, :3] += np.multiply.outer(weight, [30.0, -20.0, 10.0])
+    return frame
+
+
+@pytest.mark.parametrize(
+    ("frame", "kind"),
+    [
+        (framed([3, 0, 4], [0, 5, 0]), "circle"),
+        (framed([3, 0, 4], [0, 5 * (1 + 1e-10), 0]), "circle"),
+        (framed([3, 0, 4], [0, 5 * (1 + 1e-6), 0]), "ellipse"),
+        (framed([3, 0, 4], [3e-6, 5, 4e-6]), "ellipse"),
+        (framed([1, 0, 0], [0, 2, 0]), "ellipse"),
+        # A circle seen from aside, the line at infinity of its plane left alone, is an ellipse: x' = x / (1 + x / 2).
+        (framed([1, 0, 0], [0, 1, 0], (0.5, 0, 1)), "ellipse"),
+        # And with radii in that proportion a circle again: of radius 1 / sqrt(1 - 1/4).
+        (framed([1, 0, 0], [0, np.sqrt(4 / 3), 0], (0.5, 0, 1)), "circle"),
+        (framed([1, 0, 0], [0, 1, 0], (1, 0, 1)), "parabola"),
+        (framed([1, 0, 0], [0, 1, 0], (0, 1.5, 1)), "hyperbola"),
+    ],
+)
+def test_a_conic_is_named_by_what_it_is(frame, kind):
+    # Where the weight is positive, in two arcs that a factor makes uneven.
+    knots, points = standard_arcs([0.3, 0.9, 2.0], [1, 2, 0.5])
+    conic = recognised_conic(images(points, frame), basis_of(knots))
+    assert conic.kind == kind
 
 
 def nine_points():

@@ -150,7 +150,7 @@ def test_free_rows_are_certified_and_their_absence_is_said():
 
 def test_what_cannot_be_told_far_away_is_no_yes():
     a, b = (Base(transform(base.surface, np.eye(3), np.full(3, 1e9)), base.edge) for base in pair(0))
-    with pytest.raises(ContactError, match="times the size of the blend away"):
+    with pytest.raises(ContactError, match="times the size of the surfaces away"):
         blend(a, b, continuity="G4")
 
 
