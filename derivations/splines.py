@@ -11,11 +11,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import cache
 from itertools import pairwise
 from keyword import iskeyword
 from typing import Any
 
-from sympy import Expr, Float, Matrix, Poly, Rational, Symbol, cancel, diag, factor, factorial, sympify
+from sympy import Expr, Float, ImmutableMatrix, Matrix, Poly, Rational, Symbol, cancel, diag, factor, factorial, sympify
 from sympy.polys.constructor import construct_domain
 
 X = Symbol("x")
@@ -272,7 +273,12 @@ def end_derivatives_from_pieces(order: int, degree: int, end: str = "start") -> 
     [   1,     0],
     [3/h1, -3/h1]])
     """
-    sign = _end_sign(end)
+    return _read_off(order, degree, _end_sign(end)).as_mutable()
+
+
+@cache
+def _read_off(order: int, degree: int, sign: int) -> ImmutableMatrix:
+    """Return `end_derivatives_from_pieces`, once: contact of many pairs of degrees asks for the same few."""
     h = span_symbols(degree)
     clamped = [sympify(0)] * (degree + 1)
     # One span is enough: the one next to the end, whose pieces see h_1..h_p only.
@@ -288,7 +294,7 @@ def end_derivatives_from_pieces(order: int, degree: int, end: str = "start") -> 
     for i, piece in enumerate(pieces[: order + 1]):
         for d in range(min(order, degree) + 1):
             matrix[d, i] = factor(piece.coeff_monomial(X**d) * factorial(d))
-    return matrix
+    return matrix.as_immutable()
 
 
 def end_derivative_step(order: int, end: str = "start") -> Matrix:

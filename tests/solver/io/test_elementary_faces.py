@@ -272,6 +272,7 @@ def offset_extrusion():
     return Geom_OffsetSurface(half, 0.1), off
 
 
+@pytest.mark.usefixtures("read_here")
 def test_what_the_kernel_approximates_says_how_well(tmp_path):
     geometry, off = offset_extrusion()
     path = tmp_path / "offset.brep"
@@ -311,6 +312,7 @@ def test_a_revolved_offset_curve_is_approximated(tmp_path):
     assert 0 < face.deviation() < 1e-5
 
 
+@pytest.mark.usefixtures("read_here")
 def test_the_words_reach_list_convert_and_blend(tmp_path):
     geometry, _ = offset_extrusion()
     path = tmp_path / "offset.brep"
@@ -332,6 +334,7 @@ def test_the_words_reach_list_convert_and_blend(tmp_path):
     assert not (tmp_path / "b.json").exists()
 
 
+@pytest.mark.usefixtures("read_here")
 def test_every_rational_face_of_real_files_is_read(shared):
     found = [
         entry
