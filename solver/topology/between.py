@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from semispline.solver.arrays import FloatArray
-from semispline.solver.topology.half_edges import EdgeGraph, Uses
+from semispline.solver.topology.half_edges import EdgeGraph, Flags, Uses
 from semispline.solver.topology.relations import Relations, to_polyline
 from semispline.solver.topology.sides import Side, stacked
 
@@ -70,11 +70,11 @@ class Between:
         return 1 / self.curvature if self.curvature else float("inf")
 
 
-def share(flags: FloatArray, length: FloatArray, side: Side) -> float:
+def share(flags: Flags, length: FloatArray, side: Side) -> float:
     """Return the share of the length of a side for which edges have a flag."""
     rows = list(side.uses)
     total = float(length[rows].sum())
-    return float(length[rows][flags[rows].astype(bool)].sum()) / total if total else 0.0
+    return float(length[rows][flags[rows]].sum()) / total if total else 0.0
 
 
 def meet_in_a_corner(uses: Uses, a: Side, b: Side) -> bool:

@@ -13,7 +13,7 @@ from itertools import combinations
 import numpy as np
 
 from semispline.solver.topology.between import Between, measure, meet_in_a_corner, share
-from semispline.solver.topology.half_edges import NONE, EdgeGraph
+from semispline.solver.topology.half_edges import NONE, EdgeGraph, Flags
 from semispline.solver.topology.relations import Relations
 from semispline.solver.topology.sides import Side, sides_of
 
@@ -116,7 +116,7 @@ def find_fillets(graph: EdgeGraph, relations: Relations) -> Fillets:
     return Fillets(accepted, on_ends, round_ends, refused)
 
 
-def fillet_ends(graph: EdgeGraph, relations: Relations, betweens: Iterable[Between]) -> np.ndarray:
+def fillet_ends(graph: EdgeGraph, relations: Relations, betweens: Iterable[Between]) -> Flags:
     """Return which uses lie across the end of a fillet, in the fillet or in the face beyond; shape (U,)."""
     ends = np.zeros(len(graph.uses), dtype=bool)
     for between in betweens:
@@ -238,7 +238,7 @@ def _ends(graph: EdgeGraph, relations: Relations, between: Between) -> list[int]
     return _partners(relations, _own_ends(graph, between))
 
 
-def _contacts_on(ends: np.ndarray, relations: Relations, between: Between) -> int:
+def _contacts_on(ends: Flags, relations: Relations, between: Between) -> int:
     return sum(share(ends, relations.length, side) >= _END_SHARE for side in (between.a, between.b))
 
 

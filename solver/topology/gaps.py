@@ -118,7 +118,9 @@ def find_gaps(graph: EdgeGraph, relations: Relations, fillet_ends: Flags) -> lis
     for i, j in _blocks(*_pairs(places)):
         kept, figures = _measured(places, i, j)
         for a, b, figure in zip(i[kept].tolist(), j[kept].tolist(), figures.tolist(), strict=True):
-            found.append(Gap(sides[a], sides[b], *figure, owner[a] == owner[b], on_end[a] + on_end[b]))
+            width, even, facing_a, facing_b = figure
+            same, ends = owner[a] == owner[b], on_end[a] + on_end[b]
+            found.append(Gap(sides[a], sides[b], width, even, facing_a, facing_b, same, ends))
     return _best_of_each_side(found)
 
 
