@@ -22,6 +22,7 @@ ROOT = Path(__file__).parents[2]
 BUILD = ROOT / "build" / "places"
 SUFFIXES = (".step", ".stp", ".brep", ".igs", ".iges")
 KNOWN = 40
+_FEW = 10
 _KINDS = ("fillet", "chain", "chamfer", "round end", "gap", "sharp edge")
 
 
@@ -78,6 +79,9 @@ def _cells(row: Row) -> list[str]:
         lines, places = lines_and_faces(row.places, kind)
         counts.append(f"{lines} ({places})" if places else "0")
     seconds = f"{row.reading:.2f}", f"{row.finding:.2f}", f"{row.finding / row.limit:.2f}"
+    # What takes no time at all says nothing about the limit.
+    if row.places.faces < _FEW:
+        seconds = ("", "", "")
     return [row.name, str(row.places.faces), str(row.uses), *counts, _again(row.ranks), *seconds]
 
 
@@ -107,9 +111,9 @@ def _reasons(row: Row) -> str:
     return ", ".join(f"{count} {name}" for name, count in row.places.counts.items())
 
 
-_COLUMNS = """\
-| file | faces | uses | fillets | chains | chamfers | round ends | gaps | sharp edges | taken out | reading | finding | of limit |
-| --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: | ---: |"""
+_NAMES = ("file", "faces", "uses", "fillets", "chains", "chamfers", "round ends", "gaps", "sharp edges", "taken out")
+_NAMES += ("reading", "finding", "of limit")
+_COLUMNS = f"| {' | '.join(_NAMES)} |\n| --- |{' ---: |' * (len(_NAMES) - 1)}"
 
 _HEAD = f"""\
 # Places
@@ -118,7 +122,8 @@ Made by `python benchmarks/places/run.py`; do not edit. What `semispline list FI
 in parts of which it is known what was rounded.
 
 - *uses*: of edges by faces
-- of each kind the lines that are listed and, in brackets, the places that they stand for: a repeated part is listed once
+- of each kind the lines that are listed and, in brackets, the places that they stand for: a repeated part is listed
+  once
 - *taken out*: each fillet is taken out alone; in how many cases the gap that it leaves is the first, and is among the
   first two, of the gaps that are then found
 - *reading*, *finding*: seconds of processor time, sampling of edges included in the latter; *of limit*: finding over
