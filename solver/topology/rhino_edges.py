@@ -22,7 +22,7 @@ from semispline.solver.topology.half_edges import SAMPLES, EdgeGraph, Faces, use
 Curve = tuple[int, FloatArray, FloatArray]
 # Where the search for a foot begins: a grid of so many places each way, the best of them, and more where these fail.
 _GRID, _STARTS, _MORE_STARTS = 33, 4, 64
-_STEPS = 12
+_STEPS, _LEAST_STEPS, _DONE = 12, 3, 1e-12
 _POLE = 1e-14
 # Rows that agree to this fraction of the size close a surface.
 _CLOSED = 1e-9
@@ -116,14 +116,16 @@ def _feet(surface: BSplineSurface, points: FloatArray, starts: int) -> tuple[Flo
     u, v = (_places(breaks) for breaks in surface.breakpoints)
     net = surface.evaluate_grid(u, v)
     seams = np.array([np.abs(net[0] - net[-1]).max(), np.abs(net[:, 0] - net[:, -1]).max()])
-    closed = seams <= _CLOSED * np.ptp(net, axis=(0, 1)).max()
+    size = float(np.ptp(net, axis=(0, 1)).max())
+    closed = seams <= _CLOSED * size
     grid = net.reshape(-1, 3)
     start = cKDTree(grid).query(points, k=starts)[1].ravel()
     at = np.stack([u[start // len(v)], v[start % len(v)]], axis=1)
     target = np.repeat(points, starts, axis=0)
     offset = target - grid[start]
     part = np.ones((len(at), 1))
-    for _ in range(_STEPS):
+    nearest_yet = np.full(len(points), np.inf)
+    for step in range(_STEPS):
         s_u, s_v = surface.evaluate(at[:, 0], at[:, 1], 1, 0), surface.evaluate(at[:, 0], at[:, 1], 0, 1)
         tried = at + part * _step(s_u, s_v, offset)
         # Over a seam the search goes on at the other side.
@@ -132,6 +134,10 @@ def _feet(surface: BSplineSurface, points: FloatArray, starts: int) -> tuple[Flo
         left = target - surface.evaluate(tried[:, 0], tried[:, 1])
         nearer = (np.sum(left**2, axis=1) < np.sum(offset**2, axis=1))[:, None]
         at, offset, part = np.where(nearer, tried, at), np.where(nearer, left, offset), np.where(nearer, 1.0, part / 2)
+        nearest_now = np.linalg.norm(offset, axis=1).reshape(-1, starts).min(axis=1)
+        if step >= _LEAST_STEPS and (nearest_yet - nearest_now).max() <= _DONE * size:
+            break
+        nearest_yet = nearest_now
     away = np.linalg.norm(offset, axis=1).reshape(-1, starts)
     nearest = np.argmin(away, axis=1)
     rows = np.arange(len(points))
