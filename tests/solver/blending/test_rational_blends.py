@@ -42,6 +42,19 @@ def test_two_pipes_of_one_radius_are_joined_by_that_pipe(cuts, continuity):
     assert not result.warnings
 
 
+@pytest.mark.parametrize("cuts", [(QUARTER, QUARTER), (HALF, HALF), (FULL, FULL), (FULL, THIRDS)])
+@pytest.mark.parametrize("continuity", ["G1", ("G1", "G2")])
+def test_free_rows_do_not_pull_pipes_together(cuts, continuity):
+    a, b = cylinder(5.0, 0.0, 4.0, cuts[0]), cylinder(5.0, 14.0, 4.0, cuts[1])
+    result = blend(Base(a, "u1"), Base(b, "u0"), continuity=continuity)
+    assert np.abs(radii(result.surface) / 5 - 1).max() < 0.01
+    assert result.options.v_scale == "stretched"
+    assert "v_scale stretched" in result.objective.rows
+    # By thin plate with v as long as it is they do.
+    pulled = blend(Base(a, "u1"), Base(b, "u0"), continuity=continuity, v_scale="length")
+    assert np.abs(radii(pulled.surface) / 5 - 1).max() > 0.02
+
+
 @pytest.mark.parametrize("inner", [(0.5, 0.6, 0.9), (0.7, 0.8, 0.9), (0.05, 0.1, 0.9), (0.9, 0.93, 0.97)])
 @pytest.mark.parametrize("start", [0.0, 37.0, 90.0, 200.0])
 def test_rims_face_each_other_by_angle_whatever_their_parameters(inner, start):
