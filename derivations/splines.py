@@ -123,8 +123,8 @@ def basis_pieces(degree: int, knots: Sequence[Any]) -> tuple[Span, ...]:
     return tuple(spans)
 
 
-def _span_pieces(degree: int, knots: list[Any], k: int, domain: Any) -> tuple[Poly, ...]:
-    """Run Cox-de Boor on span k; `knots` are elements of `domain`, a field."""
+def _span_pieces(degree: int, knots: list[Any], k: int, domain: Any, highest: int | None = None) -> tuple[Poly, ...]:
+    """Run Cox-de Boor on span k; `knots` are elements of `domain`, a field; powers above `highest` are left out."""
     zero = Poly(0, X, domain=domain)
     pieces = [Poly(1, X, domain=domain)]
     for d in range(1, degree + 1):
@@ -138,7 +138,7 @@ def _span_pieces(degree: int, knots: list[Any], k: int, domain: Any) -> tuple[Po
                 total += lower[r] * _line(domain.one, -knots[i], knots[i + d] - knots[i], domain)
             if r < d and knots[i + d + 1] != knots[i + 1]:
                 total += lower[r + 1] * _line(-domain.one, knots[i + d + 1], knots[i + d + 1] - knots[i + 1], domain)
-            pieces.append(total)
+            pieces.append(total if highest is None else total.rem(Poly(X ** (highest + 1), X, domain=domain)))
     return tuple(pieces)
 
 
@@ -287,7 +287,8 @@ def _read_off(order: int, degree: int, sign: int) -> ImmutableMatrix:
     else:
         knots, span = [*(-width for width in reversed(h)), *clamped], degree - 1
     domain, elements = construct_domain(knots, field=True)
-    pieces = _span_pieces(degree, elements, span, domain)
+    # The derivatives are those at the origin: no more powers are needed.
+    pieces = _span_pieces(degree, elements, span, domain, order)
     if sign < 0:
         pieces = pieces[::-1]
     matrix = Matrix.zeros(order + 1, order + 1)

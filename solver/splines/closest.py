@@ -92,7 +92,7 @@ def closest_point(shape: BSplineCurve | Surface, point: ArrayLike) -> ClosestPoi
     --------
     >>> square = BSplineSurface(1, 1, [0, 0, 1, 1], [0, 0, 1, 1], [[[0, 0, 0], [0, 1, 0]], [[1, 0, 0], [1, 1, 0]]])
     >>> found = closest_point(square, [0.25, 2, 1])
-    >>> found.parameters, round(found.distance**2, 12)
+    >>> found.parameters, round(float(found.distance) ** 2, 12)
     (array([[0.25, 1.  ]]), 2.0)
     """
     require(shape, "shape", BSplineCurve, BSplineSurface, SemiStructuredSurface)
