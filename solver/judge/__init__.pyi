@@ -29,6 +29,7 @@ from .de_boor import surface_points as surface_points
 from .edge_normals import check_regular_edge as check_regular_edge
 from .fairness import Fairness as Fairness
 from .fairness import measure_fairness as measure_fairness
+from .limits import cad_measures as cad_measures
 from .limits import doubtful as doubtful
 from .limits import required_limits as required_limits
 from .limits import shortfalls as shortfalls

@@ -7,11 +7,12 @@ on the face are taken where it stays within its tolerance of the face, and the p
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Literal, TypeAlias
 
 import numpy as np
+from scipy.spatial import KDTree
 
 from semispline.solver.arrays import FloatArray, require
 from semispline.solver.errors import EdgeError
@@ -20,8 +21,6 @@ from semispline.solver.topology.face_jets import Face, dot, parameters_of
 
 # Parameters (s, t) of the face and their derivatives at parameters of the curve: shapes (K, 2).
 Evaluator: TypeAlias = Callable[[FloatArray], tuple[FloatArray, FloatArray]]
-# Points and tangents in space.
-SpaceCurve: TypeAlias = Callable[[FloatArray], tuple[FloatArray, FloatArray]]
 Source: TypeAlias = Literal["pcurve", "foot"]
 
 # A foot is sought from so many points of the edge on, and from the nearest of so many points of the face each way.
@@ -32,27 +31,6 @@ _SAME_POINT = 1e-6
 ON_FACE = 1e-5
 # A pcurve may leave the domain of the face by this fraction.
 _OUTSIDE = 1e-6
-
-
-@dataclass(frozen=True, eq=False)
-class EdgeInSpace:
-    """An edge as a curve in space.
-
-    Attributes
-    ----------
-    at : callable
-        Points and derivatives at parameters, each of shape (K, 3).
-    breaks : ndarray
-        Ends of its smooth pieces; the first and last are the ends of the edge.
-    """
-
-    at: SpaceCurve
-    breaks: FloatArray
-
-    @staticmethod
-    def of(curve: BSplineCurve) -> EdgeInSpace:
-        """Return a B-spline curve as an edge."""
-        return EdgeInSpace(lambda x: (curve.evaluate(x), curve.evaluate(x, 1)), np.unique(curve.knots))
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,8 +48,7 @@ class FaceCurve:
     degree : int or None
         Of a pcurve.
     edge_to_face, edge_to_pcurve : float or None
-        The largest distances of the edge in space from the face, and from the pcurve at equal parameters; None where
-        there is none.
+        The largest distances of the edge in space from the face, and of the pcurve from it; None where there is none.
     """
 
     face: Face
@@ -157,47 +134,58 @@ def _planar(pcurve: BSplineCurve) -> Evaluator:
     return lambda x: (pcurve.evaluate(x)[:, :2], pcurve.evaluate(x, 1)[:, :2])
 
 
-def edge_on_face(face: Face, edge: EdgeInSpace, pcurve: FaceCurve | None, tolerance: float) -> FaceCurve:
+def edge_on_face(face: Face, edge: BSplineCurve, pcurve: FaceCurve | None, tolerance: float) -> FaceCurve:
     """Return the feet of an edge where it stays near the face, else the pcurve; without one, the feet.
+
+    The feet run as the edge does.
 
     Raises
     ------
     EdgeError
         There is no pcurve, and the edge is not on the face.
     """
-    nodes = spread(edge.breaks, _NODES)
-    points, _ = edge.at(nodes)
+    breaks = np.unique(edge.knots)
+    nodes = spread(breaks, _NODES)
+    points = edge.evaluate(nodes)
     length = float(np.linalg.norm(np.diff(points, axis=0), axis=1).sum())
-    guess = _near(face, points) if pcurve is None else pcurve.at(_equal(nodes, edge, pcurve))[0]
-    at, _, away = face.feet(points, guess, None, 2)
-    at = unwrapped(at, face)
-    distance = float(np.linalg.norm(away, axis=1).max())
     to_pcurve = None
-    if pcurve is not None:
-        same = pcurve.tangents(_equal(nodes, edge, pcurve))[0]
-        to_pcurve = float(np.linalg.norm(points - same, axis=1).max())
+    if pcurve is None:
+        guess = _near(face, points)
+    else:
+        x = pcurve.places
+        nearest = KDTree(pcurve.tangents(x)[0]).query(points)[1]
+        guess = pcurve.at(x[nearest])[0]
+        to_pcurve = _distance(pcurve.tangents(spread(pcurve.breaks, _NODES))[0], edge)
+    at, _, away = face.feet(points, guess, None, 2)
+    distance = float(np.linalg.norm(away, axis=1).max())
     allowed = max(tolerance, ON_FACE * length)
     if distance <= allowed:
-        return FaceCurve(face, _feet(face, edge, nodes, at), edge.breaks, "foot", None, distance, to_pcurve)
+        evaluator = _feet(face, edge, nodes, unwrapped(at, face))
+        return FaceCurve(face, evaluator, breaks, "foot", None, distance, to_pcurve)
     if pcurve is None:
         raise EdgeError(
             f"edge: found it {distance:.3g} away from the face, expected at most {allowed:.3g}: it is not an edge of it"
         )
-    return FaceCurve(face, pcurve.evaluator, pcurve.breaks, "pcurve", pcurve.degree, distance, to_pcurve)
+    return replace(pcurve, edge_to_face=distance, edge_to_pcurve=to_pcurve)
 
 
-def _equal(x: FloatArray, edge: EdgeInSpace, pcurve: FaceCurve) -> FloatArray:
-    """Return the parameters of a pcurve that belong to those of the edge."""
-    (a, b), (c, d) = edge.breaks[[0, -1]], pcurve.ends
-    return np.asarray(np.clip(c + (x - a) * ((d - c) / (b - a)), c, d))
+def _distance(points: FloatArray, edge: BSplineCurve) -> float:
+    """Return the largest distance of points near an edge from it: feet from the nearest of many of its points."""
+    start, end = float(edge.knots[0]), float(edge.knots[-1])
+    nodes = spread(np.unique(edge.knots), 400)
+    x = nodes[KDTree(edge.evaluate(nodes)).query(points)[1]]
+    for _ in range(8):
+        tangent = edge.evaluate(x, 1)
+        step = dot(points - edge.evaluate(x), tangent) / np.maximum(dot(tangent, tangent), 1e-300)
+        x = np.clip(x + step, start, end)
+    return float(np.linalg.norm(points - edge.evaluate(x), axis=1).max())
 
 
-def _feet(face: Face, edge: EdgeInSpace, nodes: FloatArray, at: FloatArray) -> Evaluator:
+def _feet(face: Face, edge: BSplineCurve, nodes: FloatArray, at: FloatArray) -> Evaluator:
     def evaluate(x: FloatArray) -> tuple[FloatArray, FloatArray]:
         guess = np.stack([np.interp(x, nodes, at[:, d]) for d in range(2)], axis=1)
-        points, tangents = edge.at(x)
-        feet, jet, away = face.feet(points, guess, None, 2)
-        return feet, parameters_of(jet, tangents, away)
+        feet, jet, away = face.feet(edge.evaluate(x), guess, None, 2)
+        return feet, parameters_of(jet, edge.evaluate(x, 1), away)
 
     return evaluate
 
@@ -215,9 +203,6 @@ def _near(face: Face, points: FloatArray) -> FloatArray:
     """Return the parameters of the nearest of many points of the face, shape (K, 2)."""
     grids = [spread(breaks, _GRID, 3) for breaks in face.surface.breakpoints]
     grid = face.surface.evaluate_grid(*grids).reshape(-1, 3)
-    # One block of points after the other: the table of distances would be large.
-    nearest = np.concatenate(
-        [np.argmin(dot(grid, grid) - 2 * block @ grid.T, axis=1) for block in np.array_split(points, 8) if len(block)]
-    )
+    nearest = KDTree(grid).query(points)[1]
     i, j = np.divmod(nearest, len(grids[1]))
     return np.stack([grids[0][i], grids[1][j]], axis=1)
