@@ -94,7 +94,7 @@ class FaceCurve:
         return bool(np.linalg.norm(points[0] - points[-1]) <= _SAME_POINT * length)
 
 
-def spread(breaks: FloatArray, total: int, least: int = 4) -> FloatArray:
+def spread(breaks: FloatArray, total: int, least: int = 1) -> FloatArray:
     """Return parameters that divide each span evenly, about `total` in all."""
     share = np.diff(breaks) / (breaks[-1] - breaks[0])
     counts = np.maximum(least, np.ceil(total * share)).astype(int)

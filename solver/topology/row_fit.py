@@ -9,7 +9,7 @@ Source: `semispline.derivations.bands`.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import radians
 
 import numpy as np
@@ -97,6 +97,9 @@ def fitted_rows(
     rows = []
     for k in range(order + 1):
         fixed = None if ends is None else row_targets(ends, k)
+        if k == 2:
+            # N.R_2 = II(R_1, R_1): the tangential parts of R_1 are only near to those of D.
+            inside = _with_direction(inside, bases[0] @ rows[1])
         rows.append(_solved(bases, _equations(inside, k, limits, of), fixed, space))
     return knots, np.stack(rows)
 
@@ -106,6 +109,14 @@ def row_targets(at: Sections, k: int) -> FloatArray:
     if k < 2:
         return at.point if k == 0 else at.into
     return np.asarray(at.heights[k - 2][:, None] * at.normal)
+
+
+def _with_direction(at: Sections, direction: FloatArray) -> Sections:
+    """Return what is wanted of row 2 for a row 1 that is not quite D."""
+    a, b = dot(direction, at.along), dot(direction, at.into)
+    heights = np.array(at.heights)
+    heights[0] = a**2 * at.bends[0] + 2 * a * b * at.bends[1] + b**2 * at.bends[2]
+    return replace(at, heights=heights)
 
 
 def _equations(at: Sections, k: int, limits: BandLimits, of: Scales) -> list[Equation]:
