@@ -151,7 +151,9 @@ def _leading(value: Expr) -> Expr:
     def power(term: Expr) -> int:
         found = 0
         for function in term.atoms(Function):
-            order = max((sum(n for _, n in d.variable_count) for d in term.atoms(Derivative) if d.has(function)), default=0)
+            order = max(
+                (sum(n for _, n in d.variable_count) for d in term.atoms(Derivative) if d.has(function)), default=0
+            )
             found += max(powers.get(function.func.__name__, 0) - order, 0)
         return found
 

@@ -181,7 +181,9 @@ def _solved(s: FloatArray, t: FloatArray, right: FloatArray) -> tuple[FloatArray
         return (g * a - f * b) / area, (e * b - f * a) / area
 
 
-def _face_jet(face: BSplineSurface, feet: FloatArray, towards: FloatArray, order: int) -> dict[tuple[int, int], FloatArray]:
+def _face_jet(
+    face: BSplineSurface, feet: FloatArray, towards: FloatArray, order: int
+) -> dict[tuple[int, int], FloatArray]:
     """Return derivatives of the face at feet, of the side of a knot line that lies in a direction in space."""
     low, high = np.array(face.domain).T
     s, t = surface_points(face, *feet.T, 1, 0), surface_points(face, *feet.T, 0, 1)
@@ -210,7 +212,9 @@ def _in_frame(jet: Jet, along: FloatArray, normal: FloatArray, order: int) -> di
         # A symmetric form of i steps across and j along.
         values = [jet[i + j - k, k] for k in range(i + j + 1)]
         for a, b in [w] * i + [s] * j:
-            values = [a[:, None] * first + b[:, None] * second for first, second in zip(values, values[1:], strict=False)]
+            values = [
+                a[:, None] * first + b[:, None] * second for first, second in zip(values, values[1:], strict=False)
+            ]
         found[i, j] = values[0]
     return found
 
@@ -226,7 +230,8 @@ def _curvature_jumps(
     across = max(float(np.nanmax(np.abs(bends[1][2, 0]))), 1e-3 / size)
     largest = max(*(float(np.nanmax(np.abs(x))) for x in bends[1].values()), 1e-3 / size)
     jumps = [
-        np.abs(bends[0][key] - bends[1][key]) / scale for key, scale in (((2, 0), across), ((1, 1), largest), ((0, 2), largest))
+        np.abs(bends[0][key] - bends[1][key]) / scale
+        for key, scale in (((2, 0), across), ((1, 1), largest), ((0, 2), largest))
     ]
     values = {"curvature_jump_relative": np.max(jumps, axis=0)}
     if order > 2:

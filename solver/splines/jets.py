@@ -16,7 +16,11 @@ Jet: TypeAlias = dict[tuple[int, int], FloatArray]
 
 
 def surface_jet(
-    surface: BSplineSurface, u: FloatArray, v: FloatArray, order: int, beside: tuple[FloatArray, FloatArray] | None = None
+    surface: BSplineSurface,
+    u: FloatArray,
+    v: FloatArray,
+    order: int,
+    beside: tuple[FloatArray, FloatArray] | None = None,
 ) -> Jet:
     """Return the derivatives of total order 0 .. `order` at the points (u[k], v[k]), rational surfaces too.
 

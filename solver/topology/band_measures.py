@@ -10,7 +10,7 @@ from semispline.solver.arrays import FloatArray
 from semispline.solver.splines import Jet, basis_matrix, derivative_points
 from semispline.solver.topology.curve_pieces import CurvePiece
 from semispline.solver.topology.face_jets import Sections, dot, sections, unit
-from semispline.solver.topology.row_fit import BandLimits, Scales
+from semispline.solver.topology.row_fit import BandLimits, Scales, scales
 
 # By its name, how a measure falls as spans are divided: as the span's length to this power less than degree + 1.
 MEASURES = {"gap": 0, "off": 0, "angle_degrees": 1, "across": 1, "mixed": 1, "along": 2, "rate": 1, "second_rate": 1}
@@ -60,10 +60,11 @@ def row_jet(degree: int, knots: FloatArray, rows: FloatArray, v: FloatArray, ord
     return jet
 
 
-def measured(
-    piece: CurvePiece, degree: int, knots: FloatArray, rows: FloatArray, of: Scales, per_span: int
-) -> BandMeasures:
-    """Measure a band against its face at evenly spread points of each span, its ends too."""
+def measured(piece: CurvePiece, degree: int, knots: FloatArray, rows: FloatArray, per_span: int) -> BandMeasures:
+    """Measure a band against its face at evenly spread points of each span, its ends too.
+
+    Relative errors are over what the face has at the feet, which a loose `off` may move away from a peak.
+    """
     breaks = np.unique(knots)
     shares = np.linspace(0.0, 1.0, per_span)
     v = (breaks[:-1, None] + np.diff(breaks)[:, None] * shares).ravel()
@@ -85,7 +86,7 @@ def measured(
         of_band = sections(band, band[0, 1], piece.sign, order, normal)
         of_face = sections(jet, band[0, 1], piece.sign, order)
     off = dot(band[0, 0] - away - start[0, 0], across)
-    return BandMeasures(v, band[0, 0], spans, _values(of_band, of_face, away, off, of))
+    return BandMeasures(v, band[0, 0], spans, _values(of_band, of_face, away, off, scales(of_face, face.size)))
 
 
 def _values(band: Sections, face: Sections, away: FloatArray, off: FloatArray, of: Scales) -> dict[str, FloatArray]:

@@ -20,6 +20,9 @@ _NAMES = {
     "rate": "{} % of the rate of curvature",
     "second_rate": "{} % of the second rate of curvature",
 }
+# A derivative shorter than the first part of its largest along the curve, or curvature above the second multiple of its
+# median, show that there is no proper normal.
+_SHORT, _WILD = 1e-2, 100.0
 # A reason lies this near to the worst place, of the length of the curve.
 _NEAR = 0.05
 
@@ -66,9 +69,7 @@ def _reason(fit: BandFit, which: str, v: float, tolerance: float) -> str:
     return "the face or the curve bends too sharply for so many points; split the curve"
 
 
-def _nearest(
-    piece: CurvePiece, found: list[tuple[float, float]], v: float, near: float
-) -> tuple[float, float] | None:
+def _nearest(piece: CurvePiece, found: list[tuple[float, float]], v: float, near: float) -> tuple[float, float] | None:
     """Return the largest of what was found (size, parameter) within a distance of a place."""
     places = np.linspace(0.0, piece.length, 801)
     x = piece.curve.wrapped(piece.parameters(places))
@@ -81,14 +82,23 @@ def _nearest(
     return max(beside, default=None)
 
 
+def wild_end(piece: CurvePiece) -> str | None:
+    """Return "start" or "end" where curvature there is far above that of the rest, as at the tip of a cone."""
+    bends = np.abs(piece.sections(np.linspace(0.0, piece.length, 101), 2).bends).max(axis=0)
+    wild = bends[[0, -1]] > _WILD * np.median(bends)
+    return ("start" if wild[0] else "end") if wild.any() else None
+
+
 def _vanishes(piece: CurvePiece, v: float) -> bool:
-    """Tell whether the normal turns without end, or curvature grows so, near an end."""
-    step = 1e-4 * piece.length
-    places = np.clip(np.array([v, v + step if v < piece.length / 2 else v - step]), 0.0, piece.length)
-    found = piece.sections(places, 2)
-    turn = float(found.normal[0] @ found.normal[1])
-    bends = np.abs(found.bends).max(axis=0)
-    return bool(not np.isfinite(turn) or turn < 0.98 or bends[0] > 4 * bends[1] > 0)
+    """Tell whether the face degenerates near an end: a derivative vanishes, or curvature grows without end."""
+    places = np.linspace(0.0, piece.length, 101)
+    at, _, beside = piece.at(np.append(places, v))
+    jet = piece.face.jet(at, 1, beside)
+    sizes = np.array([np.linalg.norm(jet[key], axis=1) for key in ((1, 0), (0, 1))])
+    if (sizes[:, -1] < _SHORT * sizes.max(axis=1)).any():
+        return True
+    bends = np.abs(piece.sections(np.append(places[1:-1], v), 2).bends).max(axis=0)
+    return bool(bends[-1] > _WILD * np.median(bends[:-1]))
 
 
 def _least_radius(piece: CurvePiece, v: float) -> float:

@@ -19,8 +19,8 @@ Continuity: TypeAlias = Literal["G1", "G2", "G3", "G4"]
 
 # No more control points in a row, and no more rounds.
 MOST_POINTS, MOST_ROUNDS = 120, 20
-# Of its limits: what 11 points a span must show, or else 30 points a span.
-_SURE, _NEAR = 0.75, 0.92
+# So much of its limits a band may take: by 11 points a span in each round, and by 30 in the last one.
+_NEAR = 0.92
 _FEW, _MANY = 11, 30
 # Spans of the first round.
 _OPEN, _CLOSED = 3, 8
@@ -105,12 +105,13 @@ def fit_band(
     best: BandFit | None = None
     for _ in range(rounds):
         knots, rows = fitted_rows(piece, degree, breaks, limits, of, order)
-        found = measured(piece, degree, knots, rows, of, _FEW)
-        share, allowed = worst_share(found, limits), _SURE
-        if _SURE < share <= _NEAR:
-            found = measured(piece, degree, knots, rows, of, _MANY)
-            share, allowed = worst_share(found, limits), _NEAR
-        fit = BandFit(piece, degree, knots, rows, found, limits, share, share <= allowed)
+        found = measured(piece, degree, knots, rows, _FEW)
+        share = worst_share(found, limits)
+        near = share <= _NEAR
+        if near:
+            found = measured(piece, degree, knots, rows, _MANY)
+            share = worst_share(found, limits)
+        fit = BandFit(piece, degree, knots, rows, found, limits, share, near and share <= _NEAR)
         if best is None or share < best.share or fit.is_good:
             best = fit
         if fit.is_good:

@@ -18,7 +18,7 @@ from semispline.solver.arrays import FloatArray, exact_origin, require
 from semispline.solver.errors import BandError, EdgeError, OptionError
 from semispline.solver.judge import Base
 from semispline.solver.splines import BSplineCurve, BSplineSurface
-from semispline.solver.topology.band_refusals import refusal
+from semispline.solver.topology.band_refusals import refusal, wild_end
 from semispline.solver.topology.band_search import BandFit, Continuity, band_limits, fit_band, is_plane
 from semispline.solver.topology.curve_pieces import Break, CurvePiece, pieces, turns_at_breaks
 from semispline.solver.topology.curve_smoothing import sagitta, smoothed
@@ -191,6 +191,9 @@ def band_along(
             fit = again if again.is_good or not fit.is_good else fit
         if not fit.is_good:
             raise BandError(refusal(fit, name, origin, tolerance))
+        no_normal = wild_end(fit.piece) if piece.left_out else None
+        if no_normal is not None:
+            raise BandError(f"{name}: the face has no normal at the {no_normal} of it, its curvature grows without end")
         made.append(_band(fit, origin, breaks))
     return tuple(made)
 

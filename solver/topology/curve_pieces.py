@@ -88,9 +88,7 @@ class CurvePiece:
         width, rise = np.diff(lengths)[i], np.diff(nodes)[i]
         z = (v - lengths[i]) / width
         first, last = width / speeds[0][i], width / speeds[1][i]
-        return np.asarray(
-            nodes[i] + z * (first + z * (3 * rise - 2 * first - last + z * (first + last - 2 * rise)))
-        )
+        return np.asarray(nodes[i] + z * (first + z * (3 * rise - 2 * first - last + z * (first + last - 2 * rise))))
 
     def at(self, v: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Return (s, t) and slopes at lengths, and points in the spans that are meant there; shapes (K, 2)."""
@@ -157,7 +155,9 @@ def corners(curve: FaceCurve) -> list[tuple[float, float]]:
     limit = np.full(len(x), CORNER_DEGREES)
     if curve.degree == 1 and len(x) > 1:
         # A vertex of a polyline that stands for a smooth curve turns as its neighbours do.
-        around = np.concatenate([turns[-1:] if curve.is_closed else [0.0], turns, turns[:1] if curve.is_closed else [0]])
+        around = np.concatenate(
+            [turns[-1:] if curve.is_closed else [0.0], turns, turns[:1] if curve.is_closed else [0]]
+        )
         beside = np.maximum(around[:-2], around[2:])
         limit = np.where(turns > 30.0, CORNER_DEGREES, np.maximum(limit, 2.5 * beside))
     return [(float(a), float(b)) for a, b in zip(x[turns > limit], turns[turns > limit], strict=True)]

@@ -41,9 +41,12 @@ def smoothed(piece: CurvePiece, allowed: float) -> tuple[CurvePiece, float] | No
             continue
         away = np.einsum("kij,kj->ki", root, pcurve.evaluate(v)[:, :2] - flat)
         slope = np.einsum("kij,kj->ki", root, pcurve.evaluate(v, 1)[:, :2])
-        across = np.abs(away[:, 0] * slope[:, 1] - away[:, 1] * slope[:, 0]) / np.sqrt(dot(slope, slope))
+        across = np.abs(away[:, 0] * slope[:, 1] - away[:, 1] * slope[:, 0]) / np.sqrt(
+            np.maximum(dot(slope, slope), 1e-300)
+        )
         distance = float(across.max())
-        if distance <= allowed:
+        # A curve that stops on the way is none.
+        if distance <= allowed and dot(slope, slope).min() > 0.01:
             return _on_face(piece, pcurve), distance
     return None
 

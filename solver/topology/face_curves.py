@@ -199,6 +199,11 @@ def unwrapped(at: FloatArray, face: Face) -> FloatArray:
     return at
 
 
+def parameters_on(face: Face, points: FloatArray) -> FloatArray:
+    """Return the parameters of points along a curve on a face, shape (K, 2), without jumps at its seams."""
+    return unwrapped(face.feet(points, _near(face, points), None, 2)[0], face)
+
+
 def _near(face: Face, points: FloatArray) -> FloatArray:
     """Return the parameters of the nearest of many points of the face, shape (K, 2)."""
     grids = [spread(breaks, _GRID, 3) for breaks in face.surface.breakpoints]

@@ -94,7 +94,9 @@ class Face:
             step = np.clip(step, -0.1 * self.widths, 0.1 * self.widths)
             outside = ~self.closed
             moved = at + step
-            moved = np.where(outside, np.clip(moved, self.low - 1e-3 * self.widths, self.low + 1.001 * self.widths), moved)
+            moved = np.where(
+                outside, np.clip(moved, self.low - 1e-3 * self.widths, self.low + 1.001 * self.widths), moved
+            )
             done = np.abs(moved - at).max() <= 1e-14 * self.widths.min() or np.all(
                 np.abs(moved - at) <= 4e-16 * np.abs(at) + 1e-15 * self.widths
             )
