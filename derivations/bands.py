@@ -15,10 +15,11 @@ Source: M. do Carmo, Differential Geometry of Curves and Surfaces, ch. 3 and 4 (
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import cache
 
 from sympy import Derivative, Expr, Function, Matrix, Rational, Symbol, diff, expand, factorial, simplify, sqrt, sympify
 
-V = Symbol("v")
+V = Symbol("v", real=True)
 # Curvatures along the curve and of the section across it, as functions of v.
 K_N, K_G, TAU, H_2 = (Function(name)(V) for name in ("k_n", "k_g", "tau", "h_2"))
 _EPSILON, _W = Symbol("epsilon"), Symbol("w")
@@ -108,6 +109,12 @@ def error_measures(leading: bool = False) -> dict[str, Expr]:
     >>> error_measures(leading=True)["along"]
     Derivative(c_0(v), (v, 2))
     """
+    first = _first_order()
+    return {name: _leading(value) for name, value in first.items()} if leading else first
+
+
+@cache
+def _first_order() -> dict[str, Expr]:
     e = {(name, k): Function(f"{name}_{k}")(V) for k in range(3) for name in "abc"}
     small = _EPSILON
     rows: list[Frame] = [
@@ -136,8 +143,7 @@ def error_measures(leading: bool = False) -> dict[str, Expr]:
         "mixed": mixed - second_form(tangent, inward),
         "along": along - second_form(tangent, tangent),
     }
-    first = {name: simplify(diff(value, small).subs(small, 0).doit()) for name, value in found.items()}
-    return {name: _leading(expand(value)) if leading else expand(value) for name, value in first.items()}
+    return {name: expand(diff(value, small).subs(small, 0).doit()) for name, value in found.items()}
 
 
 def _leading(value: Expr) -> Expr:
@@ -204,7 +210,8 @@ def section_heights(
         path = [sum((step[d] * _W ** (m + 1) for m, step in enumerate(steps)), sympify(0)) for d in range(2)]
         known = shifted.subs({s: path[0], t: path[1]}, simultaneous=True)
         coefficient = known.applyfunc(lambda x, k=k: diff(x, _W, k).subs(_W, 0) * Rational(1, factorial(k)))
-        heights.append(simplify(factorial(k) * normal.dot(coefficient)))
+        height = expand(factorial(k) * normal.dot(coefficient))
+        heights.append(height if height.is_Rational else simplify(height))
         steps.append(-(metric.inv() * jacobian.T * coefficient))
     return heights
 

@@ -8,9 +8,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from itertools import product
+from itertools import pairwise, product
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.spatial import KDTree
 
 from semispline.solver.arrays import FloatArray, require
@@ -30,6 +31,7 @@ _BESIDE = 1e-9
 _NOT_ON_IT = 0.05
 
 Jet = Mapping[tuple[int, int], FloatArray]
+OwnJet = dict[tuple[int, int], FloatArray]
 
 
 @dataclass(frozen=True)
@@ -99,7 +101,7 @@ def measure_face_contact(base: Base, face: BSplineSurface, *, order: int = 2, sa
     points = at[0, 0]
     length = float(np.linalg.norm(np.diff(points, axis=0), axis=1).sum())
     feet = _feet(moved, points)
-    away = np.linalg.norm(points - surface_points(moved, *feet.T), axis=1)
+    away = np.linalg.norm(points - surface_points(moved, feet[:, 0], feet[:, 1]), axis=1)
     if away.max() > _NOT_ON_IT * length:
         k = int(away.argmax())
         x, y, z = points[k] + origin
@@ -149,15 +151,15 @@ def _feet(face: BSplineSurface, points: FloatArray) -> FloatArray:
     at = np.stack([u[nearest], v[nearest]], axis=1)
     low, high = np.array(face.domain).T
     closed = _closed(face)
-    distance = np.linalg.norm(points - surface_points(face, *at.T), axis=1)
+    distance = np.linalg.norm(points - surface_points(face, at[:, 0], at[:, 1]), axis=1)
     share = np.ones(len(at))
     for _ in range(_STEPS):
-        s, t = surface_points(face, *at.T, 1, 0), surface_points(face, *at.T, 0, 1)
-        away = points - surface_points(face, *at.T)
+        s, t = surface_points(face, at[:, 0], at[:, 1], 1, 0), surface_points(face, at[:, 0], at[:, 1], 0, 1)
+        away = points - surface_points(face, at[:, 0], at[:, 1])
         step = np.stack(_solved(s, t, away), axis=1)
         trial = at + share[:, None] * np.nan_to_num(step)
         trial = np.where(closed, low + np.mod(trial - low, high - low), np.clip(trial, low, high))
-        found = np.linalg.norm(points - surface_points(face, *trial.T), axis=1)
+        found = np.linalg.norm(points - surface_points(face, trial[:, 0], trial[:, 1]), axis=1)
         closer = found <= distance
         at[closer], distance[closer] = trial[closer], found[closer]
         share = np.where(closer, 1.0, share / 2)
@@ -166,10 +168,11 @@ def _feet(face: BSplineSurface, points: FloatArray) -> FloatArray:
     return at
 
 
-def _closed(face: BSplineSurface) -> FloatArray:
+def _closed(face: BSplineSurface) -> NDArray[np.bool_]:
     net = face.homogeneous
     largest = np.abs(net - net[0, 0]).max()
-    return np.array([np.abs(net[0] - net[-1]).max(), np.abs(net[:, 0] - net[:, -1]).max()]) <= 1e-9 * largest
+    away = [np.abs(net[0] - net[-1]).max(), np.abs(net[:, 0] - net[:, -1]).max()]
+    return np.asarray(np.array(away) <= 1e-9 * largest)
 
 
 def _solved(s: FloatArray, t: FloatArray, right: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -181,26 +184,30 @@ def _solved(s: FloatArray, t: FloatArray, right: FloatArray) -> tuple[FloatArray
         return (g * a - f * b) / area, (e * b - f * a) / area
 
 
-def _face_jet(
-    face: BSplineSurface, feet: FloatArray, towards: FloatArray, order: int
-) -> dict[tuple[int, int], FloatArray]:
+def _face_jet(face: BSplineSurface, feet: FloatArray, towards: FloatArray, order: int) -> OwnJet:
     """Return derivatives of the face at feet, of the side of a knot line that lies in a direction in space."""
     low, high = np.array(face.domain).T
-    s, t = surface_points(face, *feet.T, 1, 0), surface_points(face, *feet.T, 0, 1)
+    s, t = surface_points(face, feet[:, 0], feet[:, 1], 1, 0), surface_points(face, feet[:, 0], feet[:, 1], 0, 1)
     step = np.nan_to_num(np.stack(_solved(s, t, towards), axis=1))
     step *= _BESIDE / np.maximum(np.abs(step / (high - low)).max(axis=1), 1e-300)[:, None]
+    # Elsewhere a step would only cost digits.
+    on_line = [
+        (np.abs(feet[:, d, None] - breaks).min(axis=1) <= 2 * _BESIDE * (high - low)[d])
+        for d, breaks in enumerate(face.breakpoints)
+    ]
+    step = np.where(np.stack(on_line, axis=1), step, 0.0)
     at = np.clip(feet + step, low, high)
-    keys = [key for key in product(range(order + 1), repeat=2) if sum(key) <= order]
-    return {key: surface_points(face, *at.T, *key) for key in keys}
+    keys = [(i, j) for i in range(order + 1) for j in range(order + 1 - i)]
+    return {(i, j): surface_points(face, at[:, 0], at[:, 1], i, j) for i, j in keys}
 
 
 def _normal(jet: Jet) -> FloatArray:
     cross = np.cross(jet[1, 0], jet[0, 1])
     length = np.linalg.norm(cross, axis=1)[:, None]
-    return np.divide(cross, length, out=np.full_like(cross, np.nan), where=length > 0)
+    return np.asarray(np.divide(cross, length, out=np.full_like(cross, np.nan), where=length > 0))
 
 
-def _in_frame(jet: Jet, along: FloatArray, normal: FloatArray, order: int) -> dict[tuple[int, int], FloatArray]:
+def _in_frame(jet: Jet, along: FloatArray, normal: FloatArray, order: int) -> OwnJet:
     """Return derivatives in parameters whose first derivatives are unit vectors across the edge and along it."""
     along = along - np.sum(along * normal, axis=1)[:, None] * normal
     along = along / np.linalg.norm(along, axis=1)[:, None]
@@ -212,15 +219,13 @@ def _in_frame(jet: Jet, along: FloatArray, normal: FloatArray, order: int) -> di
         # A symmetric form of i steps across and j along.
         values = [jet[i + j - k, k] for k in range(i + j + 1)]
         for a, b in [w] * i + [s] * j:
-            values = [
-                a[:, None] * first + b[:, None] * second for first, second in zip(values, values[1:], strict=False)
-            ]
+            values = [a[:, None] * first + b[:, None] * second for first, second in pairwise(values)]
         found[i, j] = values[0]
     return found
 
 
 def _curvature_jumps(
-    sides: list[dict[tuple[int, int], FloatArray]], normals: tuple[FloatArray, FloatArray], size: float, order: int
+    sides: list[OwnJet], normals: tuple[FloatArray, FloatArray], size: float, order: int
 ) -> dict[str, FloatArray]:
     """Return what `FaceContact` holds of curvature and its rates, each of shape (K,)."""
     bends = [
@@ -229,10 +234,8 @@ def _curvature_jumps(
     ]
     across = max(float(np.nanmax(np.abs(bends[1][2, 0]))), 1e-3 / size)
     largest = max(*(float(np.nanmax(np.abs(x))) for x in bends[1].values()), 1e-3 / size)
-    jumps = [
-        np.abs(bends[0][key] - bends[1][key]) / scale
-        for key, scale in (((2, 0), across), ((1, 1), largest), ((0, 2), largest))
-    ]
+    scales = {(2, 0): across, (1, 1): largest, (0, 2): largest}
+    jumps = [np.abs(bends[0][key] - bends[1][key]) / scale for key, scale in scales.items()]
     values = {"curvature_jump_relative": np.max(jumps, axis=0)}
     if order > 2:
         nothing = np.zeros((order + 1, order + 1))

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from semispline.solver.arrays import FloatArray
 from semispline.solver.splines import Jet, basis_matrix, derivative_points
@@ -33,7 +34,7 @@ class BandMeasures:
 
     v: FloatArray
     points: FloatArray
-    spans: FloatArray
+    spans: NDArray[np.intp]
     values: dict[str, FloatArray]
 
     def worst(self, name: str) -> tuple[float, int]:
@@ -115,7 +116,7 @@ def finer_breaks(breaks: FloatArray, degree: int, found: BandMeasures, limits: B
     need = np.full(spans, 1e-3)
     for name, values in found.values.items():
         worst = np.zeros(spans)
-        np.maximum.at(worst, found.spans.astype(np.intp), np.where(np.isfinite(values), values, 1e300))
+        np.maximum.at(worst, found.spans, np.where(np.isfinite(values), values, 1e300))
         power = degree + 1 - MEASURES[name]
         need = np.maximum(need, (worst / (0.8 * limit_of(name, limits))) ** (1 / power))
     widths = np.diff(breaks)

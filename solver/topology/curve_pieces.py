@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 
@@ -145,7 +146,7 @@ def pieces(curve: FaceCurve, sign: float, away: float) -> tuple[list[CurvePiece]
         ends = [*whole, whole[0] + end - start]
     else:
         ends = [start, *inner, end]
-    made = [CurvePiece(curve, a, b, False, sign) for a, b in zip(ends[:-1], ends[1:], strict=True)]
+    made = [CurvePiece(curve, a, b, False, sign) for a, b in pairwise(ends)]
     return [_kept_away(piece, away) for piece in made], found
 
 
@@ -155,10 +156,10 @@ def corners(curve: FaceCurve) -> list[tuple[float, float]]:
     limit = np.full(len(x), CORNER_DEGREES)
     if curve.degree == 1 and len(x) > 1:
         # A vertex of a polyline that stands for a smooth curve turns as its neighbours do.
-        around = np.concatenate(
-            [turns[-1:] if curve.is_closed else [0.0], turns, turns[:1] if curve.is_closed else [0]]
-        )
-        beside = np.maximum(around[:-2], around[2:])
+        before, after = np.roll(turns, 1), np.roll(turns, -1)
+        if not curve.is_closed:
+            before[0] = after[-1] = 0.0
+        beside = np.maximum(before, after)
         limit = np.where(turns > 30.0, CORNER_DEGREES, np.maximum(limit, 2.5 * beside))
     return [(float(a), float(b)) for a, b in zip(x[turns > limit], turns[turns > limit], strict=True)]
 

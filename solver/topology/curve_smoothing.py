@@ -19,6 +19,8 @@ _POINTS = 400
 _SPANS = (2, 3, 4, 5, 6, 8, 10, 12, 16, 20, 24, 32)
 # So many pieces of a polyline, at the least, stand for one span.
 _PIECES = 3
+# By arc length the speed is 1.
+_SLOWEST = 0.1
 
 
 def smoothed(piece: CurvePiece, allowed: float) -> tuple[CurvePiece, float] | None:
@@ -30,7 +32,7 @@ def smoothed(piece: CurvePiece, allowed: float) -> tuple[CurvePiece, float] | No
     at, _, beside = piece.at(v)
     jet = piece.face.jet(at, 1, beside)
     # Cholesky factors turn distances in the face into plain ones.
-    root = np.linalg.cholesky(metric(jet)).transpose(0, 2, 1)
+    root = np.asarray(np.linalg.cholesky(metric(jet)).transpose(0, 2, 1), dtype=np.float64)
     flat = unwrapped(at, piece.face)
     most = len(piece.curve.breaks) // _PIECES if piece.curve.degree == 1 else _SPANS[-1]
     for spans in _SPANS:
@@ -41,12 +43,11 @@ def smoothed(piece: CurvePiece, allowed: float) -> tuple[CurvePiece, float] | No
             continue
         away = np.einsum("kij,kj->ki", root, pcurve.evaluate(v)[:, :2] - flat)
         slope = np.einsum("kij,kj->ki", root, pcurve.evaluate(v, 1)[:, :2])
-        across = np.abs(away[:, 0] * slope[:, 1] - away[:, 1] * slope[:, 0]) / np.sqrt(
-            np.maximum(dot(slope, slope), 1e-300)
-        )
+        speed = np.sqrt(np.maximum(dot(slope, slope), 1e-300))
+        across = np.abs(away[:, 0] * slope[:, 1] - away[:, 1] * slope[:, 0]) / speed
         distance = float(across.max())
         # A curve that stops on the way is none.
-        if distance <= allowed and dot(slope, slope).min() > 0.01:
+        if distance <= allowed and speed.min() > _SLOWEST:
             return _on_face(piece, pcurve), distance
     return None
 

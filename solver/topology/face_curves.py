@@ -118,7 +118,7 @@ def curve_on_face(face: Face, pcurve: BSplineCurve) -> FaceCurve:
     over = np.maximum(face.low - at, at - face.low - face.widths) / face.widths
     over = np.where(face.closed, over - 1, over)
     if over.max() > _OUTSIDE:
-        k, d = np.unravel_index(int(over.argmax()), over.shape)
+        k = np.unravel_index(int(over.argmax()), over.shape)[0]
         (s0, s1), (t0, t1) = face.surface.domain
         raise EdgeError(
             f"curve: found (s, t) = ({at[k, 0]:.6g}, {at[k, 1]:.6g}), expected a point in "
@@ -207,7 +207,7 @@ def parameters_on(face: Face, points: FloatArray) -> FloatArray:
 def _near(face: Face, points: FloatArray) -> FloatArray:
     """Return the parameters of the nearest of many points of the face, shape (K, 2)."""
     grids = [spread(breaks, _GRID, 3) for breaks in face.surface.breakpoints]
-    grid = face.surface.evaluate_grid(*grids).reshape(-1, 3)
+    grid = face.surface.evaluate_grid(grids[0], grids[1]).reshape(-1, 3)
     nearest = KDTree(grid).query(points)[1]
     i, j = np.divmod(nearest, len(grids[1]))
     return np.stack([grids[0][i], grids[1][j]], axis=1)

@@ -24,6 +24,8 @@ _CLOSED = 1e-9
 # So far beside the curve, in fractions of the domain, lies the point that chooses the side of a knot line.
 _BESIDE = 1e-9
 _STEPS = 12
+# Of the domain: the longest step to a foot, and how far one may lie beyond a border.
+_LONGEST, _BEYOND = 0.1, 1e-3
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,7 +59,7 @@ class Face:
         """Whether the surface is closed in either direction, shape (2,)."""
         net = self.surface.homogeneous
         away = (np.abs(net[0] - net[-1]).max(), np.abs(net[:, 0] - net[:, -1]).max())
-        return np.array(away) <= _CLOSED * np.abs(net - net[0, 0]).max()
+        return np.asarray(np.array(away) <= _CLOSED * np.abs(net - net[0, 0]).max())
 
     def jet(self, at: FloatArray, order: int, beside: FloatArray | None = None) -> Jet:
         """Return derivatives at parameters, shape (K, 2), in the spans of the points `beside` them."""
@@ -71,7 +73,8 @@ class Face:
         """Return points a hair to the kept side of a curve in the parameters with these slopes, shape (K, 2)."""
         turned = sign * np.stack([-slope[:, 1], slope[:, 0]], axis=1)
         # Of a curve that is nearly straight along a parameter line the other component is noise.
-        return at + _BESIDE * self.widths * turned / np.maximum(np.abs(turned).max(axis=1), 1e-300)[:, None]
+        longest = np.maximum(np.abs(turned).max(axis=1), 1e-300)[:, None]
+        return np.asarray(at + _BESIDE * self.widths * turned / longest)
 
     def feet(
         self, points: FloatArray, at: FloatArray, beside: FloatArray | None, order: int
@@ -88,18 +91,14 @@ class Face:
             plain = _solved(metric(jet), _by_parameters(jet, away))
             # Far from the face the Hessian may not be positive.
             wild = ~np.isfinite(step).all(axis=1) | (np.abs(step) > 4 * np.abs(plain) + 1e-15).any(axis=1)
-            step = np.where(wild[:, None], plain, step)
+            step = np.where(np.asarray(wild)[:, None], plain, step)
             if not np.isfinite(step).all():
                 break
-            step = np.clip(step, -0.1 * self.widths, 0.1 * self.widths)
-            outside = ~self.closed
-            moved = at + step
-            moved = np.where(
-                outside, np.clip(moved, self.low - 1e-3 * self.widths, self.low + 1.001 * self.widths), moved
-            )
-            done = np.abs(moved - at).max() <= 1e-14 * self.widths.min() or np.all(
-                np.abs(moved - at) <= 4e-16 * np.abs(at) + 1e-15 * self.widths
-            )
+            moved = at + np.clip(step, -_LONGEST * self.widths, _LONGEST * self.widths)
+            # Beyond a border that is not closed the face goes on by its last spans, but not far.
+            low, high = self.low - _BEYOND * self.widths, self.low + (1 + _BEYOND) * self.widths
+            moved = np.where(self.closed, moved, np.clip(moved, low, high))
+            done = bool((np.abs(moved - at) <= 4e-15 * (np.abs(at) + self.widths)).all())
             at = moved
             if done:
                 break
@@ -214,7 +213,7 @@ def dot(a: FloatArray, b: FloatArray) -> FloatArray:
 def unit(vectors: FloatArray) -> FloatArray:
     """Return unit vectors; not a number where there is no direction."""
     length = np.linalg.norm(vectors, axis=-1, keepdims=True)
-    return np.divide(vectors, length, out=np.full_like(vectors, np.nan), where=length > 0)
+    return np.asarray(np.divide(vectors, length, out=np.full_like(vectors, np.nan), where=length > 0))
 
 
 def _by_parameters(jet: Jet, vectors: FloatArray) -> FloatArray:
@@ -226,7 +225,8 @@ def _solved(matrix: FloatArray, right: FloatArray) -> FloatArray:
     determinant = a * c - b * b
     x, y = c * right[:, 0] - b * right[:, 1], a * right[:, 1] - b * right[:, 0]
     result = np.full_like(right, np.nan)
-    return np.divide(np.stack([x, y], axis=1), determinant[:, None], out=result, where=determinant[:, None] != 0)
+    np.divide(np.stack([x, y], axis=1), determinant[:, None], out=result, where=determinant[:, None] != 0)
+    return result
 
 
 def _symmetric(a: FloatArray, b: FloatArray, c: FloatArray) -> FloatArray:

@@ -8,7 +8,6 @@ import numpy as np
 
 # Loaded before the limits of the process count.
 import OCP  # noqa: F401
-
 from scipy.interpolate import make_interp_spline
 
 from semispline.solver.arrays import FloatArray
@@ -118,10 +117,8 @@ def _taken_over(pcurve: Content, face: Any, converted: BSplineSurface) -> Conten
 def _content(spline: Any, coordinates: Any) -> Content:
     if spline.IsPeriodic():
         spline.SetNotPeriodic()
-    knots = np.repeat(
-        [spline.Knot(i + 1) for i in range(spline.NbKnots())],
-        [spline.Multiplicity(i + 1) for i in range(spline.NbKnots())],
-    )
+    indices = range(1, spline.NbKnots() + 1)
+    knots = np.repeat([spline.Knot(i) for i in indices], [spline.Multiplicity(i) for i in indices])
     n = spline.NbPoles()
     points = np.array([coordinates(spline.Pole(i + 1)) for i in range(n)])
     weights = np.array([spline.Weight(i + 1) for i in range(n)]) if spline.IsRational() else None

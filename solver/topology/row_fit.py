@@ -94,7 +94,7 @@ def fitted_rows(
     space = closed_space(degree, breaks) if piece.closed else None
     ends = None if piece.closed else piece.sections(breaks[[0, -1]], order)
     bases = [_basis(degree, knots, v, k) for k in range(3)]
-    rows = []
+    rows: list[FloatArray] = []
     for k in range(order + 1):
         fixed = None if ends is None else row_targets(ends, k)
         if k == 2:
@@ -155,16 +155,14 @@ def _solved(
     free = [basis @ space for basis in bases] if space is not None else [basis[:, 1:-1] for basis in bases]
     blocks, values = [], []
     for order, direction, value, limit in equations:
-        if fixed is not None:
-            known = bases[order][:, [0, -1]] @ fixed
-            value = value - dot(known, direction)
+        known = np.zeros(len(value)) if fixed is None else dot(bases[order][:, [0, -1]] @ fixed, direction)
         blocks.append((free[order][:, :, None] * (direction / limit)[:, None, :]).reshape(len(value), -1))
-        values.append(value / limit)
+        values.append((value - known) / limit)
     system = np.concatenate(blocks)
     solution = scipy.linalg.lstsq(system, np.concatenate(values), lapack_driver="gelsy", check_finite=False)[0]
     solution = solution.reshape(-1, 3)
     if space is not None:
-        points = space @ solution
+        points = np.asarray(space @ solution)
         points[-1] = points[0]
         return points
     assert fixed is not None

@@ -90,6 +90,6 @@ def read_trim_curves(path: str | Path, face: int, numbers: Sequence[int]) -> lis
         if isinstance(found, str):
             raise EdgeError(f"{path}#{face}: e{number}: {found}")
         edge, pcurve, keep, tolerance = found
-        curves = [None if x is None else BSplineCurve(*x) for x in (edge, pcurve)]
-        made.append(TrimCurve(name, own, *curves, keep, tolerance, None if unit is None else MILLIMETRES[unit]))
+        in_space, flat = (None if x is None else BSplineCurve(*x) for x in (edge, pcurve))
+        made.append(TrimCurve(name, own, in_space, flat, keep, tolerance, None if unit is None else MILLIMETRES[unit]))
     return made
