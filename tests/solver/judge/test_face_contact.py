@@ -65,7 +65,7 @@ def test_an_edge_along_a_crease_of_curvature_is_compared_with_the_side_that_is_m
 
 
 def test_an_edge_far_from_the_face_is_refused():
-    with pytest.raises(EdgeError, match="the edge is .* away from it at"):
+    with pytest.raises(EdgeError, match=r"the edge is .* away from it at"):
         measure_face_contact(Base(cylinder(5.0), "v0"), sphere())
 
 

@@ -30,7 +30,7 @@ def test_derivatives_are_those_of_the_referee(surface, order, seed):
 @given(bspline_surfaces(degrees=(1, 4)), st.integers(0, 2**32 - 1))
 def test_on_a_knot_line_the_span_beside_it_is_meant(surface, seed):
     rng = np.random.default_rng(seed)
-    (u0, u1), (v0, v1) = surface.domain
+    v0, v1 = surface.domain[1]
     u, v = np.array(surface.breakpoints[0][1:-1]), rng.uniform(v0, v1)
     narrow = np.diff(surface.breakpoints[0]).min()
     for side in (-1, 1):
