@@ -70,10 +70,6 @@ def measured(piece: CurvePiece, degree: int, knots: FloatArray, rows: FloatArray
     shares = np.linspace(0.0, 1.0, per_span)
     v = (breaks[:-1, None] + np.diff(breaks)[:, None] * shares).ravel()
     spans = np.repeat(np.arange(len(breaks) - 1), per_span)
-    # An inner knot once: rows are smooth there.
-    kept = np.ones(len(v), dtype=bool)
-    kept[per_span::per_span] = False
-    v, spans = v[kept], spans[kept]
     order = len(rows) - 1
     band = row_jet(degree, knots, rows, v, order)
     at, slope, beside = piece.at(v)

@@ -194,7 +194,7 @@ def band_along(
         no_normal = wild_end(fit.piece) if piece.left_out else None
         if no_normal is not None:
             raise BandError(f"{name}: the face has no normal at the {no_normal} of it, its curvature grows without end")
-        made.append(_band(fit, origin, breaks))
+        made.append(_band(fit, piece, origin, breaks))
     return tuple(made)
 
 
@@ -216,9 +216,9 @@ def _fit(piece: CurvePiece, order: int, tolerance: float, millimetres: float | N
     return again if is_polyline or again.share < fit.share else fit
 
 
-def _band(fit: BandFit, origin: FloatArray, breaks: list[Break]) -> Band:
+def _band(fit: BandFit, whole: CurvePiece, origin: FloatArray, breaks: list[Break]) -> Band:
+    """Return the band of a fit along a piece; `whole` is the piece before it was made smooth or shortened."""
     piece, curve = fit.piece, fit.piece.curve
-    why = {found.parameter: found.reason for found in breaks}
     flat = is_plane(curve.face)
     return Band(
         surface=band_surface(fit, flat, origin),
@@ -236,10 +236,17 @@ def _band(fit: BandFit, origin: FloatArray, breaks: list[Break]) -> Band:
         edge_to_face=curve.edge_to_face,
         edge_to_pcurve=curve.edge_to_pcurve,
         smoothed_by=fit.smoothed_by,
-        range=(piece.start, piece.end),
-        cut_at_start=why.get(piece.start, ""),
-        cut_at_end=why.get(piece.end, why.get(float(curve.wrapped(np.array([piece.end]))[0]), "")),
+        range=(whole.start, whole.end),
+        cut_at_start=_reason(whole, whole.start, breaks),
+        cut_at_end=_reason(whole, whole.end, breaks),
     )
+
+
+def _reason(piece: CurvePiece, end: float, breaks: list[Break]) -> str:
+    """Return why the curve was cut at an end of a piece; empty where it was not."""
+    first, last = piece.curve.ends
+    places = (end, end - (last - first)) if piece.curve.is_closed else (end,)
+    return next((x.reason for x in breaks if min(abs(x.parameter - at) for at in places) < 1e-6 * (last - first)), "")
 
 
 def band_surface(fit: BandFit, flat: bool, origin: FloatArray) -> BSplineSurface:

@@ -77,7 +77,11 @@ def test_a_band_of_a_plane_is_exact():
     # The limits of natural edges; a curve on it is what is approximate.
     assert seen.gap <= 1e-11 * 10
     assert seen.angle_degrees <= 1e-9
-    assert seen.curvature_jump_relative <= 1e-9
+    # Over the floor 1e-3 / size; with what some roundings of coordinates of 10 are in second derivatives along.
+    narrow = np.diff(band.surface.breakpoints[1]).min()
+    rounding = 8 * np.finfo(float).eps * 10 * (2 * band.surface.degree_v / narrow) ** 2 / (1e-3 / 10)
+    assert seen.curvature_jump_relative <= 1e-9 + rounding
+    assert rounding < 1e-6
     assert 0 < band.off <= 1e-5 * band.length
 
 
