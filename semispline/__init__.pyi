@@ -107,5 +107,9 @@ from .solver.splines.surfaces import BSplineSurface as BSplineSurface
 from .solver.splines.surfaces import SemiStructuredSurface as SemiStructuredSurface
 from .solver.topology.bands import Band as Band
 from .solver.topology.bands import band_along as band_along
+from .solver.topology.place import Place as Place
+from .solver.topology.place import Places as Places
+from .solver.topology.place import PlaceSide as PlaceSide
+from .solver.topology.places import find_places as find_places
 
 __version__: str

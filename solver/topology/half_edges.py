@@ -7,6 +7,7 @@ a whole. Rows are called *uses* here: the edge between two faces has two of them
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -167,7 +168,7 @@ class EdgeGraph:
     uses: Uses
     others: dict[str, int]
 
-    @property
+    @cached_property
     def size(self) -> float:
         """Largest extent of the edges."""
         points = self.uses.points[self.uses.pcurve != "none"]

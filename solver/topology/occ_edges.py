@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 
-from semispline.solver.arrays import FloatArray
 from semispline.solver.topology.half_edges import SAMPLES, Faces, Uses, neighbours, shape_of
 
 _PCURVES = {
@@ -23,7 +22,7 @@ _PCURVES = {
 }
 # A range that lacks less than this fraction of the spline is all of it.
 _WHOLE = 1e-9
-_FRACTIONS = np.linspace(0.0, 1.0, SAMPLES)
+_FRACTIONS = tuple(k / (SAMPLES - 1) for k in range(SAMPLES))
 
 
 def wires(face: Any) -> Iterator[tuple[list[Any], bool]]:
@@ -138,6 +137,7 @@ class _Sampler:
             self.surface = None
         self.at, self.slope = gp_Pnt2d(), gp_Vec2d()
         self.jet = gp_Pnt(), *(gp_Vec() for _ in range(5))
+        self.read_jet = [x.Coord for x in self.jet]
 
     def record(self, edge: Any) -> tuple[str, bool, tuple[float, float], Any, Any, Any]:
         """Return kind of the pcurve, whether its box is proven, parameters, box, uv with slopes, jet of the surface."""
@@ -145,31 +145,34 @@ class _Sampler:
             return self._record(edge)
         except Exception:
             # Each failure of the kernel has a class of its own: no curve, or one that it cannot evaluate.
-            nothing = np.full(SAMPLES, np.nan)
-            return "none", False, (np.nan, np.nan), np.full((2, 2), np.nan), [nothing] * 4, [nothing] * 18
+            return "none", False, (np.nan, np.nan), [np.nan] * 4, [np.nan] * (4 * SAMPLES), [np.nan] * (18 * SAMPLES)
 
     def _record(self, edge: Any) -> tuple[str, bool, tuple[float, float], Any, Any, Any]:
         from OCP.BRepAdaptor import BRepAdaptor_Curve2d
 
         curve = BRepAdaptor_Curve2d(edge, self.face)
         first, last = curve.FirstParameter(), curve.LastParameter()
-        at, slope, jet, surface = self.at, self.slope, self.jet, self.surface
-        plane, values = [], []
-        for t in (first + (last - first) * _FRACTIONS).tolist():
-            curve.D1(t, at, slope)
-            u, v = at.X(), at.Y()
-            surface.D2(u, v, *jet)
-            plane.append((u, v, slope.X(), slope.Y()))
-            values.append([(x.X(), x.Y(), x.Z()) for x in jet])
+        at, slope, jet = self.at, self.slope, self.jet
+        curve_at, surface_at = curve.D1, self.surface.D2
+        plane: list[float] = []
+        values: list[float] = []
+        for fraction in _FRACTIONS:
+            curve_at(first + (last - first) * fraction, at, slope)
+            uv = at.Coord()
+            surface_at(*uv, *jet)
+            plane += uv
+            plane += slope.Coord()
+            for read in self.read_jet:
+                values += read()
         kind = _PCURVES[curve.GetType().name]
         poles = _poles(curve, kind, first, last)
-        held = np.array(plane)[:, :2] if poles is None else poles
-        box = [held.min(axis=0), held.max(axis=0)]
+        u, v = (plane[::4], plane[1::4]) if poles is None else zip(*poles, strict=True)
+        box = min(u), min(v), max(u), max(v)
         return kind, poles is not None, (first, last), box, plane, values
 
 
-def _poles(curve: Any, kind: str, first: float, last: float) -> FloatArray | None:
-    """Return points whose hull holds the curve, shape (K, 2); None where it has no such points."""
+def _poles(curve: Any, kind: str, first: float, last: float) -> list[tuple[float, float]] | None:
+    """Return points whose hull holds the curve; None where it has no such points."""
     if kind == "line":
         held = [curve.Value(first), curve.Value(last)]
     elif kind in ("B-spline", "Bezier"):
@@ -181,7 +184,7 @@ def _poles(curve: Any, kind: str, first: float, last: float) -> FloatArray | Non
         held = [spline.Pole(i + 1) for i in range(spline.NbPoles())]
     else:
         return None
-    return np.array([(p.X(), p.Y()) for p in held])
+    return [p.Coord() for p in held]
 
 
 def _ends(face: Any) -> tuple[float, ...]:

@@ -8,6 +8,8 @@ from semispline.solver.errors import FileError
 from semispline.solver.io import OCC_SUFFIXES, read_apart, require_file, require_kernel, shown
 from semispline.solver.topology.half_edges import EdgeGraph
 
+_HINTS = {".3dm": "; 3dm files do not show the curves of a face in its own parameters: export it as STEP"}
+
 
 def read_edges(path: str | Path) -> EdgeGraph:
     """Return faces and edges of a STEP, IGES or BREP file, read by a process of its own.
@@ -23,8 +25,8 @@ def read_edges(path: str | Path) -> EdgeGraph:
     suffix = Path(path).suffix.lower()
     if suffix not in OCC_SUFFIXES:
         raise FileError(
-            f"{shown(path)}: suffix {shown(suffix)!r}: edges of trimmed faces are read from one of "
-            f"{' '.join(OCC_SUFFIXES)}"
+            f"{shown(path)}: the edges of trimmed faces cannot be read from {shown(suffix)!r}, expected one of "
+            f"{' '.join(OCC_SUFFIXES)}{_HINTS.get(suffix, '')}"
         )
     require_kernel(path)
     graph = read_apart(path, "semispline.solver.topology.occ_worker", "Open CASCADE")
