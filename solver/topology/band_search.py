@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal, TypeAlias
 
 import numpy as np
@@ -22,6 +22,8 @@ MOST_POINTS, MOST_ROUNDS = 120, 20
 # So much of its limits a band may take: by 11 points a span in each round, and by 30 in the last one.
 _NEAR = 0.92
 _FEW, _MANY = 11, 30
+# Where no round came so near, the best one will do with this by so many points.
+_LAST, _MOST = 0.98, 200
 # Spans of the first round.
 _OPEN, _CLOSED = 3, 8
 # Places where the largest curvature along the edge is sought.
@@ -125,6 +127,10 @@ def fit_band(
             finer = np.interp(np.linspace(0, len(finer) - 1, most + 1), np.arange(len(finer)), finer)
         breaks = finer
     assert best is not None
+    if not best.is_good and best.share <= _LAST:
+        found = measured(piece, degree, best.knots, best.rows, _MOST)
+        share = worst_share(found, limits)
+        best = replace(best, measures=found, share=share, is_good=share <= _LAST)
     return best
 
 
