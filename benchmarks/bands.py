@@ -20,7 +20,6 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests"))
 
 from helpers.free_curves import cylinder, free_form, loop, open_curve, round_curve, sphere, torus
-
 from semispline import BSplineCurve, BSplineSurface, SemisplineError, blend, plane, transform
 from semispline.solver.judge import measure_face_contact
 from semispline.solver.topology.band_measures import row_jet

@@ -18,6 +18,7 @@ from semispline import (
     blend,
     interpolate_curve,
     plane,
+    reverse_curve,
 )
 from semispline.solver.judge import measure_creases, measure_face_contact
 from semispline.solver.topology import curve_pieces
@@ -117,8 +118,10 @@ def test_a_position_tolerance_alone_is_not_enough():
 
 def test_a_curve_into_a_pole_keeps_away_from_it():
     curve = cubic((0.1, 0.2), (0.15, 0.5), (0.2, 0.8), (0.25, 1.0))
-    (band,) = band_along(sphere(), curve)
-    assert 0 < band.left_out < 1e-4 * band.length
+    for run in (curve, reverse_curve(curve)):
+        (band,) = band_along(sphere(), run)
+        assert 0 < band.left_out < 1e-4 * band.length
+        assert measure_face_contact(band.base, sphere(), same_side=True).angle_degrees <= 0.01
     with pytest.raises(BandError, match="no proper normal at the end"):
         # Without keeping away.
         band_error_along(sphere(), curve)
