@@ -9,12 +9,14 @@ from pathlib import Path
 from removal import rank_of_the_right_gap
 
 from semispline.solver.io import read_occ
+from semispline.solver.io.rhino import read_3dm
 from semispline.solver.topology.fillets import find_fillets
 from semispline.solver.topology.half_edges import EdgeGraph
 from semispline.solver.topology.occ_edges import edge_tables
 from semispline.solver.topology.place import Place, Places
 from semispline.solver.topology.places import places_of
 from semispline.solver.topology.relations import relate
+from semispline.solver.topology.rhino_edges import edges_of_3dm
 
 # Seconds of processor time for a thousand faces, or so many times the reading time where that is longer.
 SECONDS_PER_THOUSAND, OF_READING = 3.0, 1.2
@@ -44,9 +46,13 @@ class Row:
 def measured(path: Path) -> Row:
     """Read a file, find its places, and take each of its fillets out."""
     start = time.process_time()
-    model = read_occ(path)
+    is_3dm = path.suffix == ".3dm"
+    model = read_3dm(path) if is_3dm else read_occ(path)
     read = time.process_time()
-    graph = EdgeGraph(path.name, model.unit, *edge_tables(model.faces), dict(model.others))
+    if is_3dm:
+        graph = edges_of_3dm(model)
+    else:
+        graph = EdgeGraph(path.name, model.unit, *edge_tables(model.faces), dict(model.others))
     places = places_of(graph)
     found = time.process_time()
     accepted = find_fillets(graph, relate(graph)).accepted

@@ -1,7 +1,7 @@
 """Places in real files and known parts: python benchmarks/places/run.py [MORE...].
 
-Writes docs/places.md, and pictures with the proposals marked into build/places. The files are the STEP and BREP files
-of `data/cad` in the shared folder, and those named: files of installed packages are read, and not kept here.
+Writes docs/places.md, and pictures with the proposals marked into build/places. The files are those of
+`data/cad` in the shared folder, and those named: files of installed packages are read, and not kept here.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from semispline.solver.topology.reading import read_edges
 
 ROOT = Path(__file__).parents[2]
 BUILD = ROOT / "build" / "places"
-SUFFIXES = (".step", ".stp", ".brep", ".igs", ".iges")
+SUFFIXES = (".step", ".stp", ".brep", ".igs", ".iges", ".3dm")
 KNOWN = 40
 _FEW = 10
 _KINDS = ("fillet", "chain", "chamfer", "round end", "gap", "sharp edge")
@@ -44,7 +44,7 @@ def main() -> None:
         for path in (*ours, *given.more):
             graph = read_edges(path)
             places = places_of(graph)
-            if places.found:
+            if places.found and path.suffix != ".3dm":
                 draw(path, graph, places, BUILD / f"{path.stem}.png")
 
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from semispline.solver.topology.half_edges import SAMPLES, Faces, Uses, neighbours, shape_of
+from semispline.solver.topology.half_edges import SAMPLES, Faces, Uses, uses_of
 
 _PCURVES = {
     "GeomAbs_Line": "line",
@@ -90,35 +90,7 @@ def edge_tables(faces: Sequence[Any]) -> tuple[Faces, Uses]:
         same=_first([row[4] for row in of_faces]),
         walked=np.array(whole, dtype=bool),
     )
-    return table, _uses(table, rows, records)
-
-
-def _uses(faces: Faces, rows: list[tuple[Any, ...]], records: list[tuple[Any, ...]]) -> Uses:
-    numbers = np.array([row[:4] for row in rows], dtype=np.int64).reshape(-1, 4)
-    flags = np.array([row[4:] for row in rows], dtype=bool).reshape(-1, 3)
-    face, wire, number, edge = numbers.T
-    turned, seam, degenerate = flags.T
-    tolerance, kind, proven, parameters, box, uv, jet = zip(*records, strict=True) if records else [()] * 7
-    plane = np.array(uv, dtype=np.float64).reshape(-1, SAMPLES, 4)
-    surface = np.array(jet, dtype=np.float64).reshape(-1, SAMPLES, 6, 3)
-    return Uses(
-        face=face,
-        wire=wire,
-        number=number,
-        edge=edge,
-        reversed=turned,
-        seam=seam,
-        degenerate=degenerate,
-        parameters=np.array(parameters, dtype=np.float64).reshape(-1, 2),
-        tolerance=np.array(tolerance, dtype=np.float64),
-        uv=plane[..., :2],
-        uv_slope=plane[..., 2:],
-        pcurve=np.array(kind, dtype="<U9"),
-        box=np.array(box, dtype=np.float64).reshape(-1, 2, 2),
-        proven=np.array(proven, dtype=bool),
-        **shape_of(faces.reversed[face], turned, plane[..., 2:], surface),
-        **neighbours(face, wire, edge, degenerate, faces.same),
-    )
+    return table, uses_of(table, rows, records)
 
 
 class _Sampler:
