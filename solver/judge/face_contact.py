@@ -144,8 +144,8 @@ def _feet(face: BSplineSurface, points: FloatArray) -> FloatArray:
     grids = []
     for breaks in face.breakpoints:
         each = -(-_GRID // (len(breaks) - 1))
-        steps = np.diff(breaks)[:, None] * (np.arange(each) / each)
-        grids.append(np.append((breaks[:-1, None] + steps).ravel(), breaks[-1]))
+        # None at a border: from a pole no step leads away.
+        grids.append((breaks[:-1, None] + np.diff(breaks)[:, None] * ((np.arange(each) + 0.5) / each)).ravel())
     u, v = (x.ravel() for x in np.meshgrid(*grids, indexing="ij"))
     nearest = KDTree(surface_points(face, u, v)).query(points)[1]
     at = np.stack([u[nearest], v[nearest]], axis=1)

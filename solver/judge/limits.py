@@ -78,8 +78,8 @@ def cad_measures(length: float, millimetres: float | None = None) -> dict[str, f
 
     Examples
     --------
-    >>> cad_measures(1000.0, 25.4)["gap"], cad_measures(1.0)["gap"]
-    (3.937007874015748e-05, 1e-05)
+    >>> cad_measures(20.0)["gap"], cad_measures(2000.0, 25.0)["gap"]
+    (0.0002, 4e-05)
     """
     gap = CAD_GAP_OF_LENGTH * length
     if millimetres is not None:

@@ -206,7 +206,9 @@ def parameters_on(face: Face, points: FloatArray) -> FloatArray:
 
 def _near(face: Face, points: FloatArray) -> FloatArray:
     """Return the parameters of the nearest of many points of the face, shape (K, 2)."""
-    grids = [spread(breaks, _GRID, 3) for breaks in face.surface.breakpoints]
+    # Middles of intervals: from a pole no step leads away.
+    ends = [spread(breaks, _GRID, 3) for breaks in face.surface.breakpoints]
+    grids = [(x[:-1] + x[1:]) / 2 for x in ends]
     grid = face.surface.evaluate_grid(grids[0], grids[1]).reshape(-1, 3)
     nearest = KDTree(grid).query(points)[1]
     i, j = np.divmod(nearest, len(grids[1]))

@@ -92,8 +92,8 @@ class Face:
             # Far from the face the Hessian may not be positive.
             wild = ~np.isfinite(step).all(axis=1) | (np.abs(step) > 4 * np.abs(plain) + 1e-15).any(axis=1)
             step = np.where(np.asarray(wild)[:, None], plain, step)
-            if not np.isfinite(step).all():
-                break
+            # In a pole no step leads away.
+            step = np.where(np.isfinite(step), step, 0.0)
             moved = at + np.clip(step, -_LONGEST * self.widths, _LONGEST * self.widths)
             # Beyond a border that is not closed the face goes on by its last spans, but not far.
             low, high = self.low - _BEYOND * self.widths, self.low + (1 + _BEYOND) * self.widths

@@ -64,6 +64,14 @@ def test_an_edge_along_a_crease_of_curvature_is_compared_with_the_side_that_is_m
     assert measure_face_contact(Base(to_the_right, "u0"), face, same_side=True).curvature_jump_relative > 0.9
 
 
+def test_feet_beside_a_pole_are_found():
+    # A circle of radius 0.01 about the pole, far closer to it than to anything else.
+    _, tip = split_v(sphere(), 1 - 0.01 / (10 * np.pi))
+    found = measure_face_contact(Base(tip, "v0"), sphere())
+    assert found.gap < 1e-12
+    assert found.angle_degrees < 1e-6
+
+
 def test_an_edge_far_from_the_face_is_refused():
     with pytest.raises(EdgeError, match=r"the edge is .* away from it at"):
         measure_face_contact(Base(cylinder(5.0), "v0"), sphere())

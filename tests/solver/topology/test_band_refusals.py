@@ -303,3 +303,14 @@ def test_a_wrong_row_is_seen():
     rows[1, 3:6] = 0.0
     found = measured(piece, fit.degree, fit.knots, rows, 11)
     assert found.worst("angle_degrees")[0] > 0.1
+
+
+def test_an_edge_in_space_into_a_pole_is_followed():
+    """No pcurve says where the foot in the pole is, and one that has no step does not stop the others."""
+    t = np.linspace(0, 1, 201)
+    up, round_ = np.pi / 2 * t, 0.4 * t**2
+    points = 10 * np.stack([np.cos(up) * np.cos(round_), np.cos(up) * np.sin(round_), np.sin(up)], axis=1)
+    (band,) = band_along(sphere(), None, edge=interpolate_curve(points, 5, t))
+    assert band.source == "foot"
+    assert 0 < band.left_out < 1e-4 * band.length
+    assert measure_face_contact(band.base, sphere(), same_side=True).gap <= 1e-5 * band.length
