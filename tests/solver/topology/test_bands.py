@@ -172,6 +172,17 @@ def test_a_blend_to_a_band_has_the_error_of_the_band_and_no_crease():
     assert all(crease.angle_degrees < 2e-4 for crease in measure_creases(result.surface))
 
 
+def test_a_g3_blend_to_a_band_has_its_rate_on_the_true_face():
+    face = free_form(np.random.default_rng(5), 5, 6)
+    (band,) = band_along(face, cubic((0.2, 0.45), (0.4, 0.3), (0.6, 0.6), (0.8, 0.5)), continuity="G3")
+    result = blend(band.base, Base(plane([1, 12, 6], [9, 0, 0], [0, 6, 1]), "v0"), continuity="G3")
+    seen = measure_face_contact(Base(result.surface, "u0"), face, order=3)
+    assert seen.rate_jump_relative <= 0.1
+    # Contact of the blend with the band is exact, and rates are known to some 1e-8 of themselves.
+    of_band = measure_face_contact(band.base, face, order=3, same_side=True)
+    assert seen.rate_jump_relative == pytest.approx(of_band.rate_jump_relative, abs=1e-5)
+
+
 def test_a_band_along_a_natural_edge_meets_its_jets():
     face = free_form(np.random.default_rng(7), 5, 6)
     (band,) = band_along(face, line((0, 0), (0, 1)), "right")
