@@ -27,8 +27,11 @@ from .curvature_range import measure_curvature_range as measure_curvature_range
 from .de_boor import curve_points as curve_points
 from .de_boor import surface_points as surface_points
 from .edge_normals import check_regular_edge as check_regular_edge
+from .face_contact import FaceContact as FaceContact
+from .face_contact import measure_face_contact as measure_face_contact
 from .fairness import Fairness as Fairness
 from .fairness import measure_fairness as measure_fairness
+from .limits import cad_measures as cad_measures
 from .limits import doubtful as doubtful
 from .limits import required_limits as required_limits
 from .limits import shortfalls as shortfalls
