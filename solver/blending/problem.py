@@ -41,8 +41,8 @@ from semispline.solver.splines import (
     affine_knots,
 )
 
-# The rows that G1 leaves free pull pipes together, by 4 to 7 %; stretched by this factor along v by less than 1 %. Random
-# pairs are as fair in the median, and less by an eighth in the mean.
+# The rows that G1 leaves free pull pipes together, by 4 to 7 %; stretched by this factor along v by less than 1 %.
+# Random pairs are as fair in the median, and less by an eighth in the mean.
 STRETCH = 3.5
 
 
