@@ -276,7 +276,10 @@ def _loser(layout: Layout, best: Layout) -> str:
         return f"every cell that was tried {' or '.join(sorted(let_pass))}"
     if _fairness(layout) < _fairness(best) and any(_at_end(layout)):
         return f"fairness {_fairness(layout):.4g} is less, at an end of its window"
-    more = "is no less" if _fairness(layout) <= _fairness(best) else "is more"
+    if _fairness(layout) < _fairness(best):
+        but = f"by less than the {1 - MIDDLE_SHARE:.0%} that a middle curve has to gain"
+        return f"fairness {_fairness(layout):.4g} is less, {but if _is_settled(layout) else 'but does not settle'}"
+    more = "is no less" if _fairness(layout) == _fairness(best) else "is more"
     window = "" if layout.problem.bounds == best.problem.bounds else ", in another window"
     return f"fairness {_fairness(layout):.4g} {more}{window}"
 

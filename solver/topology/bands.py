@@ -165,13 +165,7 @@ def band_along(
     (True, True, True)
     """
     require(surface, "surface", BSplineSurface)
-    if keep not in ("left", "right"):
-        raise OptionError(f"keep: found {keep!r}, expected 'left' or 'right'")
-    if continuity not in get_args(Continuity):
-        raise OptionError(f"continuity: found {continuity!r}, expected one of G1, G2, G3, G4")
-    for value, what in ((tolerance, "tolerance"), (1.0 if millimetres is None else millimetres, "millimetres")):
-        if not 0 <= value < np.inf or (what == "millimetres" and value == 0):
-            raise OptionError(f"{what}: found {value}, expected a finite number of at least 0")
+    _check_words(keep, tolerance, millimetres, continuity)
     # Contact of order 1 is measured by rows 0 and 1, but curvature decides how good these have to be.
     order = max(2, int(continuity[1]))
     origin = exact_origin(surface.control_points.reshape(-1, 3))
@@ -196,6 +190,17 @@ def band_along(
             raise BandError(f"{name}: the face has no normal at the {no_normal} of it, its curvature grows without end")
         made.append(_band(fit, piece, origin, breaks))
     return tuple(made)
+
+
+def _check_words(keep: str, tolerance: float, millimetres: float | None, continuity: str) -> None:
+    if keep not in ("left", "right"):
+        raise OptionError(f"keep: found {keep!r}, expected 'left' or 'right'")
+    if continuity not in get_args(Continuity):
+        raise OptionError(f"continuity: found {continuity!r}, expected one of G1, G2, G3, G4")
+    if not 0 <= tolerance < np.inf:
+        raise OptionError(f"tolerance: found {tolerance}, expected a finite number of at least 0")
+    if millimetres is not None and not 0 < millimetres < np.inf:
+        raise OptionError(f"millimetres: found {millimetres}, expected a finite number above 0")
 
 
 def _fit(piece: CurvePiece, order: int, tolerance: float, millimetres: float | None) -> BandFit:

@@ -8,6 +8,7 @@ import json
 import numpy as np
 import pytest
 
+from semispline import blend
 from semispline.papers.baselines.registry import method, methods
 from semispline.papers.lin2014.examples.section5 import FIGURES, example
 from semispline.papers.lin2014.paper_as_printed import METHODS
@@ -222,8 +223,12 @@ def test_the_fairest_blend_is_fairer_than_each_of_the_papers_with_a_middle_curve
         # The figures have none themselves: six rows may become seven.
         assert fair.control_points <= 7 / 6 * rows[name].control_points, name
     assert fair.turn_degrees < 7
-    # Of blends with as many rows the least energy has less; a middle curve alone takes up to a third off.
-    assert fair.energy >= rows["semistructured-reduced"].energy * (0.98 if figure != 11 else 0.6)
+    # A cubic of as many rows has the least energy of all cubics, and about that of all quintics.
+    least = rows["semistructured-reduced"]
+    if fair.control_points > least.control_points:
+        task = example(figure)
+        least = blend(task.a, task.b, alpha="energy", middle_curves=task.middle_curves + 1)
+    assert fair.energy >= least.energy * 0.98
 
 
 def test_where_rivals_are_better(compared, whole):

@@ -134,11 +134,18 @@ def test_with_other_degrees_a_middle_curve_is_tried_where_alpha_is_constant_and_
 
 def test_a_candidate_whose_folds_were_let_pass_is_not_called_less_fair():
     problem = state_problem(*wedge(1.0)).problem
-    values = ((5.0, ()), (1.0, ("folds",)), (5.0, ()), (6.0, ()))
+    values = ((5.0, ()), (1.0, ("folds",)), (5.0, ()), (6.0, ()), (4.9, ()))
     solutions = [FairSolution(1.0, 1.0, (0.0, 0.0), value, 0.0, 1, {}, condoned) for value, condoned in values]
+    solutions.append(replace(solutions[0], value=2.0, settled=False))
     best, *others = (candidates.Layout(None, problem, Found(1.0, 1.0, "reduced", fair=one)) for one in solutions)
     said = [candidates._loser(layout, best) for layout in others]
-    assert said == ["every cell that was tried folds", "fairness 5 is no less", "fairness 6 is more"]
+    assert said == [
+        "every cell that was tried folds",
+        "fairness 5 is no less",
+        "fairness 6 is more",
+        "fairness 4.9 is less, by less than the 5% that a middle curve has to gain",
+        "fairness 2 is less, but does not settle",
+    ]
 
 
 # Seed, fairness without p2 or with one of the two at most, and the least in a window that begins lower.
