@@ -277,9 +277,9 @@ def test_what_is_no_curve_on_the_face_is_refused():
         band_along(face, WAVE, "inside")
     with pytest.raises(OptionError, match="continuity"):
         band_along(face, WAVE, continuity="C1")
-    with pytest.raises(OptionError, match="tolerance: found -1.0, expected .* at least 0"):
+    with pytest.raises(OptionError, match=r"tolerance: found -1\.0, expected .* at least 0"):
         band_along(face, WAVE, tolerance=-1.0)
-    with pytest.raises(OptionError, match="millimetres: found 0.0, expected a finite number above 0"):
+    with pytest.raises(OptionError, match=r"millimetres: found 0\.0, expected a finite number above 0"):
         band_along(face, WAVE, millimetres=0.0)
 
 
