@@ -69,6 +69,9 @@ from .solver.splines.curves import set_curve_continuity as set_curve_continuity
 from .solver.splines.curves import split_curve as split_curve
 from .solver.splines.derivatives import derivative_curve as derivative_curve
 from .solver.splines.derivatives import derivative_surface as derivative_surface
+from .solver.splines.edges import EdgeName as EdgeName
+from .solver.splines.edges import cut_to_edge as cut_to_edge
+from .solver.splines.edges import parse_edge as parse_edge
 from .solver.splines.isocurves import boundary_curve as boundary_curve
 from .solver.splines.isocurves import iso_curve as iso_curve
 from .solver.splines.measures import Measure as Measure

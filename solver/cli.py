@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Annotated, Any, cast
 
 import typer
 
-from semispline.solver.errors import ContactError, EdgeError
+from semispline.solver.errors import ContactError
 from semispline.solver.exit_status import ANSWER_IS_NO, reports_errors
 from semispline.solver.option_flags import takes_blend_options
 from semispline.solver.options import BlendOptions, Continuity, continuity_name
@@ -31,9 +31,11 @@ if TYPE_CHECKING:
 
 app = typer.Typer(no_args_is_help=True, add_completion=False, pretty_exceptions_enable=False)
 
-_EDGES = ("u0", "u1", "v0", "v1")
 _SURFACE_HELP = "PATH, or PATH#N as `semispline list PATH` numbers it (JSON, STEP, IGES, BREP, 3dm)."
-_EDGE_HELP = "Edge of {}: u0, u1, v0 or v1, the parameter that is constant along it and at which end."
+_EDGE_HELP = (
+    "Edge of {}: u0, u1, v0 or v1, the parameter that is constant along it and at which end; a part, u1[0.2,0.6]; a "
+    "line inside, u=0.3+ (the side of larger u is kept) or u=0.3-; a part of it, u=0.3+[0.2,0.6]."
+)
 _CONTINUITY_HELP = "C0, C1, C2, G0, G1, G2, G3 or G4."
 
 SurfaceA = Annotated[str, typer.Argument(metavar="A", help=_SURFACE_HELP)]
@@ -64,7 +66,7 @@ def blend_command(
         write_surface,
     )
 
-    _check_edges(edge_a, edge_b)
+    edge_a, edge_b = _edge_words(edge_a, edge_b)
     check_surface_output(out)
     _check_outputs({"--out": out, "--report": report}, [a, b])
     with _progress("reading"):
@@ -74,7 +76,7 @@ def blend_command(
         from semispline.solver.blending import blend
         from semispline.solver.judge import Base
 
-        result = blend(Base(first.surface, cast(Any, edge_a)), Base(second.surface, cast(Any, edge_b)), options)
+        result = blend(Base(first.surface, edge_a), Base(second.surface, edge_b), options)
     result = replace(result, warnings=(*trims, *result.warnings))
     with ExitStack() as stack:
         # The report first, into its temporary file: neither file is touched unless both can be written.
@@ -103,13 +105,13 @@ def check_command(
     from semispline.solver.io import face_warnings, read_surfaces
     from semispline.solver.judge import Base, measure_contact
 
-    _check_edges(edge_a, edge_b)
+    edge_a, edge_b = _edge_words(edge_a, edge_b)
     required = None if require is None else continuity_name(require, "--require")
     _check_outputs({"--json": _file(json_file)}, [a, b])
     with _progress("reading"):
         first, second = read_surfaces([a, b])
     with _progress("measuring"):
-        bases = Base(first.surface, cast(Any, edge_a)), Base(second.surface, cast(Any, edge_b))
+        bases = Base(first.surface, edge_a), Base(second.surface, edge_b)
         contact = measure_contact(*bases, order=4)
     misses = _misses(contact, required)
     doubts = _doubts(contact, required, misses)
@@ -202,10 +204,10 @@ def convert_command(
     print_warnings([warning] if warning else [])
 
 
-def _check_edges(edge_a: str, edge_b: str) -> None:
-    for name, edge in (("--edge-a", edge_a), ("--edge-b", edge_b)):
-        if edge not in _EDGES:
-            raise EdgeError(f"{name}: found {edge!r}, expected one of {', '.join(_EDGES)}")
+def _edge_words(edge_a: str, edge_b: str) -> tuple[str, str]:
+    from semispline.solver.splines import parse_edge
+
+    return str(parse_edge(edge_a, "--edge-a")), str(parse_edge(edge_b, "--edge-b"))
 
 
 def _check_outputs(outputs: Mapping[str, str | None], specs: Sequence[str]) -> None:

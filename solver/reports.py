@@ -39,6 +39,8 @@ def report_record(result: BlendResult) -> dict[str, Any]:
     record: dict[str, Any] = {
         "format": "semispline/1",
         "kind": "blend_report",
+        "edge_a": result.edges[0],
+        "edge_b": result.edges[1],
         "continuity": list(result.continuity),
         "method": result.method,
         "options": {name: value for name, value in asdict(result.options).items() if value is not None},

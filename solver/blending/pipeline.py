@@ -128,6 +128,7 @@ def blend(
     )
     result = BlendResult(
         surface=surface,
+        edges=(a.edge, b.edge),
         continuity=chosen.continuities,
         options=chosen,
         candidates=candidates,

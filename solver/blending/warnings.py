@@ -128,7 +128,7 @@ def remedy(
         return f"the origin is {distance:.0e} times the size of the blend away: work in coordinates nearer to it"
     if bare:
         return f"the base has {bare[0]}: choose another edge, or a base that is regular there"
-    across, end = base.edge
+    across, end = base.side
     breaks = base.surface.breakpoints["uv".index(across)]
     width = float(np.diff(breaks)[0 if end == "0" else -1])
     if width < _NARROW * float(breaks[-1] - breaks[0]):

@@ -135,7 +135,8 @@ def trimmed_edge_warning(spec: str | Path, edge: str, loaded: LoadedSurface) -> 
     ----------
     spec : str
         What the user calls the surface.
-    edge : {"u0", "u1", "v0", "v1"}
+    edge : str
+        As `Base` takes it.
     loaded : LoadedSurface
         As `read_surfaces` returned it.
 

@@ -133,7 +133,7 @@ def corresponding_points(a: Base, b: Base, matched: Correspondence, s: FloatArra
     contact = measure_contact(a, b, correspondence=matched)
     if contact.corresponds == "affine":
         return corresponding(a, b, matched, s)
-    curves = tuple(edge_curves(base.surface, base.edge, 1, local_origin(a.surface, b.surface)) for base in (a, b))
+    curves = tuple(edge_curves(base.surface, base.side, 1, local_origin(a.surface, b.surface)) for base in (a, b))
     pairs = foot_pairs(a, b, matched, (curves[0], curves[1]), 2 * max(contact.gap, contact.allowed["gap"]))
     assert pairs is not None
     return pairs.along_b(s)
@@ -210,7 +210,7 @@ class _Edges:
 
     def __init__(self, a: Base, b: Base, matched: Correspondence, origin: FloatArray, order: int) -> None:
         self.a, self.b, self.matched, self.order = a, b, matched, order
-        self.curves_a, self.curves_b = (edge_curves(base.surface, base.edge, order, origin) for base in (a, b))
+        self.curves_a, self.curves_b = (edge_curves(base.surface, base.side, order, origin) for base in (a, b))
         self.noises = [edge_noises(base, origin, order) for base in (a, b)]
 
     @property
@@ -244,13 +244,13 @@ class _Edges:
         return np.stack([found[kind] for kind in kinds])
 
     def _sides(self, s_a: FloatArray, s_b: FloatArray, order: int) -> tuple[_Side, _Side]:
-        side_a = _Side(self.curves_a, self.a.edge, s_a, 1.0, order)
-        return side_a, _Side(self.curves_b, self.b.edge, s_b, 1.0 if self.matched.flipped else -1.0, order)
+        side_a = _Side(self.curves_a, self.a.side, s_a, 1.0, order)
+        return side_a, _Side(self.curves_b, self.b.side, s_b, 1.0 if self.matched.flipped else -1.0, order)
 
     @property
     def _sign(self) -> float:
         """One side is left backwards: odd derivatives change sign unless the edges are at opposite ends."""
-        return -1.0 if self.a.edge[1] == self.b.edge[1] else 1.0
+        return -1.0 if self.a.side[1] == self.b.side[1] else 1.0
 
     def _part(self, s_a: FloatArray, s_b: FloatArray, pace_at: Pace | None) -> _Samples:
         side_a, side_b = self._sides(s_a, s_b, self.order)
