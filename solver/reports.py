@@ -179,6 +179,7 @@ def print_result(result: BlendResult) -> None:
         return f"{value:.6g}{low_high}"
 
     rows = [
+        ("edges", f"{result.edges[0]} of A, {result.edges[1]} of B"),
         ("continuity", " and ".join(result.continuity)),
         ("method", result.method),
         ("layout", f"degree {result.options.degree_u} across, {result.options.middle_curves} middle curve(s)"),

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
-from typing import Literal, NoReturn, TypeAlias, TypeVar, cast
+from typing import Any, Literal, NoReturn, TypeAlias, TypeVar, cast
 
 from semispline.solver.arrays import require
 from semispline.solver.errors import EdgeError, InputError
@@ -18,10 +18,10 @@ from semispline.solver.splines.knots import MERGE_TOLERANCE
 from semispline.solver.splines.operations import restrict_u, restrict_v
 from semispline.solver.splines.refinement import snapped
 from semispline.solver.splines.seam import move_seam
-from semispline.solver.splines.surfaces import BSplineSurface, SemiStructuredSurface
+from semispline.solver.splines.surfaces import BSplineSurface, SemiStructuredSurface, Surface
 
 NaturalEdge: TypeAlias = Literal["u0", "u1", "v0", "v1"]
-S = TypeVar("S", BSplineSurface, SemiStructuredSurface)
+S = TypeVar("S", bound=Surface)
 
 _NUMBER = r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
 _WORD = re.compile(
@@ -208,8 +208,8 @@ def _part(surface: S, name: EdgeName) -> S:
     least = MERGE_TOLERANCE * (end - start)
     if high - low <= least:
         raise EdgeError(f"edge {name}: the part is {high - low:.3g} long, expected more than {least:.3g} of {d}")
-    if start <= low < end < high:
-        surface = _across_the_seam(surface, name, low, high)
+    if start < low < end < high:
+        surface = _across_the_seam(surface, name, low)
         start, end = surface.domain["uv".index(d)]
         low, high = start, _snapped(surface, d, name.part[1])
     if not (start <= low and high <= end):
@@ -220,29 +220,24 @@ def _part(surface: S, name: EdgeName) -> S:
     return _restricted(surface, d, low, high)
 
 
-def _across_the_seam(surface: S, name: EdgeName, low: float, high: float) -> S:
+def _across_the_seam(surface: S, name: EdgeName, low: float) -> S:
     """Return a closed surface that begins where the part does."""
     d = name.along
     start, end = surface.domain["uv".index(d)]
-    beyond = f"edge {name}: {_shown(name.part[1] if name.part else high)} lies beyond the range of {d}, "
-    beyond += f"[{_shown(start)},{_shown(end)}]"
-    if high - low > (end - start) * (1 + MERGE_TOLERANCE):
-        raise EdgeError(f"{beyond}, and more than once round: the part may be {_shown(end - start)} long at most")
-    if low == start:
-        # A part as long as the range is the range.
-        return surface
     try:
-        return move_seam(surface, u=low if d == "u" else None, v=low if d == "v" else None)
+        return cast(S, move_seam(cast(Any, surface), **{d: low}))
     except InputError as error:
         raise EdgeError(
-            f"{beyond}, and cannot go on across the seam ({error}); end the part at {_shown(end)}"
+            f"edge {name}: beyond the range of {d}, [{_shown(start)},{_shown(end)}], there is no way across the seam "
+            f"({error}); end the part at {_shown(end)}"
         ) from None
 
 
 def _restricted(surface: S, direction: str, low: float, high: float) -> S:
     if (low, high) == surface.domain["uv".index(direction)]:
         return surface
-    return restrict_u(surface, low, high) if direction == "u" else restrict_v(surface, low, high)
+    restrict = restrict_u if direction == "u" else restrict_v
+    return cast(S, restrict(cast(Any, surface), low, high))
 
 
 def _snapped(surface: S, direction: str, value: float) -> float:
