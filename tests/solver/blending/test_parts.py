@@ -139,8 +139,8 @@ WORDS = ("u=0.2+[0.1,0.7]", "u0[0.25,0.75]")
 NAMED = ["--edge-a", WORDS[0], "--edge-b", WORDS[1]]
 
 
-def test_the_command_line_takes_the_words(files):
-    a, b = files
+@pytest.mark.usefixtures("files")
+def test_the_command_line_takes_the_words():
     run = CliRunner().invoke(app, ["blend", "a.json", "b.json", *NAMED, "-o", "c.json", "--report", "r.json"])
     assert run.exit_code == 0, run.output
     report = load_json("r.json")
@@ -171,9 +171,9 @@ def test_problem_files_and_generated_c_take_the_words(files):
 
 
 def test_a_range_whose_end_is_not_its_start_and_its_length():
-    """-0.9 + (1.3 + 0.9) is more than 1.3 by a rounding, and outside of the curve."""
-    start, end = RANGE
+    """What is rounded beyond the end is outside of the curve."""
+    start, end = -0.2, 1.9
     assert start + (end - start) > end
     a, b = facing_pair(np.random.default_rng(1), edges=("u0", "u0"))
-    surface = map_domain(a.surface, v_range=RANGE)
-    assert blend(Base(surface, "u0"), b).surface.domain[1] == RANGE
+    surface = map_domain(a.surface, v_range=(start, end))
+    assert blend(Base(surface, "u0"), b).surface.domain[1] == (start, end)
