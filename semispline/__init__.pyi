@@ -105,5 +105,9 @@ from .solver.splines.simplification import remove_knots as remove_knots
 from .solver.splines.surfaces import BSplineCurve as BSplineCurve
 from .solver.splines.surfaces import BSplineSurface as BSplineSurface
 from .solver.splines.surfaces import SemiStructuredSurface as SemiStructuredSurface
+from .solver.topology.place import Place as Place
+from .solver.topology.place import Places as Places
+from .solver.topology.place import PlaceSide as PlaceSide
+from .solver.topology.places import find_places as find_places
 
 __version__: str

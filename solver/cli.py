@@ -136,6 +136,10 @@ def check_command(
 @reports_errors
 def list_command(
     file: Annotated[str, typer.Argument(metavar="FILE", help="A CAD file: STEP, IGES, BREP or 3dm.")],
+    pairs: Annotated[
+        bool,
+        typer.Option("--pairs", help="Propose places to blend instead: fillets, gaps, chamfers, sharp edges."),
+    ] = False,
     json_file: Annotated[
         str | None, typer.Option("--json", metavar="FILE", help="Write the list; - is standard output.")
     ] = None,
@@ -144,6 +148,9 @@ def list_command(
     from semispline.solver.io import check_outputs, list_file
 
     check_outputs({"--json": _file(json_file)}, [file])
+    if pairs:
+        _list_pairs(file, json_file)
+        return
     with _progress("reading"):
         entries, others = list_file(file)
     if json_file is not None:
@@ -151,6 +158,18 @@ def list_command(
         _write_json(json_file, {"format": "semispline/1", "kind": "surface_list", **record})
     if json_file != "-":
         print_entries(entries, others)
+
+
+def _list_pairs(file: str, json_file: str | None) -> None:
+    from semispline.solver.topology import find_places, place_lines, places_record
+
+    with _progress("reading"):
+        places = find_places(file)
+    if json_file is not None:
+        _write_json(json_file, {"format": "semispline/1", "kind": "place_list", **places_record(places)})
+    if json_file != "-":
+        for line in place_lines(places):
+            typer.echo(line)
 
 
 @app.command("show")

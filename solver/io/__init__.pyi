@@ -2,12 +2,14 @@ from .disk import atomic_path as atomic_path
 from .disk import check_folder as check_folder
 from .disk import check_output as check_output
 from .disk import check_outputs as check_outputs
+from .disk import require_file as require_file
 from .disk import shown as shown
 from .disk import write_text as write_text
 from .disk import write_texts as write_texts
 from .faces import SurfaceEntry as SurfaceEntry
 from .faces import counted as counted
 from .faces import without_surfaces as without_surfaces
+from .foreign import read_apart as read_apart
 from .json_files import StoredProblem as StoredProblem
 from .json_files import read_problem as read_problem
 from .json_files import write_problem as write_problem
@@ -15,8 +17,10 @@ from .json_text import to_text as to_text
 from .meshes import pyvista_module as pyvista_module
 from .meshes import sampled as sampled
 from .meshes import triangle_mesh as triangle_mesh
+from .occ import read_occ as read_occ
 from .occ_kernel import require_kernel as require_kernel
 from .occ_writing import occ_surface as occ_surface
+from .surface_files import OCC_SUFFIXES as OCC_SUFFIXES
 from .surface_files import approximation_warning as approximation_warning
 from .surface_files import check_surface_output as check_surface_output
 from .surface_files import face_warnings as face_warnings

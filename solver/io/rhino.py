@@ -126,7 +126,7 @@ def open_3dm(path: str | Path, bounded: Collection[int] = ()) -> Model:
     """
     require_file(path)
     _library(path)
-    return _model(path, read_apart(path, "rhino_worker", "openNURBS"))
+    return _model(path, read_apart(path, "semispline.solver.io.rhino_worker", "openNURBS"))
 
 
 def read_3dm(path: str | Path) -> Model:

@@ -20,8 +20,8 @@ from semispline.solver.io.face_boundary import FaceBoundary, edge_offset
 from semispline.solver.io.faces import MILLIMETRES, Face, Model, SurfaceEntry, describe, picked, without_equal_weights
 from semispline.solver.splines import BSplineSurface, SemiStructuredSurface, Surface
 
-_OCC = (".step", ".stp", ".iges", ".igs", ".brep", ".brp")
-_READABLE = (".json", *_OCC, ".3dm")
+OCC_SUFFIXES = (".step", ".stp", ".iges", ".igs", ".brep", ".brp")
+_READABLE = (".json", *OCC_SUFFIXES, ".3dm")
 _MESHES = (".obj", ".stl", ".ply", ".gltf", ".glb")
 _WRITABLE = (*_READABLE, *_MESHES)
 # Formats that name a unit get this one for a surface whose own is not known.
@@ -398,7 +398,7 @@ def _reader(suffix: str) -> Callable[[str | Path, Sequence[int]], Model] | None:
         from semispline.solver.io.rhino import open_3dm
 
         return open_3dm
-    if suffix in _OCC:
+    if suffix in OCC_SUFFIXES:
         from semispline.solver.io.occ import open_occ
 
         return open_occ
@@ -426,7 +426,7 @@ def _check_written(written: Path, surface: BSplineSurface, where: str) -> None:
 
     try:
         # What this process wrote, it can read without a process of its own.
-        read = read_occ if written.suffix.lower() in _OCC else read_3dm
+        read = read_occ if written.suffix.lower() in OCC_SUFFIXES else read_3dm
         found = picked(read(written), None).surface()
         same = isinstance(found, BSplineSurface) and _agree(found, surface)
     except FileError:
