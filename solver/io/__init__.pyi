@@ -19,6 +19,8 @@ from .meshes import sampled as sampled
 from .meshes import triangle_mesh as triangle_mesh
 from .occ import read_occ as read_occ
 from .occ_kernel import require_kernel as require_kernel
+from .occ_parameters import ParameterKind as ParameterKind
+from .occ_parameters import converted_parameters as converted_parameters
 from .occ_writing import occ_surface as occ_surface
 from .surface_files import OCC_SUFFIXES as OCC_SUFFIXES
 from .surface_files import approximation_warning as approximation_warning

@@ -55,7 +55,7 @@ def converted_parameters(kind: ParameterKind, breaks: FloatArray, values: FloatA
     values : ndarray, shape (K,)
         Within the breaks, but for rounding.
 
-    Source: an arc from a to b, of half opening h = (b - a) / 2, is the rational curve of degree 2 with weights 1, cos h,
+    Source: an arc from a to b, of half opening h = (b - a) / 2, is a rational curve of degree 2 with weights 1, cos h,
     1; at angle a + t with x = tan(t / 2) its parameter from 0 to 1 is x / (sin h + x (1 - cos h)). On a hyperbola all
     of these functions are the hyperbolic ones.
 
