@@ -27,7 +27,9 @@ def rank_of_the_right_gap(graph: EdgeGraph, between: Between) -> int | None:
     relations = relate(left)
     fillets: Fillets = find_fillets(left, relations)
     gaps = find_gaps(left, relations, fillet_ends(left, relations, fillets.accepted.values()))
-    wanted = [set(graph.uses.edge[list(side.uses)].tolist()) for side in (between.a, between.b)]
+    # Where faces are not sewn, the edge of the face beyond is another.
+    partner = relate(graph).partner
+    wanted = [set(graph.uses.edge[partner[list(side.uses)]].tolist()) for side in (between.a, between.b)]
     for rank, gap in enumerate(gaps, start=1):
         found = [set(left.uses.edge[list(side.uses)].tolist()) for side in (gap.a, gap.b)]
         if any(wanted[0] & one and wanted[1] & two for one, two in (found, found[::-1])):

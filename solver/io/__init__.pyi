@@ -6,6 +6,7 @@ from .disk import require_file as require_file
 from .disk import shown as shown
 from .disk import write_text as write_text
 from .disk import write_texts as write_texts
+from .faces import Model as Model
 from .faces import SurfaceEntry as SurfaceEntry
 from .faces import counted as counted
 from .faces import without_surfaces as without_surfaces
@@ -22,6 +23,9 @@ from .occ_kernel import require_kernel as require_kernel
 from .occ_parameters import ParameterKind as ParameterKind
 from .occ_parameters import converted_parameters as converted_parameters
 from .occ_writing import occ_surface as occ_surface
+from .rhino import RhinoFace as RhinoFace
+from .rhino import curve_evaluator as curve_evaluator
+from .rhino import open_3dm as open_3dm
 from .surface_files import OCC_SUFFIXES as OCC_SUFFIXES
 from .surface_files import approximation_warning as approximation_warning
 from .surface_files import check_surface_output as check_surface_output

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from math import prod
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from semispline.solver.topology.between import Between
 from semispline.solver.topology.chamfers import Chamfer, chamfer_parts
@@ -103,17 +104,17 @@ def clearance(graph: EdgeGraph, *rows: int) -> float:
 
     Samples are compared: it is an estimate.
     """
-    uses = graph.uses
-    found = []
+    uses, near = graph.uses, 1e-6 * graph.size
+    found = [float(np.linalg.norm(np.diff(uses.points[rows[0]], axis=0), axis=1).sum())]
     for row in rows:
-        ends = uses.points[row, [0, -1]]
-        near = 1e-6 * graph.size
-        for other in range(*uses.of_face(int(uses.face[row])).indices(len(uses))):
-            touches = np.linalg.norm(uses.points[other, [0, -1]][:, None] - ends, axis=2).min() <= near
-            if uses.edge[other] != uses.edge[row] and not touches and uses.pcurve[other] != "none":
-                found.append(np.linalg.norm(uses.points[other][:, None] - uses.points[row], axis=2).min())
-    length = float(np.linalg.norm(np.diff(uses.points[rows[0]], axis=0), axis=1).sum())
-    return min([float(x) for x in found], default=length)
+        at = uses.of_face(int(uses.face[row]))
+        points = uses.points[at]
+        ends = points[:, [0, -1], None] - uses.points[row, [0, -1]]
+        touches = np.einsum("kabd,kabd->kab", ends, ends).min(axis=(1, 2)) <= near**2
+        free = (uses.edge[at] != uses.edge[row]) & ~touches & (uses.pcurve[at] != "none")
+        if free.any():
+            found.append(float(cKDTree(points[free].reshape(-1, 3)).query(uses.points[row])[0].min()))
+    return min(found[1:], default=found[0])
 
 
 def _between_entry(

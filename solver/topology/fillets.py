@@ -24,7 +24,7 @@ ONE_HULL = "a patch of one smooth hull: no jump of curvature at a contact"
 TOO_SHORT = "its sides are shorter than the way between them"
 UNEVEN = "runs out: the width varies from {even:.2f} to 1"
 CORNER_PATCH = "both contacts are ends of fillets: a corner or a link between them"
-WALL = "a wall between two narrower fillets"
+WALL = "a wall between two narrower rounds"
 MANY_BASES = "{count} faces along one side, not smooth into each other: no single base"
 PINCHED = "its rims meet in a point: three-sided"
 NOT_SMOOTH = "no two opposite sides are smooth into their neighbours"
@@ -37,7 +37,7 @@ SHORT_NAMES = {
     TOO_SHORT: "shorter than wide",
     UNEVEN: "running out",
     CORNER_PATCH: "corners and links",
-    WALL: "walls between fillets",
+    WALL: "walls between rounds",
     MANY_BASES: "no single base",
     PINCHED: "rims meet in a point",
     NOT_SMOOTH: "no smooth opposite sides",
@@ -109,8 +109,9 @@ def find_fillets(graph: EdgeGraph, relations: Relations) -> Fillets:
         if on_ends[face] == 2 and not between.a.closed:
             refused[face] = Refusal(CORNER_PATCH, {})
     left = {face: between for face, between in candidates.items() if face not in refused}
+    rounds = {**round_ends, **left}
     for face, between in left.items():
-        if refusal := _beyond(graph, relations, between, left):
+        if refusal := _beyond(graph, relations, between, rounds):
             refused[face] = refusal
     accepted = {face: between for face, between in left.items() if face not in refused}
     return Fillets(accepted, on_ends, round_ends, refused)
@@ -242,13 +243,11 @@ def _contacts_on(ends: Flags, relations: Relations, between: Between) -> int:
     return sum(share(ends, relations.length, side) >= _END_SHARE for side in (between.a, between.b))
 
 
-def _beyond(
-    graph: EdgeGraph, relations: Relations, between: Between, accepted: Mapping[int, Between]
-) -> Refusal | None:
+def _beyond(graph: EdgeGraph, relations: Relations, between: Between, rounds: Mapping[int, Between]) -> Refusal | None:
     """Return what speaks against a fillet once its neighbours are known."""
     bases = [bases_of(graph, relations, side) for side in (between.a, between.b)]
     longest = [next(iter(found), NONE) for found in bases]
-    if all(base in accepted and accepted[base].width < between.width for base in longest):
+    if all(base in rounds and rounds[base].width < between.width for base in longest):
         return Refusal(WALL, {})
     counts = [_not_smooth_into_each_other(graph, relations, list(found)) for found in bases]
     if max(counts) > _MOST_BASES:

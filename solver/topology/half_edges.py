@@ -6,6 +6,7 @@ a whole. Rows are called *uses* here: the edge between two faces has two of them
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -79,12 +80,12 @@ class Uses:
     parameters : ndarray, shape (U, 2)
         Range of the parameter of the edge.
     tolerance : ndarray, shape (U,)
-        How far the edge in space may be from the face, as the file says.
+        How far the edge in space may be from the face, as the file says; as was found where it does not say.
     uv, uv_slope : ndarray, shape (U, N, 2)
         The curve in the parameters of the surface, and its derivative by the parameter of the edge.
     pcurve : ndarray of str, shape (U,)
-        Kind of that curve: "line", "B-spline", "Bezier", "circle", ..; "none" where it cannot be evaluated: then all
-        samples are NaN.
+        Kind of that curve: "line", "B-spline", "Bezier", "circle", ..; "projected" where the file shows none and
+        samples of the edge were projected; "none" where there is nothing to evaluate: then all samples are NaN.
     box : ndarray, shape (U, 2, 2)
         Least and greatest (u, v) of the curve: of its poles, which hold all of it, where `proven`, else of its
         samples.
@@ -177,6 +178,45 @@ class EdgeGraph:
         """Largest extent of the edges."""
         points = self.uses.points[self.uses.pcurve != "none"]
         return float(np.ptp(points.reshape(-1, 3), axis=0).max()) if len(points) else 0.0
+
+
+def uses_of(faces: Faces, rows: Sequence[tuple[Any, ...]], records: Sequence[tuple[Any, ...]]) -> Uses:
+    """Return the table of uses, with all that follows from what was read.
+
+    Parameters
+    ----------
+    faces : Faces
+    rows : sequence of tuple
+        Of each use, face by face in walking order: face, wire, number, edge, reversed, seam, degenerate.
+    records : sequence of tuple
+        Of each: tolerance; kind of its curve in the parameters; whether its box is proven; range of the parameter; box
+        as (u, v, u, v); of each sample (u, v, u', v'); of each sample S, S_u, S_v, S_uu, S_vv, S_uv.
+    """
+    numbers = np.array([row[:4] for row in rows], dtype=np.int64).reshape(-1, 4)
+    flags = np.array([row[4:] for row in rows], dtype=bool).reshape(-1, 3)
+    face, wire, number, edge = numbers.T
+    turned, seam, degenerate = flags.T
+    tolerance, kind, proven, parameters, box, uv, jet = zip(*records, strict=True) if records else [()] * 7
+    plane = np.array(uv, dtype=np.float64).reshape(-1, SAMPLES, 4)
+    surface = np.array(jet, dtype=np.float64).reshape(-1, SAMPLES, 6, 3)
+    return Uses(
+        face=face,
+        wire=wire,
+        number=number,
+        edge=edge,
+        reversed=turned,
+        seam=seam,
+        degenerate=degenerate,
+        parameters=np.array(parameters, dtype=np.float64).reshape(-1, 2),
+        tolerance=np.array(tolerance, dtype=np.float64),
+        uv=plane[..., :2],
+        uv_slope=plane[..., 2:],
+        pcurve=np.array(kind, dtype="<U9"),
+        box=np.array(box, dtype=np.float64).reshape(-1, 2, 2),
+        proven=np.array(proven, dtype=bool),
+        **shape_of(faces.reversed[face], turned, plane[..., 2:], surface),
+        **neighbours(face, wire, edge, degenerate, faces.same),
+    )
 
 
 def shape_of(reversed_face: Flags, reversed_edge: Flags, uv_slope: FloatArray, jet: FloatArray) -> dict[str, Any]:

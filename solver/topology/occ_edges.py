@@ -7,9 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from semispline.solver.arrays import FloatArray
 from semispline.solver.io import ParameterKind
-from semispline.solver.topology.half_edges import SAMPLES, Faces, Uses, neighbours, shape_of
+from semispline.solver.topology.half_edges import SAMPLES, Faces, Uses, uses_of
 
 _PCURVES = {
     "GeomAbs_Line": "line",
@@ -24,7 +23,7 @@ _PCURVES = {
 }
 # A range that lacks less than this fraction of the spline is all of it.
 _WHOLE = 1e-9
-_FRACTIONS = np.linspace(0.0, 1.0, SAMPLES)
+_FRACTIONS = tuple(k / (SAMPLES - 1) for k in range(SAMPLES))
 
 
 def wires(face: Any) -> Iterator[tuple[list[Any], bool]]:
@@ -94,35 +93,7 @@ def edge_tables(faces: Sequence[Any]) -> tuple[Faces, Uses]:
         same=_first([row[5] for row in of_faces]),
         walked=np.array(whole, dtype=bool),
     )
-    return table, _uses(table, rows, records)
-
-
-def _uses(faces: Faces, rows: list[tuple[Any, ...]], records: list[tuple[Any, ...]]) -> Uses:
-    numbers = np.array([row[:4] for row in rows], dtype=np.int64).reshape(-1, 4)
-    flags = np.array([row[4:] for row in rows], dtype=bool).reshape(-1, 3)
-    face, wire, number, edge = numbers.T
-    turned, seam, degenerate = flags.T
-    tolerance, kind, proven, parameters, box, uv, jet = zip(*records, strict=True) if records else [()] * 7
-    plane = np.array(uv, dtype=np.float64).reshape(-1, SAMPLES, 4)
-    surface = np.array(jet, dtype=np.float64).reshape(-1, SAMPLES, 6, 3)
-    return Uses(
-        face=face,
-        wire=wire,
-        number=number,
-        edge=edge,
-        reversed=turned,
-        seam=seam,
-        degenerate=degenerate,
-        parameters=np.array(parameters, dtype=np.float64).reshape(-1, 2),
-        tolerance=np.array(tolerance, dtype=np.float64),
-        uv=plane[..., :2],
-        uv_slope=plane[..., 2:],
-        pcurve=np.array(kind, dtype="<U9"),
-        box=np.array(box, dtype=np.float64).reshape(-1, 2, 2),
-        proven=np.array(proven, dtype=bool),
-        **shape_of(faces.reversed[face], turned, plane[..., 2:], surface),
-        **neighbours(face, wire, edge, degenerate, faces.same),
-    )
+    return table, uses_of(table, rows, records)
 
 
 class _Sampler:
@@ -141,6 +112,7 @@ class _Sampler:
             self.surface = None
         self.at, self.slope = gp_Pnt2d(), gp_Vec2d()
         self.jet = gp_Pnt(), *(gp_Vec() for _ in range(5))
+        self.read_jet = [x.Coord for x in self.jet]
 
     def record(self, edge: Any) -> tuple[str, bool, tuple[float, float], Any, Any, Any]:
         """Return kind of the pcurve, whether its box is proven, parameters, box, uv with slopes, jet of the surface."""
@@ -148,31 +120,34 @@ class _Sampler:
             return self._record(edge)
         except Exception:
             # Each failure of the kernel has a class of its own: no curve, or one that it cannot evaluate.
-            nothing = np.full(SAMPLES, np.nan)
-            return "none", False, (np.nan, np.nan), np.full((2, 2), np.nan), [nothing] * 4, [nothing] * 18
+            return "none", False, (np.nan, np.nan), [np.nan] * 4, [np.nan] * (4 * SAMPLES), [np.nan] * (18 * SAMPLES)
 
     def _record(self, edge: Any) -> tuple[str, bool, tuple[float, float], Any, Any, Any]:
         from OCP.BRepAdaptor import BRepAdaptor_Curve2d
 
         curve = BRepAdaptor_Curve2d(edge, self.face)
         first, last = curve.FirstParameter(), curve.LastParameter()
-        at, slope, jet, surface = self.at, self.slope, self.jet, self.surface
-        plane, values = [], []
-        for t in (first + (last - first) * _FRACTIONS).tolist():
-            curve.D1(t, at, slope)
-            u, v = at.X(), at.Y()
-            surface.D2(u, v, *jet)
-            plane.append((u, v, slope.X(), slope.Y()))
-            values.append([(x.X(), x.Y(), x.Z()) for x in jet])
+        at, slope, jet = self.at, self.slope, self.jet
+        curve_at, surface_at = curve.D1, self.surface.D2
+        plane: list[float] = []
+        values: list[float] = []
+        for fraction in _FRACTIONS:
+            curve_at(first + (last - first) * fraction, at, slope)
+            uv = at.Coord()
+            surface_at(*uv, *jet)
+            plane += uv
+            plane += slope.Coord()
+            for read in self.read_jet:
+                values += read()
         kind = _PCURVES[curve.GetType().name]
         poles = _poles(curve, kind, first, last)
-        held = np.array(plane)[:, :2] if poles is None else poles
-        box = [held.min(axis=0), held.max(axis=0)]
+        u, v = (plane[::4], plane[1::4]) if poles is None else zip(*poles, strict=True)
+        box = min(u), min(v), max(u), max(v)
         return kind, poles is not None, (first, last), box, plane, values
 
 
-def _poles(curve: Any, kind: str, first: float, last: float) -> FloatArray | None:
-    """Return points whose hull holds the curve, shape (K, 2); None where it has no such points."""
+def _poles(curve: Any, kind: str, first: float, last: float) -> list[tuple[float, float]] | None:
+    """Return points whose hull holds the curve; None where it has no such points."""
     if kind == "line":
         held = [curve.Value(first), curve.Value(last)]
     elif kind in ("B-spline", "Bezier"):
@@ -184,7 +159,7 @@ def _poles(curve: Any, kind: str, first: float, last: float) -> FloatArray | Non
         held = [spline.Pole(i + 1) for i in range(spline.NbPoles())]
     else:
         return None
-    return np.array([(p.X(), p.Y()) for p in held])
+    return [p.Coord() for p in held]
 
 
 def _ends(face: Any) -> tuple[float, ...]:

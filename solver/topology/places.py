@@ -30,7 +30,7 @@ from semispline.solver.topology.repeats import without_repeats
 
 
 def find_places(path: str | Path) -> Places:
-    """Find where faces of a STEP, IGES or BREP file can be blended.
+    """Find where faces of a STEP, IGES, BREP or 3dm file can be blended.
 
     Parameters
     ----------

@@ -103,6 +103,17 @@ def by_arc_length(points: FloatArray, count: int) -> FloatArray:
     return np.stack([np.interp(at, along, x) for x in points.T], axis=1)
 
 
+def _middles(lines: FloatArray) -> FloatArray:
+    """Return the points at half the length of polylines, shape (K, N, 3); shape (K, 3)."""
+    step = np.linalg.norm(np.diff(lines, axis=1), axis=2)
+    ends = np.cumsum(step, axis=1)
+    half = ends[:, -1:] / 2
+    at = np.argmax(ends >= half, axis=1)
+    rows = np.arange(len(lines))
+    part = 1 - (ends[rows, at] - half[:, 0]) / step[rows, at]
+    return np.asarray(lines[rows, at] + part[:, None] * (lines[rows, at + 1] - lines[rows, at]))
+
+
 def to_polyline(points: FloatArray, line: FloatArray) -> FloatArray:
     """Return distances of points, shape (K, 3), to a polyline, shape (S, 3); shape (K,)."""
     start, step = line[:-1], np.diff(line, axis=0)
@@ -129,7 +140,7 @@ def _matched(uses: Uses, length: FloatArray, size: float) -> Integers:
     rows = np.flatnonzero(uses.naked & (uses.pcurve != "none") & (length > 0))
     if len(rows) < 2:
         return found
-    middle = np.array([by_arc_length(uses.points[row], 3)[1] for row in rows])
+    middle = _middles(uses.points[rows])
     ends = uses.points[rows][:, [0, -1]]
     tree = cKDTree(middle)
     best: dict[int, int] = {}

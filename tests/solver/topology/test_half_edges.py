@@ -175,5 +175,5 @@ def test_the_table_passes_from_one_process_to_another(tmp_path):
 def test_other_formats_are_refused(tmp_path):
     path = tmp_path / "part.obj"
     path.write_text("")
-    with pytest.raises(FileError, match=r"\.obj.*read from one of \.step"):
+    with pytest.raises(FileError, match=r"\.obj.*expected one of \.step"):
         read_edges(path)
