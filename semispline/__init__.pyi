@@ -105,6 +105,11 @@ from .solver.splines.simplification import remove_knots as remove_knots
 from .solver.splines.surfaces import BSplineCurve as BSplineCurve
 from .solver.splines.surfaces import BSplineSurface as BSplineSurface
 from .solver.splines.surfaces import SemiStructuredSurface as SemiStructuredSurface
+from .solver.topology.face_edges import FaceEdge as FaceEdge
+from .solver.topology.face_edges import FaceEdges as FaceEdges
+from .solver.topology.face_edges import ResolvedEdge as ResolvedEdge
+from .solver.topology.face_edges import list_edges as list_edges
+from .solver.topology.face_edges import resolve_edge as resolve_edge
 from .solver.topology.place import Place as Place
 from .solver.topology.place import Places as Places
 from .solver.topology.place import PlaceSide as PlaceSide

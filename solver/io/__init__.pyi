@@ -26,8 +26,8 @@ from .occ_writing import occ_surface as occ_surface
 from .rhino import RhinoFace as RhinoFace
 from .rhino import curve_evaluator as curve_evaluator
 from .rhino import open_3dm as open_3dm
-from .surface_files import LoadedSurface as LoadedSurface
 from .surface_files import OCC_SUFFIXES as OCC_SUFFIXES
+from .surface_files import LoadedSurface as LoadedSurface
 from .surface_files import approximation_warning as approximation_warning
 from .surface_files import check_surface_output as check_surface_output
 from .surface_files import face_warnings as face_warnings

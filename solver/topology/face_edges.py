@@ -1,14 +1,14 @@
-"""The edges of a face as its file has them, named; and the words e3 and near=x,y,z turned into names that `Base` knows."""
+"""The edges of a face as its file has them, named; and e3 and near=x,y,z turned into names that `Base` knows."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from semispline.solver.errors import EdgeError, FileError
-from semispline.solver.io import LoadedSurface, read_surfaces, split_spec
+from semispline.solver.io import LoadedSurface, in_one_unit, read_surfaces, split_spec
 from semispline.solver.splines import Surface, parse_edge
 from semispline.solver.topology.edge_names import EdgeKind, line_tolerance, named_edge
 from semispline.solver.topology.half_edges import NONE, EdgeGraph
@@ -103,8 +103,8 @@ class ResolvedEdge:
     ----------
     spec : str
         "PATH#N": where a point says which face is meant the number is that face's.
-    surface : BSplineSurface or SemiStructuredSurface
-        The whole surface of the face, without its trimming.
+    loaded : LoadedSurface
+        The whole surface of the face, without its trimming; without its boundary where the edge is one of the face's.
     edge : str
     asked : str or None
         The word that was resolved; None where it was a name already.
@@ -115,11 +115,16 @@ class ResolvedEdge:
     """
 
     spec: str
-    surface: Surface
+    loaded: LoadedSurface
     edge: str
     asked: str | None = None
     entry: FaceEdge | None = None
     said: str = ""
+
+    @property
+    def surface(self) -> Surface:
+        """The whole surface."""
+        return self.loaded.surface
 
 
 def is_of_a_face(word: str) -> bool:
@@ -128,7 +133,7 @@ def is_of_a_face(word: str) -> bool:
 
 
 def list_edges(path: str | Path, face: int) -> FaceEdges:
-    """Return the edges of a face of a STEP, IGES, BREP or 3dm file, as `semispline list PATH --edges FACE` numbers them.
+    """Return the edges of a face of a STEP, IGES, BREP or 3dm file, as `semispline list PATH --edges N` numbers them.
 
     Raises
     ------
@@ -201,16 +206,26 @@ def resolve_edges(
         for (path, number), row in zip(picked, rows, strict=True)
     ]
     full = [spec if n is None else f"{path}#{n}" for spec, (path, _), n in zip(specs, picked, faces, strict=True)]
-    loaded = read_surfaces(full)
+    own = _in_own_units(full, [path for path, _ in picked])
     found = []
     for k, (path, _) in enumerate(picked):
-        surface, row, face = loaded[k].surface, rows[k], faces[k]
+        loaded, row, face = own[k], rows[k], faces[k]
         if row is None or face is None:
-            found.append(ResolvedEdge(full[k], surface, str(parse_edge(words[k], names[k]))))
+            found.append(ResolvedEdge(full[k], loaded, str(parse_edge(words[k], names[k]))))
             continue
-        entry = _edges_of(measured[path], face, loaded[k]).edges[int(measured[path].graph.uses.number[row])]
-        found.append(_resolved(full[k], loaded[k], words[k], entry, names[k], said[k]))
-    return found
+        entry = _edges_of(measured[path], face, loaded).edges[int(measured[path].graph.uses.number[row])]
+        found.append(_resolved(full[k], loaded, words[k], entry, names[k], said[k]))
+    same = in_one_unit([one.loaded for one in found])
+    return [replace(one, loaded=loaded) for one, loaded in zip(found, same, strict=True)]
+
+
+def _in_own_units(specs: Sequence[str], paths: Sequence[str]) -> list[LoadedSurface]:
+    """Return the surfaces, each in the unit of its own file, as its edges are."""
+    found: dict[int, LoadedSurface] = {}
+    for path in dict.fromkeys(paths):
+        here = [k for k, other in enumerate(paths) if other == path]
+        found |= dict(zip(here, read_surfaces([specs[k] for k in here]), strict=True))
+    return [found[k] for k in range(len(specs))]
 
 
 def _measured(specs: Sequence[str], words: Sequence[str]) -> dict[str, MeasuredEdges]:
@@ -296,26 +311,23 @@ def _row_of(graph: EdgeGraph, word: str, face: int, name: str) -> int:
     if number >= count:
         known = f"its edges are e0 to e{count - 1}" if count else "it has no edges"
         raise EdgeError(f"{name}: found {word!r}, but face #{face} of {graph.path} has no such edge: {known}")
-    return rows.start + number
+    return int(rows.start) + number
 
 
-def _resolved(
-    spec: str, loaded: LoadedSurface, word: str, entry: FaceEdge, name: str, near: str
-) -> ResolvedEdge:
+def _resolved(spec: str, loaded: LoadedSurface, word: str, entry: FaceEdge, name: str, near: str) -> ResolvedEdge:
     title = f"{name} {word}: {entry.name} of {spec}"
     if entry.edge is None:
         why = {
             "free": "is a free curve, along which no parameter of the surface is constant",
             "point": "is a point",
         }.get(entry.kind, "cannot be told: the edge was not found on the surface")
-        raise EdgeError(
-            f"{title} {why}; `semispline list {split_spec(spec)[0]} --edges {split_spec(spec)[1] or 0}` lists the edges "
-            "of the face"
-        )
+        path, number = split_spec(spec)
+        raise EdgeError(f"{title} {why}; `semispline list {path} --edges {number or 0}` lists the edges of the face")
     if entry.seam and near:
         raise EdgeError(f"{title} is a seam: both its sides are of this face; name one of them, as {entry.edge}")
     said = f"{entry.name} of {spec} is {entry.edge}" + (f" ({near})" if near else "")
-    return ResolvedEdge(spec, loaded.surface, entry.edge, word, entry, said)
+    # It is the face's own: what its surface does elsewhere needs no warning.
+    return ResolvedEdge(spec, replace(loaded, boundary=None), entry.edge, word, entry, said)
 
 
 def _edges_of(measured: MeasuredEdges, face: int, loaded: LoadedSurface) -> FaceEdges:

@@ -70,5 +70,3 @@ def measured_edges(
         {n: answers[f"lengths {n}"] for n in faces if f"lengths {n}" in answers},
         {key: answers[text] for key, text in texts.items()},
     )
-
-

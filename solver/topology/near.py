@@ -44,7 +44,7 @@ def point_of(word: str, name: str = "edge") -> FloatArray:
 
 
 def candidates(graph: EdgeGraph, point: FloatArray, face: int | None = None) -> list[int]:
-    """Return a row of `graph.uses` for each edge that may be the nearest or second to a point, of one face or of all."""
+    """Return a row of `graph.uses` for each edge that may be the nearest to a point or second, of a face or of all."""
     uses = graph.uses
     rows = np.flatnonzero(~uses.degenerate & (uses.pcurve != "none") & ((uses.face == face) | (face is None)))
     if not len(rows):
@@ -91,8 +91,8 @@ def nearest_edge(graph: EdgeGraph, word: str, found: list[tuple[int, float]], wh
     title = f"#{uses.face[row]} {uses.name(row)}"
     if distance > _FAR * length:
         raise EdgeError(
-            f"{word}: the nearest edge of {where}, {title}, is {distance:.3g} {unit} away, more than a twentieth of its "
-            f"length {length:.4g}; give a point on the edge"
+            f"{word}: the nearest edge of {where}, {title}, is {distance:.3g} {unit} away, more than a twentieth of "
+            f"its length {length:.4g}; give a point on the edge"
         )
     tied = [other for other, away in others if away <= distance + _TIE * graph.size]
     if tied:

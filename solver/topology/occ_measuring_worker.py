@@ -25,5 +25,6 @@ def work(path: str, *asked: str) -> tuple[EdgeGraph, dict[str, Any]]:
             face = int(rest[1]) if len(rest) > 1 else None
             answers[question] = distances(model.faces, graph, point_of(f"near={rest[0]}"), face)
         elif int(rest[0]) < len(graph.faces):
-            answers[question] = lengths(model.faces[int(rest[0])].face)
+            item: Any = model.faces[int(rest[0])]
+            answers[question] = lengths(item.face)
     return graph, answers
