@@ -1,4 +1,4 @@
-"""The commands blend, check, list, show and convert; `semispline.papers.cli` mounts them beside its own.
+"""The commands blend, problem, check, list, show and convert; `semispline.papers.cli` mounts them beside its own.
 
 Heavy imports wait inside the functions, so that `--help` answers fast.
 """
@@ -89,6 +89,31 @@ def blend_command(
     print_result(result)
 
 
+@app.command("problem")
+@reports_errors
+@takes_blend_options
+def problem_command(
+    a: SurfaceA,
+    b: SurfaceB,
+    edge_a: EdgeA,
+    edge_b: EdgeB,
+    out: Annotated[str, typer.Option("-o", "--out", metavar="JSON", help="File to write.")],
+    options: BlendOptions,
+) -> None:
+    """Write what blend would be asked as a problem file, which `generate --c` and scripts read; solve nothing."""
+    from semispline.solver.io import StoredProblem, relative_spec, write_problem
+    from semispline.solver.judge import Base
+
+    _check_words(edge_a, edge_b)
+    _check_outputs({"--out": out}, [a, b])
+    ends = _resolved(a, edge_a, b, edge_b)
+    # A name that the surface does not have is refused here.
+    first, second = (Base(end.surface, end.edge).edge for end in ends)
+    specs = [relative_spec(end.spec, out) for end in ends]
+    write_problem(out, StoredProblem(specs[0], first, specs[1], second, options, ends[0].asked, ends[1].asked))
+    _print_resolved(ends)
+
+
 @app.command("check")
 @reports_errors
 def check_command(
@@ -119,14 +144,8 @@ def check_command(
     warnings = face_warnings(*((end.spec, end.edge, end.loaded) for end in ends))
     unit = ends[0].loaded.unit
     if json_file is not None:
-        record: dict[str, Any] = {
-            "a": ends[0].spec,
-            "edge_a": first.edge,
-            "b": ends[1].spec,
-            "edge_b": second.edge,
-            "unit": unit,
-        }
-        record |= _asked(ends) | contact_record(contact)
+        record: dict[str, Any] = {"a": ends[0].spec, "edge_a": first.edge, "b": ends[1].spec, "edge_b": second.edge}
+        record |= {"unit": unit} | _asked(ends) | contact_record(contact)
         record["warnings"] = list(warnings)
         if require is not None:
             record |= {"require": required, "meets": not misses, "misses": misses, "doubts": doubts}

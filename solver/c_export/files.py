@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import tempfile
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -77,6 +78,9 @@ def write_c(folder: str | Path, problem_file: str | Path) -> tuple[list[Path], t
     _require_polynomial(surfaces)
     edges: list[Any] = [stored.edge_a, stored.edge_b]
     named = [edge for base, edge in zip(bases, edges, strict=True) if isinstance(base, str)]
+    # An edge that was asked for as one of the face is its own.
+    own = [asked for base, asked in zip(bases, (stored.asked_a, stored.asked_b), strict=True) if isinstance(base, str)]
+    loaded = [item if asked is None else replace(item, boundary=None) for item, asked in zip(loaded, own, strict=True)]
     warnings = face_warnings(*zip(specs, named, loaded, strict=True), strict=stored.options.strict)
     a, b = (Base(surface, edge) for surface, edge in zip(surfaces, edges, strict=True))
     texts = c_files(state_problem(a, b, stored.options.decided("generated C")))

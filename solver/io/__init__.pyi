@@ -35,5 +35,6 @@ from .surface_files import in_one_unit as in_one_unit
 from .surface_files import list_file as list_file
 from .surface_files import read_all as read_all
 from .surface_files import read_surfaces as read_surfaces
+from .surface_files import relative_spec as relative_spec
 from .surface_files import split_spec as split_spec
 from .surface_files import write_surface as write_surface
