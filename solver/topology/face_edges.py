@@ -359,7 +359,7 @@ def _entries(measured: MeasuredEdges, face: int, rows: Sequence[int], loaded: Lo
             wire=int(uses.wire[row]),
             kind=named.kind,
             edge=None if named.name is None else str(named.name),
-            seam=bool(uses.seam[row]) or uses.twin[row] != NONE,
+            seam=bool(uses.seam[row] or uses.twin[row] != NONE),
             length=0.0 if named.kind == "point" else length,
             neighbour=None if beyond == NONE else int(uses.face[beyond]),
             neighbour_edge=None if beyond == NONE else uses.name(beyond),
