@@ -23,6 +23,8 @@ EdgeKind = Literal["whole", "part", "inner", "free", "point", "not classified"]
 LINE = 1e-6
 # Where the file shows no curves in the parameters: feet of samples are no better.
 PROJECTED_LINE = 1e-4
+# Of the largest derivative along an edge: below that a parameter says nothing of the place.
+_POLE = 1e-6
 
 
 @dataclass(frozen=True)
@@ -97,7 +99,10 @@ class _Curve:
             # A foot on a seam may be found at either side of it.
             for axis in np.flatnonzero(self.closed).tolist():
                 self.uv[:, axis] = np.unwrap(self.uv[:, axis], period=self.end[axis] - self.start[axis])
-            self.low, self.high = self.uv.min(axis=0), self.uv.max(axis=0)
+            # In a pole the foot is anywhere on what is a point there.
+            speeds = np.stack([uses.speed_u[row], uses.speed_v[row]], axis=1)
+            told = np.where(speeds > _POLE * self.speeds, self.uv, np.nan)
+            self.low, self.high = np.nanmin(told, axis=0), np.nanmax(told, axis=0)
         # The way into the face lies to the left of the way of the edge; both are turned over by a reversal.
         turned = bool(uses.reversed[row]) != bool(graph.faces.reversed[face])
         u, v = uses.uv_slope[row].sum(axis=0) * (-1 if turned else 1)

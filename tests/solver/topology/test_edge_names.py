@@ -208,7 +208,7 @@ def bulged(height):
 
 
 def test_poles_decide():
-    """Hull property: a curve whose poles are within the tolerance is a line, and one whose poles are not may be none."""
+    """Hull property: a curve whose poles are within the tolerance is a line; one whose poles are not may be none."""
     size = names(bulged(0.0))[0].size
     assert [x.kind for x in names(bulged(0.8 * LINE * size))[2]] == ["whole"] * 4
     assert sorted(x.kind for x in names(bulged(1.5 * LINE * size))[2])[0] == "free"

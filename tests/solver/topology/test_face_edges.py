@@ -149,8 +149,8 @@ def test_the_list_of_a_rounded_box(tmp_path):
             assert other.length == pytest.approx(edge.length, abs=1e-9)
             assert np.abs(np.subtract(other.start, edge.end)).max() <= 1e-6
     kinds = {face.kind for face in every.values()}
-    assert kinds == {"plane", "cylinder", "torus"} or kinds == {"plane", "cylinder", "torus", "sphere"}
-    # Twelve edges of 90 degrees of radius 3 less 1.5 of the top, or of 3.
+    assert kinds >= {"plane", "cylinder", "torus"}
+    # Quarters of the round corners of the floor, of radius 3, and of the roof, of 3 less 1.5.
     arcs = [e for face in every.values() if face.kind == "plane" for e in face.edges if e.kind == "free"]
     assert {round(edge.length, 9) for edge in arcs} == {round(r * np.pi / 2, 9) for r in (1.5, 3.0)}
 
@@ -178,7 +178,7 @@ def test_what_list_prints(tmp_path, monkeypatch):
     assert (record["kind"], record["face"], record["walked"], len(record["edges"])) == ("cylinder", 0, True, 4)
     rims = [edge for edge in record["edges"] if not edge["seam"]]
     assert [edge["edge"] for edge in rims] in (["v0", "v1"], ["v1", "v0"])
-    assert {edge["length"] for edge in rims} == {pytest.approx(4 * np.pi, rel=1e-9)}
+    assert [edge["length"] for edge in rims] == [pytest.approx(4 * np.pi, rel=1e-9)] * 2
 
 
 @pytest.mark.parametrize(
@@ -252,9 +252,8 @@ def test_two_points_decide_which_face_lies_between(tmp_path):
     """An upright round of a box: its straight sides belong to it and to the walls."""
     shape = rounded_box(top=1.0)
     path = written(shape, tmp_path / "box.brep")
-    round_ = next(
-        face for face in listed(path).values() if face.kind == "cylinder" and any(e.length > 15 for e in face.edges)
-    )
+    rounds = (face for face in listed(path).values() if face.kind == "cylinder")
+    round_ = next(face for face in rounds if any(edge.length > 15 for edge in face.edges))
     sides = [edge for edge in round_.edges if edge.length > 15]
     words = ["near=" + ",".join(map(str, edge.middle)) for edge in sides]
     found = resolve_edges([(str(path), word) for word in words])
@@ -281,7 +280,7 @@ def test_edges_that_lie_on_each_other_are_a_tie(tmp_path):
     shift = gp_Trsf()
     shift.SetTranslation(gp_Vec(2.0, 0.0, 0.0))
     path = written(compound([box, moved(box, shift)]), tmp_path / "two.brep")
-    with pytest.raises(EdgeError, match="2 edges of .* are equally near, 0"):
+    with pytest.raises(EdgeError, match=r"2 edges of .* are equally near, 0"):
         resolve_edge(path, "near=2,0,2.5")
     middles = {(2.0, 0.0, 2.5), (2.0, 3.0, 2.5)}
     face = next(n for n, found in listed(path).items() if {edge.middle for edge in found.edges} >= middles)
