@@ -30,7 +30,7 @@ from OCP.gp import gp_Ax1, gp_Ax2, gp_Ax2d, gp_Ax3, gp_Dir, gp_Dir2d, gp_Pnt, gp
 from OCP.TopoDS import TopoDS
 
 from helpers.bases import patch, ring
-from helpers.parts import graph_of
+from helpers.parts import graph_of, polygon
 from helpers.sweeps import examples
 from semispline import BSplineSurface, cut_to_edge, map_domain, parse_edge
 from semispline.solver.io.occ import OccFace, _faces
@@ -54,18 +54,6 @@ SURFACES = {
     "torus": (Geom_ToroidalSurface(PLACE, 5.0, 2.0), (-1.0, 5.2), (1.0, 7.2)),
     "revolution": (Geom_SurfaceOfRevolution(MERIDIAN, UPRIGHT), (0.1, 6.0), (0.5, 6.5)),
 }
-
-
-def polygon(geometry, corners):
-    """A face bounded by straight lines in the parameters, anticlockwise, of a length of 1 each in their own."""
-    wire = BRepBuilderAPI_MakeWire()
-    for a, b in zip(corners, [*corners[1:], corners[0]], strict=True):
-        step = b[0] - a[0], b[1] - a[1]
-        line = Geom2d_Line(gp_Pnt2d(*a), gp_Dir2d(*step))
-        edge = BRepBuilderAPI_MakeEdge(line, geometry, 0.0, math.hypot(*step)).Edge()
-        BRepLib.BuildCurves3d_s(edge)
-        wire.Add(edge)
-    return BRepBuilderAPI_MakeFace(geometry, wire.Wire()).Face()
 
 
 def names(face):

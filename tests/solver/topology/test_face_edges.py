@@ -10,13 +10,13 @@ from OCP.gp import gp_Trsf, gp_Vec
 from OCP.STEPControl import STEPControl_StepModelType, STEPControl_Writer
 from typer.testing import CliRunner
 
-from helpers.parts import compound, moved, rounded_box, unsewn, without, written
+from helpers.parts import compound, moved, polygon, rounded_box, unsewn, without, written
 from semispline import Base, BSplineSurface, EdgeError, FileError, blend, list_edges, resolve_edge, write_surface
 from semispline.solver.cli import app
 from semispline.solver.io.json_files import read_problem
 from semispline.solver.io.occ import _faces, read_occ
 from semispline.solver.io.occ_writing import occ_surface
-from semispline.solver.io.surface_files import LoadedSurface
+from semispline.solver.io.surface_files import LoadedSurface, face_warnings, read_surfaces
 from semispline.solver.topology.face_edges import _edges_of, resolve_edges
 from semispline.solver.topology.measuring import measured_edges
 from semispline.solver.topology.near import point_of
@@ -289,3 +289,17 @@ def test_edges_that_lie_on_each_other_are_a_tie(tmp_path):
 
 def test_points_are_numbers():
     assert point_of("near=1,-2.5,1e-3").tolist() == [1.0, -2.5, 1e-3]
+
+
+def test_a_small_edge_of_a_large_model_is_the_faces_own(tmp_path):
+    """Within the tolerance of lines, which goes by the model, but not within those of the edge."""
+    geometry = occ_surface(sheet())
+    tilted = polygon(geometry, [(0.0, 0.0), (0.7, 0.0), (0.7 + 0.002 / 40, 1.0), (0.0, 1.0)])
+    path = written(compound([tilted, rectangle(sheet(start=4000.0), 0.0, 1.0, 0.0, 1.0)]), tmp_path / "two.brep")
+    name = next(edge.name for edge in list_edges(path, 0).edges if edge.kind == "inner")
+    found = resolve_edge(f"{path}#0", name)
+    assert found.entry.off == pytest.approx(0.001, rel=1e-6)
+    assert face_warnings((found.spec, found.edge, found.loaded)) == ()
+    # The same line, asked for as a line of the surface, is told to be off.
+    (loaded,) = read_surfaces([f"{path}#0"])
+    assert "lies outside of the face" in face_warnings((found.spec, found.edge, loaded))[0]
