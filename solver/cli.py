@@ -27,7 +27,7 @@ from semispline.solver.reports import (
 )
 
 if TYPE_CHECKING:
-    from semispline.solver.judge import Contact
+    from semispline.solver.judge import Base, Contact
     from semispline.solver.topology import ResolvedEdge
 
 app = typer.Typer(no_args_is_help=True, add_completion=False, pretty_exceptions_enable=False)
@@ -140,7 +140,7 @@ def check_command(
         first, second = (Base(end.surface, end.edge) for end in ends)
         contact = measure_contact(first, second, order=4)
     misses = _misses(contact, required)
-    doubts = _doubts(contact, required, misses)
+    doubts = _doubts(first, second, contact, required, misses)
     warnings = face_warnings(*((end.spec, end.edge, end.loaded) for end in ends))
     unit = ends[0].loaded.unit
     if json_file is not None:
@@ -335,7 +335,7 @@ def _misses(contact: Contact, require: Continuity | None) -> list[str]:
     ]
 
 
-def _doubts(contact: Contact, require: Continuity | None, misses: list[str]) -> list[str]:
+def _doubts(a: Base, b: Base, contact: Contact, require: Continuity | None, misses: list[str]) -> list[str]:
     """Return what qualifies the answer: places without a normal, and measures of which rounding hides a part.
 
     Raises
@@ -343,16 +343,15 @@ def _doubts(contact: Contact, require: Continuity | None, misses: list[str]) -> 
     ContactError
         Rounding hides so much that there is no answer.
     """
-    from semispline.solver.judge import doubtful, untold
+    from semispline.solver.judge import doubtful, rounding_causes, untold
 
     if require is None:
         return []
     hidden = untold(contact, require)
     if hidden and not misses:
-        raise ContactError(
-            f"{require} cannot be told: {'; '.join(hidden)}; move both surfaces nearer to the origin, in the program "
-            "that made them, or choose knots that are further apart"
-        )
+        causes = rounding_causes(a, b, int(require[1])).words(("A", "B"))
+        remedy = causes or "choose knots that are further apart, or ask for a lower continuity"
+        raise ContactError(f"{require} cannot be told: {'; '.join(hidden)}; {remedy}")
     places = contact.no_normal if require in ("G1", "G2", "G3", "G4") else ()
     return [f"{place.surface.upper()} has {place}" for place in places] + doubtful(contact, require)
 

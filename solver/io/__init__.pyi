@@ -6,6 +6,7 @@ from .disk import require_file as require_file
 from .disk import shown as shown
 from .disk import write_text as write_text
 from .disk import write_texts as write_texts
+from .faces import MILLIMETRES as MILLIMETRES
 from .faces import Model as Model
 from .faces import SurfaceEntry as SurfaceEntry
 from .faces import counted as counted

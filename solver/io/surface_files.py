@@ -45,7 +45,7 @@ class LoadedSurface:
     kind : str
         What the file holds.
     deviation : float or None
-        Where that has no exact B-spline form: how far `surface` was found from it.
+        Where that has no exact B-spline form: how far `surface` is from it at the worst place that was found.
     """
 
     surface: Surface
@@ -121,11 +121,11 @@ def approximation_warning(spec: str | Path, loaded: LoadedSurface) -> str | None
     --------
     >>> square = BSplineSurface(1, 1, [0, 0, 1, 1], [0, 0, 1, 1], [[[0, 0, 0], [0, 1, 0]], [[1, 0, 0], [1, 1, 0]]])
     >>> approximation_warning("a.step#2", LoadedSurface(square, "mm", kind="offset", deviation=4.123e-6))
-    'a.step#2 (offset) has no exact B-spline form: the surface taken for it is up to 4.12e-06 mm off'
+    'a.step#2 (offset) has no exact B-spline form: the surface taken for it is about 4.12e-06 mm off at worst'
     """
     if loaded.deviation is None:
         return None
-    off = f"up to {loaded.deviation:.3g} {loaded.unit or 'model units'} off"
+    off = f"about {loaded.deviation:.3g} {loaded.unit or 'model units'} off at worst"
     return f"{spec} ({loaded.kind}) has no exact B-spline form: the surface taken for it is {off}"
 
 

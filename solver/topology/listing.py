@@ -41,6 +41,8 @@ def place_lines(places: Places) -> Iterator[str]:
         yield _nothing(places)
     else:
         yield f"lengths in {places.unit or 'model units'}, angles in degrees; the best of each kind first"
+        # Until blend has them.
+        yield "(blend does not know --replace, --cut-a, --cut-b and edges e0, e1, .. yet: these commands are to come)"
     for kind in KINDS:
         found = places.of_kind(kind)
         if not found:
