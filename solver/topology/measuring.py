@@ -8,11 +8,11 @@ from pathlib import Path
 
 from semispline.solver.arrays import FloatArray
 from semispline.solver.io import OCC_SUFFIXES, open_3dm, read_apart, require_file, require_kernel
-from semispline.solver.topology import rhino_measures
 from semispline.solver.topology.half_edges import EdgeGraph
 from semispline.solver.topology.near import point_of
 from semispline.solver.topology.reading import read_edges
 from semispline.solver.topology.rhino_edges import edges_of_3dm
+from semispline.solver.topology.rhino_measures import distances, lengths_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,8 +51,8 @@ def measured_edges(
     if suffix == ".3dm":
         model = open_3dm(path)
         graph = edges_of_3dm(model)
-        found = [rhino_measures.distances(model, graph, x, face) for x, (_, face) in zip(points, near, strict=True)]
-        lengths = {n: rhino_measures.lengths(model.faces[n]) for n in faces if n < len(model.faces)}  # type: ignore[arg-type]
+        found = [distances(model, graph, x, face) for x, (_, face) in zip(points, near, strict=True)]
+        lengths = {n: lengths_of(model.faces[n]) for n in faces if n < len(model.faces)}  # type: ignore[arg-type]
         return MeasuredEdges(graph, lengths, dict(zip(near, found, strict=True)))
     if suffix not in OCC_SUFFIXES:
         # It says why not.

@@ -9,7 +9,7 @@ from semispline.solver.topology.half_edges import EdgeGraph
 from semispline.solver.topology.near import candidates
 
 
-def lengths(face: RhinoFace) -> list[float]:
+def lengths_of(face: RhinoFace) -> list[float]:
     """Return the length of each edge of a face, in the order of the names e0, e1, .."""
     return [0.0 if curve is None else curve_length(curve).value for curve in _curves(face)]
 
