@@ -72,6 +72,9 @@ from .solver.splines.curves import set_curve_continuity as set_curve_continuity
 from .solver.splines.curves import split_curve as split_curve
 from .solver.splines.derivatives import derivative_curve as derivative_curve
 from .solver.splines.derivatives import derivative_surface as derivative_surface
+from .solver.splines.edges import EdgeName as EdgeName
+from .solver.splines.edges import cut_to_edge as cut_to_edge
+from .solver.splines.edges import parse_edge as parse_edge
 from .solver.splines.isocurves import boundary_curve as boundary_curve
 from .solver.splines.isocurves import iso_curve as iso_curve
 from .solver.splines.measures import Measure as Measure
@@ -107,6 +110,11 @@ from .solver.splines.surfaces import BSplineSurface as BSplineSurface
 from .solver.splines.surfaces import SemiStructuredSurface as SemiStructuredSurface
 from .solver.topology.bands import Band as Band
 from .solver.topology.bands import band_along as band_along
+from .solver.topology.face_edges import FaceEdge as FaceEdge
+from .solver.topology.face_edges import FaceEdges as FaceEdges
+from .solver.topology.face_edges import ResolvedEdge as ResolvedEdge
+from .solver.topology.face_edges import list_edges as list_edges
+from .solver.topology.face_edges import resolve_edge as resolve_edge
 from .solver.topology.place import Place as Place
 from .solver.topology.place import Places as Places
 from .solver.topology.place import PlaceSide as PlaceSide

@@ -1,4 +1,4 @@
-"""The commands blend, check, list, show and convert; `semispline.papers.cli` mounts them beside its own.
+"""The commands blend, problem, check, list, show and convert; `semispline.papers.cli` mounts them beside its own.
 
 Heavy imports wait inside the functions, so that `--help` answers fast.
 """
@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Annotated, Any, cast
 
 import typer
 
-from semispline.solver.errors import ContactError, EdgeError
+from semispline.solver.errors import ContactError, OptionError
 from semispline.solver.exit_status import ANSWER_IS_NO, reports_errors
 from semispline.solver.option_flags import takes_blend_options
 from semispline.solver.options import BlendOptions, Continuity, continuity_name
@@ -28,12 +28,16 @@ from semispline.solver.reports import (
 
 if TYPE_CHECKING:
     from semispline.solver.judge import Base, Contact
+    from semispline.solver.topology import ResolvedEdge
 
 app = typer.Typer(no_args_is_help=True, add_completion=False, pretty_exceptions_enable=False)
 
-_EDGES = ("u0", "u1", "v0", "v1")
 _SURFACE_HELP = "PATH, or PATH#N as `semispline list PATH` numbers it (JSON, STEP, IGES, BREP, 3dm)."
-_EDGE_HELP = "Edge of {}: u0, u1, v0 or v1, the parameter that is constant along it and at which end."
+_EDGE_HELP = (
+    "Edge of {}: u0, u1, v0 or v1, the parameter that is constant along it and at which end; a part, u1[0.2,0.6]; a "
+    "line inside, u=0.3+ (the side of larger u is kept) or u=0.3-; a part of it, u=0.3+[0.2,0.6]; e3, an edge of the "
+    "face as `semispline list PATH --edges N` numbers it; near=x,y,z, its edge nearest to a point."
+)
 _CONTINUITY_HELP = "C0, C1, C2, G0, G1, G2, G3 or G4."
 
 SurfaceA = Annotated[str, typer.Argument(metavar="A", help=_SURFACE_HELP)]
@@ -59,30 +63,55 @@ def blend_command(
         atomic_path,
         check_surface_output,
         face_warnings,
-        read_surfaces,
         to_text,
         write_surface,
     )
 
-    _check_edges(edge_a, edge_b)
+    _check_words(edge_a, edge_b)
     check_surface_output(out)
     _check_outputs({"--out": out, "--report": report}, [a, b])
-    with _progress("reading"):
-        first, second = read_surfaces([a, b])
-    trims = face_warnings((a, edge_a, first), (b, edge_b, second), strict=options.strict)
+    ends = _resolved(a, edge_a, b, edge_b)
+    trims = face_warnings(*((end.spec, end.edge, end.loaded) for end in ends), strict=options.strict)
     with _progress("blending"):
         from semispline.solver.blending import blend
         from semispline.solver.judge import Base
 
-        result = blend(Base(first.surface, cast(Any, edge_a)), Base(second.surface, cast(Any, edge_b)), options)
+        first, second = (Base(end.surface, end.edge) for end in ends)
+        result = blend(first, second, options)
     result = replace(result, warnings=(*trims, *result.warnings))
     with ExitStack() as stack:
         # The report first, into its temporary file: neither file is touched unless both can be written.
         if report is not None:
             temporary = stack.enter_context(atomic_path(report))
-            temporary.write_text(to_text(report_record(result)))
-        write_surface(out, result.surface, first.unit)
+            temporary.write_text(to_text(report_record(result) | _asked(ends)))
+        write_surface(out, result.surface, ends[0].loaded.unit)
+    _print_resolved(ends)
     print_result(result)
+
+
+@app.command("problem")
+@reports_errors
+@takes_blend_options
+def problem_command(
+    a: SurfaceA,
+    b: SurfaceB,
+    edge_a: EdgeA,
+    edge_b: EdgeB,
+    out: Annotated[str, typer.Option("-o", "--out", metavar="JSON", help="File to write.")],
+    options: BlendOptions,
+) -> None:
+    """Write what blend would be asked as a problem file, which `generate --c` and scripts read; solve nothing."""
+    from semispline.solver.io import StoredProblem, relative_spec, write_problem
+    from semispline.solver.judge import Base
+
+    _check_words(edge_a, edge_b)
+    _check_outputs({"--out": out}, [a, b])
+    ends = _resolved(a, edge_a, b, edge_b)
+    # A name that the surface does not have is refused here.
+    first, second = (Base(end.surface, end.edge).edge for end in ends)
+    specs = [relative_spec(end.spec, out) for end in ends]
+    write_problem(out, StoredProblem(specs[0], first, specs[1], second, options, ends[0].asked, ends[1].asked))
+    _print_resolved(ends)
 
 
 @app.command("check")
@@ -100,28 +129,30 @@ def check_command(
     ] = None,
 ) -> None:
     """Measure how an edge of A and an edge of B meet: gap, angle, jumps of curvature and its rates, and where."""
-    from semispline.solver.io import face_warnings, read_surfaces
+    from semispline.solver.io import face_warnings
     from semispline.solver.judge import Base, measure_contact
 
-    _check_edges(edge_a, edge_b)
+    _check_words(edge_a, edge_b)
     required = None if require is None else continuity_name(require, "--require")
     _check_outputs({"--json": _file(json_file)}, [a, b])
-    with _progress("reading"):
-        first, second = read_surfaces([a, b])
+    ends = _resolved(a, edge_a, b, edge_b)
     with _progress("measuring"):
-        bases = Base(first.surface, cast(Any, edge_a)), Base(second.surface, cast(Any, edge_b))
-        contact = measure_contact(*bases, order=4)
+        first, second = (Base(end.surface, end.edge) for end in ends)
+        contact = measure_contact(first, second, order=4)
     misses = _misses(contact, required)
-    doubts = _doubts(*bases, contact, required, misses)
-    warnings = face_warnings((a, edge_a, first), (b, edge_b, second))
+    doubts = _doubts(first, second, contact, required, misses)
+    warnings = face_warnings(*((end.spec, end.edge, end.loaded) for end in ends))
+    unit = ends[0].loaded.unit
     if json_file is not None:
-        record = {"a": a, "edge_a": edge_a, "b": b, "edge_b": edge_b, "unit": first.unit, **contact_record(contact)}
+        record: dict[str, Any] = {"a": ends[0].spec, "edge_a": first.edge, "b": ends[1].spec, "edge_b": second.edge}
+        record |= {"unit": unit} | _asked(ends) | contact_record(contact)
         record["warnings"] = list(warnings)
         if require is not None:
             record |= {"require": required, "meets": not misses, "misses": misses, "doubts": doubts}
         _write_json(json_file, {"format": "semispline/1", "kind": "contact", **record})
     if json_file != "-":
-        print_contact(contact, first.unit)
+        _print_resolved(ends)
+        print_contact(contact, unit)
         if require is not None:
             reasons = "; ".join([*misses, *doubts])
             typer.echo(f"{required}: " + ("no: " if misses else "yes, but " if doubts else "yes") + reasons)
@@ -138,6 +169,10 @@ def list_command(
         bool,
         typer.Option("--pairs", help="Propose places to blend instead: fillets, gaps, chamfers, sharp edges."),
     ] = False,
+    edges: Annotated[
+        int | None,
+        typer.Option(metavar="N", min=0, help="List the edges of face N instead, with the names that --edge-a takes."),
+    ] = None,
     json_file: Annotated[
         str | None, typer.Option("--json", metavar="FILE", help="Write the list; - is standard output.")
     ] = None,
@@ -146,8 +181,13 @@ def list_command(
     from semispline.solver.io import check_outputs, list_file
 
     check_outputs({"--json": _file(json_file)}, [file])
+    if pairs and edges is not None:
+        raise OptionError("--pairs: found it together with --edges, expected one of them")
     if pairs:
         _list_pairs(file, json_file)
+        return
+    if edges is not None:
+        _list_edges(file, edges, json_file)
         return
     with _progress("reading"):
         entries, others = list_file(file)
@@ -156,6 +196,18 @@ def list_command(
         _write_json(json_file, {"format": "semispline/1", "kind": "surface_list", **record})
     if json_file != "-":
         print_entries(entries, others)
+
+
+def _list_edges(file: str, face: int, json_file: str | None) -> None:
+    from semispline.solver.topology import edge_lines, edges_record, list_edges
+
+    with _progress("reading"):
+        found = list_edges(file, face)
+    if json_file is not None:
+        _write_json(json_file, {"format": "semispline/1", "kind": "edge_list", **edges_record(found)})
+    if json_file != "-":
+        for line in edge_lines(found):
+            typer.echo(line)
 
 
 def _list_pairs(file: str, json_file: str | None) -> None:
@@ -221,10 +273,32 @@ def convert_command(
     print_warnings([warning] if warning else [])
 
 
-def _check_edges(edge_a: str, edge_b: str) -> None:
-    for name, edge in (("--edge-a", edge_a), ("--edge-b", edge_b)):
-        if edge not in _EDGES:
-            raise EdgeError(f"{name}: found {edge!r}, expected one of {', '.join(_EDGES)}")
+def _check_words(edge_a: str, edge_b: str) -> None:
+    """Refuse what names no edge before a file is read."""
+    from semispline.solver.splines import parse_edge
+    from semispline.solver.topology import is_of_a_face
+
+    for word, name in ((edge_a, "--edge-a"), (edge_b, "--edge-b")):
+        if not is_of_a_face(word):
+            parse_edge(word, name)
+
+
+def _resolved(a: str, edge_a: str, b: str, edge_b: str) -> list[ResolvedEdge]:
+    from semispline.solver.topology import resolve_edges
+
+    with _progress("reading"):
+        return resolve_edges([(a, edge_a), (b, edge_b)])
+
+
+def _asked(ends: Sequence[ResolvedEdge]) -> dict[str, Any]:
+    """Return the words that were resolved, as a problem file and a report hold them."""
+    return {f"asked_{side}": end.asked for side, end in zip("ab", ends, strict=True) if end.asked is not None}
+
+
+def _print_resolved(ends: Sequence[ResolvedEdge]) -> None:
+    for side, end in zip("AB", ends, strict=True):
+        if end.said:
+            typer.echo(f"edge of {side}: {end.said}")
 
 
 def _check_outputs(outputs: Mapping[str, str | None], specs: Sequence[str]) -> None:

@@ -39,6 +39,8 @@ def report_record(result: BlendResult) -> dict[str, Any]:
     record: dict[str, Any] = {
         "format": "semispline/1",
         "kind": "blend_report",
+        "edge_a": result.edges[0],
+        "edge_b": result.edges[1],
         "continuity": list(result.continuity),
         "method": result.method,
         "options": {name: value for name, value in asdict(result.options).items() if value is not None},
@@ -177,6 +179,7 @@ def print_result(result: BlendResult) -> None:
         return f"{value:.6g}{low_high}"
 
     rows = [
+        ("edges", f"{result.edges[0]} of A, {result.edges[1]} of B"),
         ("continuity", " and ".join(result.continuity)),
         ("method", result.method),
         ("layout", f"degree {result.options.degree_u} across, {result.options.middle_curves} middle curve(s)"),

@@ -130,9 +130,9 @@ def oriented_bases(task: BlendTask) -> tuple[BSplineSurface, BSplineSurface]:
         surface = base.surface
         if not isinstance(surface, BSplineSurface):
             raise NotApplicableError("bases: found a semi-structured one, expected B-spline surfaces")
-        if base.edge[0] == "v":
+        if base.side[0] == "v":
             surface = swap_directions(surface)
-        turned.append(reverse_u(surface) if base.edge[1] == "1" else surface)
+        turned.append(reverse_u(surface) if base.side[1] == "1" else surface)
     first, second = turned
     second = map_domain(second, v_range=first.domain[1])
     v = first.domain[1][0] + _SAMPLES * np.diff(first.domain[1])

@@ -48,7 +48,7 @@ def _analyse(a: Base, s: float, b: Base, t: float) -> tuple[bool, bool, bool]:
     from OCP.LocalAnalysis import LocalAnalysis_SurfaceContinuity
 
     surface_a, surface_b = (_plain(side) for side in (a, b))
-    uv_a, uv_b = _point(surface_a, a.edge, s), _point(surface_b, b.edge, t)
+    uv_a, uv_b = _point(surface_a, a.side, s), _point(surface_b, b.side, t)
     normals = [
         np.cross(x.evaluate([u], [v], 1, 0)[0], x.evaluate([u], [v], 0, 1)[0])
         for x, (u, v) in ((surface_a, uv_a), (surface_b, uv_b))

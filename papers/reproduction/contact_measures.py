@@ -201,7 +201,7 @@ def turn_between(a: Base, b: Base, *, flipped: bool) -> float:
         start, end = base.range_along
         x = start + (1 - s if flipped and not leaving else s) * (end - start)
         cross, along = base.derivative(x, 1, 0), base.derivative(x, 0, 1)
-        outward = 1.0 if base.edge[1] == "1" else -1.0
+        outward = 1.0 if base.side[1] == "1" else -1.0
         cross = cross * (outward if leaving else -outward)
         along = along * (-1.0 if flipped and not leaving else 1.0)
         vectors.append(np.cross(cross, along))

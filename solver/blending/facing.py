@@ -55,8 +55,8 @@ def measure_facing(a: Side, b: Side) -> Facing:
 
 
 def _coincide(a: Side, b: Side) -> bool:
-    start, end = a.along.knots[0], a.along.knots[-1]
-    x = start + (end - start) * np.arange(129) / 128
+    # Ends are hit exactly: rounded beyond them there is no curve.
+    x = np.linspace(a.along.knots[0], a.along.knots[-1], 129)
     curves = [side.edge(x)[0] for side in (a, b)]
     return _largest_distance(curves[0], curves[1], b) < VANISHING
 
@@ -70,7 +70,7 @@ def _largest_distance(points: FloatArray, samples: FloatArray, side: Side) -> fl
     distances = np.linalg.norm(points[:, None] - samples, axis=2)
     if distances.min(axis=1).max() > np.linalg.norm(np.diff(samples, axis=0), axis=1).max():
         return float(distances.min(axis=1).max())
-    x = knots[0] + (knots[-1] - knots[0]) * distances.argmin(axis=1) / (len(samples) - 1)
+    x = np.linspace(knots[0], knots[-1], len(samples))[distances.argmin(axis=1)]
     for _ in range(8):
         off, slope = side.edge(x)[0] - points, side.tangents(x)
         squared = np.maximum(np.sum(slope**2, axis=1), np.finfo(float).tiny)

@@ -35,7 +35,7 @@ def matched_edges(a: Base, b: Base, flip: Flip) -> Correspondence:
     start, end = by_angle[1].range_along
     at = by_angle[1].derivative(np.array([start + matched.shift % (end - start)]), 0, 0)[0]
     first, last = b.range_along
-    found = closest_point(boundary_curve(b.surface, b.edge), at).parameters
+    found = closest_point(boundary_curve(b.surface, b.side), at).parameters
     shift = (float(np.ravel(found)[0]) - first) % (last - first)
     return replace(matched, shift=0.0 if min(shift, last - first - shift) < _NO_SHIFT * (last - first) else shift)
 
@@ -50,20 +50,20 @@ def run_by_angle(base: Base) -> Base:
     surface = base.surface
     if not isinstance(surface, BSplineSurface) or surface.weights is None or not is_closed(base):
         return base
-    is_v = base.edge[0] == "v"
+    is_v = base.side[0] == "v"
     net = surface.homogeneous.transpose(1, 0, 2) if is_v else surface.homogeneous
     along = Basis(surface.degree_u, surface.knots_u) if is_v else Basis(surface.degree_v, surface.knots_v)
-    rows = net[:2] if base.edge[1] == "0" else net[-2:][::-1]
+    rows = net[:2] if base.side[1] == "0" else net[-2:][::-1]
     conic = recognised_conic(rows, along)
     if conic is None:
         return base
     smooth, basis = conic.smooth_rows(2)
     if not (smooth[..., 3] > 0).all():
         return base
-    points, weights = euclidean(smooth if base.edge[1] == "0" else smooth[::-1])
+    points, weights = euclidean(smooth if base.side[1] == "0" else smooth[::-1])
     if weights is None:
         return base
     if is_v:
         points, weights = points.transpose(1, 0, 2), weights.T
-        return Base(BSplineSurface(basis.degree, 1, basis.knots, _LINE, points, weights), base.edge)
-    return Base(BSplineSurface(1, basis.degree, _LINE, basis.knots, points, weights), base.edge)
+        return Base(BSplineSurface(basis.degree, 1, basis.knots, _LINE, points, weights), base.side)
+    return Base(BSplineSurface(1, basis.degree, _LINE, basis.knots, points, weights), base.side)

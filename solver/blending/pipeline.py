@@ -178,6 +178,7 @@ def _judged(a: Base, b: Base, solved: _Solved, seconds: float) -> BlendResult:
     )
     return BlendResult(
         surface=surface,
+        edges=(a.edge, b.edge),
         continuity=chosen.continuities,
         options=chosen,
         candidates=solved.candidates,

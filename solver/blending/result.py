@@ -45,6 +45,8 @@ class BlendResult:
     ----------
     surface : SemiStructuredSurface
         u = 0 on a, u = 1 on b; the v-domain is that of a's edge.
+    edges : (str, str)
+        What the edges of a and b are called, parts and lines inside included.
     continuity : (str, str)
         Asked for and confirmed at a and at b.
     options : BlendOptions
@@ -117,6 +119,7 @@ class BlendResult:
     """
 
     surface: SemiStructuredSurface
+    edges: tuple[str, str]
     continuity: tuple[Continuity, Continuity]
     options: BlendOptions
     candidates: tuple[Candidate, ...]

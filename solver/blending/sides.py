@@ -171,11 +171,11 @@ def make_side(base: Base, continuity: Continuity, name: str = "base") -> Side:
     # Equal weights cancel.
     net = surface.control_points if _has_equal_weights(surface) else surface.homogeneous
     across, along = (surface.degree_u, surface.knots_u), (surface.degree_v, surface.knots_v)
-    if base.edge[0] == "v":
+    if base.side[0] == "v":
         net, across, along = net.transpose(1, 0, 2), along, across
-    check_knots_apart(along[1], along[0], f"{name}: knots_{'v' if base.edge[0] == 'u' else 'u'}", EdgeError)
+    check_knots_apart(along[1], along[0], f"{name}: knots_{'v' if base.side[0] == 'u' else 'u'}", EdgeError)
     degree, knots = across
-    if base.edge[1] == "1":
+    if base.side[1] == "1":
         net, steps = net[::-1], knots[-1] - knots[::-1]
     else:
         steps = knots - knots[0]
@@ -188,7 +188,7 @@ def make_side(base: Base, continuity: Continuity, name: str = "base") -> Side:
     side = Side(continuity, degree, spans, Basis(*along), rows, float(np.abs(euclidean(rows)[0]).max()))
     if side.order > 0 and spans[0] < _LEAST_SPAN * steps[-1]:
         raise EdgeError(
-            f"{name}: knots_{base.edge[0]} leave a span of {spans[0]:.1e} beside the edge, expected at least "
+            f"{name}: knots_{base.side[0]} leave a span of {spans[0]:.1e} beside the edge, expected at least "
             f"{_LEAST_SPAN:g} of the domain, or derivatives are made of rounding; remove these knots or take them "
             "further apart, or ask for position only"
         )

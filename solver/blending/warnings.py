@@ -121,7 +121,7 @@ def remedy(
     strained : str
         What was asked for that may be the cause, and what to try.
     """
-    across, end = base.edge
+    across, end = base.side
     breaks = base.surface.breakpoints["uv".index(across)]
     widths = np.diff(breaks)[:: 1 if end == "0" else -1]
     width = float(widths[0])

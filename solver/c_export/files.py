@@ -9,6 +9,7 @@ linear in the number of control points, and nothing is factorised, allocated or 
 from __future__ import annotations
 
 import tempfile
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -76,6 +77,9 @@ def write_c(folder: str | Path, problem_file: str | Path) -> tuple[list[Path], t
     surfaces = [next(read).surface if isinstance(base, str) else base for base in bases]
     edges: list[Any] = [stored.edge_a, stored.edge_b]
     named = [edge for base, edge in zip(bases, edges, strict=True) if isinstance(base, str)]
+    # An edge that was asked for as one of the face is its own.
+    own = [asked for base, asked in zip(bases, (stored.asked_a, stored.asked_b), strict=True) if isinstance(base, str)]
+    loaded = [item if asked is None else replace(item, boundary=None) for item, asked in zip(loaded, own, strict=True)]
     warnings = face_warnings(*zip(specs, named, loaded, strict=True), strict=stored.options.strict)
     a, b = (Base(surface, edge) for surface, edge in zip(surfaces, edges, strict=True))
     _require_polynomial(a, b, stored.options)

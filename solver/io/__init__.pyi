@@ -21,11 +21,14 @@ from .meshes import sampled as sampled
 from .meshes import triangle_mesh as triangle_mesh
 from .occ import read_occ as read_occ
 from .occ_kernel import require_kernel as require_kernel
+from .occ_parameters import ParameterKind as ParameterKind
+from .occ_parameters import converted_parameters as converted_parameters
 from .occ_writing import occ_surface as occ_surface
 from .rhino import RhinoFace as RhinoFace
 from .rhino import curve_evaluator as curve_evaluator
 from .rhino import open_3dm as open_3dm
 from .surface_files import OCC_SUFFIXES as OCC_SUFFIXES
+from .surface_files import LoadedSurface as LoadedSurface
 from .surface_files import approximation_warning as approximation_warning
 from .surface_files import check_surface_output as check_surface_output
 from .surface_files import face_warnings as face_warnings
@@ -33,5 +36,6 @@ from .surface_files import in_one_unit as in_one_unit
 from .surface_files import list_file as list_file
 from .surface_files import read_all as read_all
 from .surface_files import read_surfaces as read_surfaces
+from .surface_files import relative_spec as relative_spec
 from .surface_files import split_spec as split_spec
 from .surface_files import write_surface as write_surface

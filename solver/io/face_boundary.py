@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from semispline.solver.arrays import FloatArray
-from semispline.solver.splines import Surface
+from semispline.solver.splines import Surface, cut_to_edge, parse_edge
 
 # A piece keeps to its curve within this fraction of the curve's extent: below what a user could care for.
 _CLOSE = 1e-6
@@ -125,11 +125,14 @@ def vertex_piece(point: FloatArray) -> FloatArray:
 
 
 def edge_offset(surface: Surface, edge: str, boundary: FaceBoundary) -> EdgeOffset:
-    """Return how far the natural edge u0, u1, v0 or v1 lies from a boundary that has pieces.
+    """Return how far an edge, u1 or a part or a line inside, lies from a boundary that has pieces.
 
     Source: distance to a cubic piece by Gauss-Newton steps from the nearest of sampled points.
     """
-    boundary = _this_side(surface, edge, boundary)
+    name = parse_edge(edge)
+    surface, edge = cut_to_edge(surface, name)
+    if name.at is None:
+        boundary = _this_side(surface, edge, boundary)
     low, high = surface.domain[1 if edge[0] == "u" else 0]
     # The middles between corners besides: no gap between two of them is passed by, however short it is.
     between = np.unique(np.concatenate([[low], _corners_on(surface, edge, boundary), [high]]))

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Annotated, Any, Literal, TypeAlias, TypeVar
+from typing import Annotated, Any, TypeAlias, TypeVar
 
 from pydantic import AllowInfNan, BaseModel, ConfigDict, Field, Strict, ValidationError
 
@@ -20,10 +20,16 @@ from semispline.solver.errors import ControlPointError, EdgeError, FileError, In
 from semispline.solver.io.disk import write_text
 from semispline.solver.io.json_text import load_json, short, to_text
 from semispline.solver.options import BlendOptions, named_options
-from semispline.solver.splines import BSplineCurve, BSplineSurface, SemiStructuredSurface, Surface, clamped_surface
+from semispline.solver.splines import (
+    BSplineCurve,
+    BSplineSurface,
+    SemiStructuredSurface,
+    Surface,
+    clamped_surface,
+    parse_edge,
+)
 
 FORMAT = "semispline/1"
-EDGES = ("u0", "u1", "v0", "v1")
 
 _Number: TypeAlias = Annotated[float, Strict(), AllowInfNan(False)]
 _Degree: TypeAlias = Annotated[int, Strict(), Field(ge=1)]
@@ -64,9 +70,11 @@ class _SemiStructuredRecord(_Record):
 
 class _ProblemRecord(_Record):
     a: _Text | dict[str, Any]
-    edge_a: Literal["u0", "u1", "v0", "v1"]
+    edge_a: _Text
     b: _Text | dict[str, Any]
-    edge_b: Literal["u0", "u1", "v0", "v1"]
+    edge_b: _Text
+    asked_a: _Text | None = None
+    asked_b: _Text | None = None
     options: dict[str, Any] = {}
 
 
@@ -78,13 +86,16 @@ class StoredProblem:
     ----------
     a, b : BSplineSurface, SemiStructuredSurface or str
         A surface, or "PATH#N" with PATH relative to the folder of the file.
-    edge_a, edge_b : {"u0", "u1", "v0", "v1"}
+    edge_a, edge_b : str
+        As `Base` takes them: "u1", "u=0.3+[0.2,0.6]".
     options : BlendOptions
+    asked_a, asked_b : str, optional
+        What was asked for where that is another word, "e3" or "near=1,2,3": an edge of the face in the file.
 
     Raises
     ------
     EdgeError
-        An edge that is not one of the four.
+        No name of an edge.
     OptionError
         Options that are no BlendOptions.
     """
@@ -94,13 +105,14 @@ class StoredProblem:
     b: Surface | str
     edge_b: str
     options: BlendOptions = field(default_factory=BlendOptions)
+    asked_a: str | None = None
+    asked_b: str | None = None
 
     def __post_init__(self) -> None:
         if not isinstance(self.options, BlendOptions):
             raise OptionError(f"options: found a {type(self.options).__name__}, expected a BlendOptions")
         for name in ("edge_a", "edge_b"):
-            if getattr(self, name) not in EDGES:
-                raise EdgeError(f"{name}: found {getattr(self, name)!r}, expected one of {', '.join(EDGES)}")
+            object.__setattr__(self, name, str(parse_edge(getattr(self, name), name)))
 
 
 def read_json_surface(path: str | Path) -> Surface:
@@ -145,7 +157,12 @@ def read_problem(path: str | Path) -> StoredProblem:
         return str(folder / value) if isinstance(value, str) else surface_from_record(value, f"{where}: {name}")
 
     a, b = base(record.a, "a"), base(record.b, "b")
-    return StoredProblem(a, record.edge_a, b, record.edge_b, _options(record.options, where))
+    try:
+        edge_a, edge_b = parse_edge(record.edge_a, "edge_a"), parse_edge(record.edge_b, "edge_b")
+    except EdgeError as error:
+        raise EdgeError(f"{where}: {error}") from None
+    options = _options(record.options, where)
+    return StoredProblem(a, str(edge_a), b, str(edge_b), options, record.asked_a, record.asked_b)
 
 
 def _options(record: dict[str, Any], where: str) -> BlendOptions:
@@ -174,9 +191,10 @@ def write_problem(path: str | Path, problem: StoredProblem) -> None:
         "edge_a": problem.edge_a,
         "b": base(problem.b),
         "edge_b": problem.edge_b,
-        "options": problem.options.said(),
     }
-    write_text(path, to_text(record))
+    asked = {"asked_a": problem.asked_a, "asked_b": problem.asked_b}
+    record |= {name: word for name, word in asked.items() if word is not None}
+    write_text(path, to_text(record | {"options": problem.options.said()}))
 
 
 def surface_record(surface: Surface) -> dict[str, Any]:

@@ -24,6 +24,7 @@ from semispline.solver.io.foreign import read_apart
 from semispline.solver.io.occ_boundary import ON_EDGE, distance_to_ends, edges_of, occ_boundary, pcurve_points
 from semispline.solver.io.occ_conversion import Conversion, Ends, converted, kind_of, resolved, snapped_ends
 from semispline.solver.io.occ_kernel import first_line, require_kernel, system_unit
+from semispline.solver.io.occ_parameters import ParameterKind, parameter_kinds
 from semispline.solver.io.silence import silenced
 from semispline.solver.splines import BSplineSurface
 
@@ -118,6 +119,11 @@ class OccFace:
         if geometry is None:
             raise FileError("the face has no surface; choose another")
         return resolved(geometry)
+
+    @property
+    def parameter_kinds(self) -> tuple[ParameterKind, ParameterKind]:
+        """Of which kind u and v of the file are: what `converted_parameters` turns into those of `surface`."""
+        return parameter_kinds(self._geometry)
 
     @cached_property
     def ends(self) -> Ends:

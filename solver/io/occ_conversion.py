@@ -162,8 +162,10 @@ def converted(geometry: Any, ends: Ends) -> Conversion:
 def _exact(geometry: Any, ends: Ends) -> BSplineSurface:
     low_u, high_u, low_v, high_v = ends
     first_u, last_u, first_v, last_v = geometry.Bounds()
-    full_u = bool(geometry.IsUPeriodic()) and high_u - low_u >= last_u - first_u
-    full_v = bool(geometry.IsVPeriodic()) and high_v - low_v >= last_v - first_v
+    # A range from elsewhere is a turn up to rounding.
+    turn_u, turn_v = ((1 - _SNAP) * x for x in (last_u - first_u, last_v - first_v))
+    full_u = bool(geometry.IsUPeriodic()) and high_u - low_u >= turn_u
+    full_v = bool(geometry.IsVPeriodic()) and high_v - low_v >= turn_v
     name = type(geometry).__name__
     if name in _SWEPT and ((full_u and low_u != first_u) if name == _EXTRUSION else (full_v and low_v != first_v)):
         geometry = _begun_at(geometry, low_u if name == _EXTRUSION else low_v)

@@ -5,6 +5,7 @@ The module of a format waits inside the functions until a file of that format is
 
 from __future__ import annotations
 
+import os
 import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -135,7 +136,8 @@ def trimmed_edge_warning(spec: str | Path, edge: str, loaded: LoadedSurface) -> 
     ----------
     spec : str
         What the user calls the surface.
-    edge : {"u0", "u1", "v0", "v1"}
+    edge : str
+        As `Base` takes it.
     loaded : LoadedSurface
         As `read_surfaces` returned it.
 
@@ -158,8 +160,13 @@ def trimmed_edge_warning(spec: str | Path, edge: str, loaded: LoadedSurface) -> 
     part = "in part, by up to" if offset.in_part else "up to"
     return (
         f"the edge {edge} of {spec} lies outside of the face, {part} {offset.distance:.3g} {unit} from the face's own "
-        "boundary: the face is trimmed, its surface goes on"
+        f"boundary: the face is trimmed, its surface goes on; {_listing(spec)} names its own edges"
     )
+
+
+def _listing(spec: str | Path) -> str:
+    path, number = split_spec(spec)
+    return f"`semispline list {path} --edges {number or 0}`"
 
 
 def face_warnings(*edges: tuple[str | Path, str, LoadedSurface], strict: bool = False) -> tuple[str, ...]:
@@ -174,7 +181,7 @@ def face_warnings(*edges: tuple[str | Path, str, LoadedSurface], strict: bool = 
     trims = [warning for edge in edges if (warning := trimmed_edge_warning(*edge))]
     found = (*surfaces, *trims)
     if strict and found:
-        remedy = "name another edge, give the untrimmed surface, or leave out strict"
+        remedy = "name one of its own edges, give the untrimmed surface, or leave out strict"
         if not trims:
             remedy = "make the face a B-spline where it was drawn, or leave out strict"
         raise TrimError(f"{'; '.join(found)}; {remedy}")
@@ -388,6 +395,19 @@ def _open_json(path: str | Path, bounded: Sequence[int]) -> Model:
     from semispline.solver.io.json_files import read_json_surface
 
     return Model(str(path), None, [_JsonFace(read_json_surface(path))])
+
+
+def relative_spec(spec: str, target: str | Path) -> str:
+    """Return PATH or PATH#N as a problem file that is written to `target` holds it: relative to its folder.
+
+    Examples
+    --------
+    >>> relative_spec("parts/a.step#3", "problems/p.json")
+    '../parts/a.step#3'
+    """
+    path, number = split_spec(spec)
+    relative = Path(os.path.relpath(path, Path(target).parent)).as_posix()
+    return relative if number is None else f"{relative}#{number}"
 
 
 def _reader(suffix: str) -> Callable[[str | Path, Sequence[int]], Model] | None:

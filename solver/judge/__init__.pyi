@@ -1,5 +1,4 @@
 from .base import Base as Base
-from .base import Edge as Edge
 from .base import local_origin as local_origin
 from .confirmed_meetings import Meeting as Meeting
 from .contact import Contact as Contact

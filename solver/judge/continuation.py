@@ -58,7 +58,7 @@ class Continuation:
     @property
     def breakpoints(self) -> tuple[FloatArray, FloatArray]:
         """The base's own in w; in v those of the surface that is continued."""
-        breaks = self.base.surface.breakpoints[0 if self.base.edge[0] == "u" else 1]
+        breaks = self.base.surface.breakpoints[0 if self.base.side[0] == "u" else 1]
         return np.sort(breaks - breaks[0] if self._inwards > 0 else breaks[-1] - breaks), self.v_breaks
 
     def parameters(self, w: ArrayLike, v: ArrayLike) -> tuple[FloatArray, FloatArray]:
@@ -77,17 +77,17 @@ class Continuation:
         along = first + self.shift + (1 - t if self.flipped else t) * (last - first)
         # Only a closed edge is shifted.
         along = np.clip(np.where(along > last, along - (last - first), along) if self.shift else along, first, last)
-        return (across, along) if self.base.edge[0] == "u" else (along, across)
+        return (across, along) if self.base.side[0] == "u" else (along, across)
 
     def evaluate(self, w: ArrayLike, v: ArrayLike, dw: int = 0, dv: int = 0) -> FloatArray:
         """Return the point or a derivative at (w[k], v[k]), shape (K, 3)."""
-        orders = (dw, dv) if self.base.edge[0] == "u" else (dv, dw)
+        orders = (dw, dv) if self.base.side[0] == "u" else (dv, dw)
         return self._paced(self._rate(dw, dv) * self.surface.evaluate(*self.parameters(w, v), *orders), v, dv)
 
     def evaluate_grid(self, w: ArrayLike, v: ArrayLike, dw: int = 0, dv: int = 0) -> FloatArray:
         """Return the same on the grid w x v, shape (len(w), len(v), 3)."""
         own = self.parameters(w, v)
-        if self.base.edge[0] == "u":
+        if self.base.side[0] == "u":
             return self._paced(self._rate(dw, dv) * self.surface.evaluate_grid(*own, dw, dv), v, dv)
         return self._paced(self._rate(dw, dv) * self.surface.evaluate_grid(*own, dv, dw).transpose(1, 0, 2), v, dv)
 
@@ -96,7 +96,7 @@ class Continuation:
         (start, end), (first, last) = (float(self.v_breaks[0]), float(self.v_breaks[-1])), self.base.range_along
 
         def at(v: FloatArray) -> tuple[FloatArray, FloatArray]:
-            s = self._own(np.zeros_like(v), v)[1 if self.base.edge[0] == "u" else 0]
+            s = self._own(np.zeros_like(v), v)[1 if self.base.side[0] == "u" else 0]
             return self.base.derivative(s, 0, 0), self._rate(0, 1) * self.base.derivative(s, 0, 1)
 
         t = np.mod((self.base.breakpoints_along() - first - self.shift) / (last - first), 1.0)
@@ -112,11 +112,11 @@ class Continuation:
 
     @property
     def _across(self) -> tuple[float, float]:
-        return self.base.surface.domain[0 if self.base.edge[0] == "u" else 1]
+        return self.base.surface.domain[0 if self.base.side[0] == "u" else 1]
 
     @property
     def _inwards(self) -> int:
-        return 1 if self.base.edge[1] == "0" else -1
+        return 1 if self.base.side[1] == "0" else -1
 
     def _rate(self, dw: int, dv: int) -> float:
         first, last = self.base.range_along
@@ -136,7 +136,7 @@ def continuation(surface: ParametricSurface, base: Base, end: int) -> Continuati
     v = np.linspace(v_breaks[0], v_breaks[-1], _TRIED)
     target = surface.evaluate_grid(np.array([surface.domain[0][end]]), v)[0]
     size = extent(target)
-    closed = closed_directions(base.surface)[1 if base.edge[0] == "u" else 0]
+    closed = closed_directions(base.surface)[1 if base.side[0] == "u" else 0]
     closed = closed and extent(target[[0, -1]]) <= _APART * size
     shift = _nearest(base, target[0]) - base.range_along[0] if closed else 0.0
     pieces = in_pieces(base.surface)

@@ -185,7 +185,7 @@ def corresponding_points(a: Base, b: Base, matched: Correspondence, s: FloatArra
     contact = measure_contact(a, b, correspondence=matched)
     if contact.corresponds == "affine":
         return corresponding(a, b, matched, s)
-    curves = tuple(edge_curves(base.surface, base.edge, 1, local_origin(a.surface, b.surface)) for base in (a, b))
+    curves = tuple(edge_curves(base.surface, base.side, 1, local_origin(a.surface, b.surface)) for base in (a, b))
     pairs = foot_pairs(a, b, matched, (curves[0], curves[1]), 2 * max(contact.gap, contact.allowed["gap"]))
     assert pairs is not None
     return pairs.along_b(s)

@@ -96,7 +96,7 @@ def _circling(base: Base) -> float:
     t = np.arange(_SAMPLES) / _SAMPLES
     s = start + t * (end - start)
     area = np.cross(_centred(base, t), base.derivative(s, 0, 1)).sum(axis=0)
-    inwards = base.derivative(s, 1, 0) * (1 if base.edge[1] == "0" else -1)
+    inwards = base.derivative(s, 1, 0) * (1 if base.side[1] == "0" else -1)
     length = float(np.linalg.norm(area) * np.linalg.norm(inwards, axis=1).sum())
     return float(area @ inwards.sum(axis=0)) / length if length else 0.0
 

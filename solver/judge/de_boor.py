@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from semispline.solver.arrays import FloatArray
-from semispline.solver.splines import BSplineCurve, BSplineSurface, SemiStructuredSurface
+from semispline.solver.splines import BSplineCurve, BSplineSurface, NaturalEdge, SemiStructuredSurface
 
 
 def curve_points(
@@ -204,7 +204,10 @@ class EdgeCurves:
 
 
 def edge_curves(
-    surface: BSplineSurface | SemiStructuredSurface, edge: str, order: int = 2, origin: ArrayLike = (0.0, 0.0, 0.0)
+    surface: BSplineSurface | SemiStructuredSurface,
+    edge: NaturalEdge,
+    order: int = 2,
+    origin: ArrayLike = (0.0, 0.0, 0.0),
 ) -> EdgeCurves:
     """Prepare what `EdgeCurves` evaluates along edge u0, u1, v0 or v1: derivatives up to `order`.
 

@@ -18,6 +18,7 @@ from semispline.solver.judge.pairs import Pace, Pairs, affine_pairs, foot_pairs
 from semispline.solver.judge.precise import precise_derivatives
 from semispline.solver.judge.rounding import EdgeNoises, edge_noises, noises_of_derivatives
 from semispline.solver.judge.square_section import section_noises, square_section
+from semispline.solver.splines import NaturalEdge
 
 # Samples that are measured at once.
 _AT_ONCE = 8192
@@ -96,7 +97,7 @@ class Edges:
 
     def __init__(self, a: Base, b: Base, matched: Correspondence, origin: FloatArray, order: int) -> None:
         self.a, self.b, self.matched, self.origin, self.order = a, b, matched, origin, order
-        self.curves_a, self.curves_b = (edge_curves(base.surface, base.edge, order, origin) for base in (a, b))
+        self.curves_a, self.curves_b = (edge_curves(base.surface, base.side, order, origin) for base in (a, b))
         self.noises = [edge_noises(base, origin, order) for base in (a, b)]
 
     @property
@@ -143,13 +144,13 @@ class Edges:
         return [self.curves_a.points(s_a, order), self.curves_b.points(s_b, order)]
 
     def _sides(self, jets: Sequence[Jet]) -> tuple[_Side, _Side]:
-        side_a = _Side(jets[0], self.a.edge, 1.0)
-        return side_a, _Side(jets[1], self.b.edge, 1.0 if self.matched.flipped else -1.0)
+        side_a = _Side(jets[0], self.a.side, 1.0)
+        return side_a, _Side(jets[1], self.b.side, 1.0 if self.matched.flipped else -1.0)
 
     @property
     def _sign(self) -> float:
         """One side is left backwards: odd derivatives change sign unless the edges are at opposite ends."""
-        return -1.0 if self.a.edge[1] == self.b.edge[1] else 1.0
+        return -1.0 if self.a.side[1] == self.b.side[1] else 1.0
 
     def _part(self, s_a: FloatArray, s_b: FloatArray, pace: Pace | None) -> Samples:
         return self._of_jets(s_a, s_b, self._jets(s_a, s_b, self.order), self.noises, pace)
@@ -232,7 +233,7 @@ class _Side:
     that continue each other, one taken with the opposite sign, have one normal, and a fold back turns it over.
     """
 
-    def __init__(self, at: Jet, edge: str, sign: float) -> None:
+    def __init__(self, at: Jet, edge: NaturalEdge, sign: float) -> None:
         self.at = at
         self.point, self.x_w, self.x_s = at[0, 0], at[1, 0], at[0, 1]
         self.x_ww, self.x_ss = at[2, 0], at[0, 2]

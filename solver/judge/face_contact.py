@@ -97,7 +97,7 @@ def measure_face_contact(base: Base, face: BSplineSurface, *, order: int = 2, sa
     origin = local_origin(base.surface, face)
     moved = transform(face, np.eye(3), -origin)
     s = _places(base.breakpoints_along())
-    at = edge_curves(base.surface, base.edge, order, origin).points(s, order)
+    at = edge_curves(base.surface, base.side, order, origin).points(s, order)
     points = at[0, 0]
     length = float(np.linalg.norm(np.diff(points, axis=0), axis=1).sum())
     feet = _feet(moved, points)
@@ -109,7 +109,7 @@ def measure_face_contact(base: Base, face: BSplineSurface, *, order: int = 2, sa
             f"face: the edge is {away[k]:.3g} away from it at ({x:.5g}, {y:.5g}, {z:.5g}), expected an edge on it"
         )
     along = at[0, 1] / np.linalg.norm(at[0, 1], axis=1)[:, None]
-    towards = (1.0 if base.edge[1] == "0" else -1.0) * (1.0 if same_side else -1.0) * at[1, 0]
+    towards = (1.0 if base.side[1] == "0" else -1.0) * (1.0 if same_side else -1.0) * at[1, 0]
     of_face = _face_jet(moved, feet, towards, order)
     normal = _normal(of_face)
     own = _normal(at)

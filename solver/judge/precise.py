@@ -15,7 +15,7 @@ import numpy as np
 
 from semispline.solver.arrays import FloatArray
 from semispline.solver.judge.base import Base
-from semispline.solver.splines import BSplineSurface
+from semispline.solver.splines import BSplineSurface, NaturalEdge
 
 _DIGITS = 60
 _Vector: TypeAlias = list[Decimal]
@@ -45,7 +45,7 @@ class _Net:
     """The control curves of a surface, each with four numbers in a point, and how they are joined across."""
 
     def __init__(
-        self, curves: list[tuple[int, FloatArray, list[_Vector]]], degree: int, knots: FloatArray, edge: str
+        self, curves: list[tuple[int, FloatArray, list[_Vector]]], degree: int, knots: FloatArray, edge: NaturalEdge
     ) -> None:
         self.curves, self.degree, self.knots, self.edge = curves, degree, [Decimal(x) for x in knots.tolist()], edge
 
@@ -71,7 +71,7 @@ class _Net:
                 )
                 for curve in surface.control_curves
             ]
-        return _Net(curves, surface.degree_u, surface.knots_u, base.edge)
+        return _Net(curves, surface.degree_u, surface.knots_u, base.side)
 
     def derivatives(self, x: Decimal, order: int) -> dict[tuple[int, int], _Vector]:
         """Return derivatives of the quotient by (across, along), up to an order, inwards and along as the edge runs."""

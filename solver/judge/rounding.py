@@ -30,7 +30,7 @@ def _noises(base: Base, origin: FloatArray, order: int, stored: float, ratio: fl
     eps = float(np.finfo(float).eps)
     worked = float(np.abs(bounding_box(base.surface) - origin).max())
     across, along = _directions(base, order)
-    at_end = base.edge[1] == "1"
+    at_end = base.side[1] == "1"
     first = np.max([_factors(degree, _end_widths(degree, knots, at_end, order)) for degree, knots in across], 0)
     second = np.max([_factors(degree, _inner_widths(degree, knots, order)) for degree, knots in along], 0)
     factors = np.multiply.outer(first, second)
@@ -158,13 +158,13 @@ def edge_noises(base: Base, origin: FloatArray, order: int = 2) -> EdgeNoises:
     surface = base.surface
     if surface.is_rational:
         return EdgeNoises(noises, np.diag(noises[:3, 0]), along)
-    if base.edge[0] == "u":
+    if base.side[0] == "u":
         degree, knots = surface.degree_u, surface.knots_u
     elif isinstance(surface, BSplineSurface):
         degree, knots = surface.degree_v, surface.knots_v
     else:
         return EdgeNoises(noises, np.diag(noises[:3, 0]), along)
-    return EdgeNoises(noises, one * end_differences(degree, knots, base.edge[1] == "1", 2), along)
+    return EdgeNoises(noises, one * end_differences(degree, knots, base.side[1] == "1", 2), along)
 
 
 def noises_of_derivatives(at: Mapping[tuple[int, int], FloatArray], order: int) -> EdgeNoises:
@@ -181,14 +181,14 @@ def noises_of_derivatives(at: Mapping[tuple[int, int], FloatArray], order: int) 
 
 def _directions(base: Base, order: int) -> tuple[list[tuple[int, FloatArray]], list[tuple[int, FloatArray]]]:
     """Return degree and knots across the edge, and along it: of each curve that is read."""
-    surface, across_u = base.surface, base.edge[0] == "u"
+    surface, across_u = base.surface, base.side[0] == "u"
     in_u = [(surface.degree_u, surface.knots_u)]
     if isinstance(surface, BSplineSurface):
         in_v = [(surface.degree_v, surface.knots_v)]
     else:
         curves = surface.control_curves
         if across_u:
-            curves = curves[: order + 1] if base.edge[1] == "0" else curves[-order - 1 :]
+            curves = curves[: order + 1] if base.side[1] == "0" else curves[-order - 1 :]
         in_v = [(curve.degree, curve.knots) for curve in curves]
     return (in_u, in_v) if across_u else (in_v, in_u)
 
@@ -249,11 +249,11 @@ def _weight_ratio(base: Base, order: int) -> float:
     if not surface.is_rational:
         return 1.0
     # What these read at an end.
-    near = slice(-order - 1, None) if base.edge[1] == "1" else slice(order + 1)
+    near = slice(-order - 1, None) if base.side[1] == "1" else slice(order + 1)
     rows: list[tuple[int, FloatArray, FloatArray]]
     if isinstance(surface, BSplineSurface):
         weights = np.ones(surface.control_points.shape[:2]) if surface.weights is None else surface.weights
-        if base.edge[0] == "v":
+        if base.side[0] == "v":
             rows = [(surface.degree_u, surface.knots_u, row) for row in weights.T[near]]
         else:
             rows = [(surface.degree_v, surface.knots_v, row) for row in weights[near]]
@@ -262,7 +262,7 @@ def _weight_ratio(base: Base, order: int) -> float:
             (c.degree, c.knots, np.ones(len(c.control_points)) if c.weights is None else c.weights)
             for c in surface.control_curves
         ]
-        if base.edge[0] == "u":
+        if base.side[0] == "u":
             rows = every[near]
         else:
             ends = [own[near] for _, _, own in every]

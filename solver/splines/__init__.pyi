@@ -11,6 +11,10 @@ from .construction import interpolate_grid as interpolate_grid
 from .curves import elevate_curve as elevate_curve
 from .curves import restrict_curve as restrict_curve
 from .curves import set_curve_continuity as set_curve_continuity
+from .edges import EdgeName as EdgeName
+from .edges import NaturalEdge as NaturalEdge
+from .edges import cut_to_edge as cut_to_edge
+from .edges import parse_edge as parse_edge
 from .evaluation import euclidean as euclidean
 from .evaluation import homogeneous_points as homogeneous_points
 from .evaluation import same_width as same_width

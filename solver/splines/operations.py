@@ -258,7 +258,7 @@ def split_u(surface: S, u: float) -> tuple[S, S]:
     require(surface, "surface", BSplineSurface, SemiStructuredSurface)
     at = snapped(real_number(u, "u", KnotError), surface.knots_u)
     start, end = surface.domain[0]
-    return _restrict_u(surface, start, at), _restrict_u(surface, at, end)
+    return restrict_u(surface, start, at), restrict_u(surface, at, end)
 
 
 def split_v(surface: S, v: float) -> tuple[S, S]:
@@ -276,17 +276,19 @@ def split_v(surface: S, v: float) -> tuple[S, S]:
     if isinstance(surface, SemiStructuredSurface):
         knots = np.unique(np.concatenate([c.knots for c in surface.control_curves]))
         at = snapped(value, knots)
-        return _restrict_v(surface, start, at), _restrict_v(surface, at, end)
+        return restrict_v(surface, start, at), restrict_v(surface, at, end)
     at = snapped(value, surface.knots_v)
-    return _restrict_v(surface, start, at), _restrict_v(surface, at, end)
+    return restrict_v(surface, start, at), restrict_v(surface, at, end)
 
 
-def _restrict_u(surface: S, start: float, end: float) -> S:
+def restrict_u(surface: S, start: float, end: float) -> S:
+    """Return the surface over a range of u; its ends mean the knots within 1e-12 of the domain of them."""
     matrix, knots = piece_matrix(surface.degree_u, surface.knots_u, start, end)
     return with_u(surface, surface.degree_u, knots, matrix)
 
 
-def _restrict_v(surface: S, start: float, end: float) -> S:
+def restrict_v(surface: S, start: float, end: float) -> S:
+    """Return the surface over a range of v; its ends mean the knots within 1e-12 of the domain of them."""
     if isinstance(surface, SemiStructuredSurface):
         return each_curve(surface, partial(restrict_curve, start=start, end=end))
     matrix, knots = piece_matrix(surface.degree_v, surface.knots_v, start, end)

@@ -1,3 +1,12 @@
+from .edge_listing import edge_lines as edge_lines
+from .edge_listing import edges_record as edges_record
+from .face_edges import FaceEdge as FaceEdge
+from .face_edges import FaceEdges as FaceEdges
+from .face_edges import ResolvedEdge as ResolvedEdge
+from .face_edges import is_of_a_face as is_of_a_face
+from .face_edges import list_edges as list_edges
+from .face_edges import resolve_edge as resolve_edge
+from .face_edges import resolve_edges as resolve_edges
 from .listing import place_lines as place_lines
 from .listing import places_record as places_record
 from .place import Place as Place

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from semispline.solver.arrays import FloatArray
+from semispline.solver.io import ParameterKind
 
 Integers = NDArray[np.int64]
 Flags = NDArray[np.bool_]
@@ -35,6 +36,8 @@ class Faces:
     ends : ndarray, shape (F, 4)
         u0, u1, v0, v1 of the surface that is read out for the face, in the kernel's parameters (an angle on a
         cylinder); NaN where the face has no surface.
+    parameters : tuple of (str, str)
+        Of which kind u and v are: a `ParameterKind`.
     reversed : ndarray of bool, shape (F,)
         The face looks against S_u x S_v.
     repeat : ndarray of int, shape (F,)
@@ -47,6 +50,7 @@ class Faces:
 
     kind: tuple[str, ...]
     ends: FloatArray
+    parameters: tuple[tuple[ParameterKind, ParameterKind], ...]
     reversed: Flags
     repeat: Integers
     same: Integers

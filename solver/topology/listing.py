@@ -50,7 +50,7 @@ def place_lines(places: Places) -> Iterator[str]:
         yield ""
         yield _PLURALS[kind]
         rows = [_heading(kind), *(_row(place) for place in found[:_PRINTED])]
-        for number, line in enumerate(_aligned(rows)):
+        for number, line in enumerate(aligned(rows)):
             yield line
             if number:
                 yield from (f"    {command}" for command in found[number - 1].commands)
@@ -110,7 +110,8 @@ def _row(place: Place) -> list[str]:
     return [*between, *sides, *figures, *sense, f"{1 + len(place.repeats)}", f"{place.score:.2f}", parts]
 
 
-def _aligned(rows: Sequence[Sequence[str]]) -> Iterator[str]:
+def aligned(rows: Sequence[Sequence[str]]) -> Iterator[str]:
+    """Yield the lines of a table."""
     widths = [max(len(row[k]) for row in rows) for k in range(len(rows[0]))]
     for row in rows:
         yield "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip()

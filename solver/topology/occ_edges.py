@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from semispline.solver.io import ParameterKind
 from semispline.solver.topology.half_edges import SAMPLES, Faces, Uses, uses_of
 
 _PCURVES = {
@@ -67,6 +68,7 @@ def edge_tables(faces: Sequence[Any]) -> tuple[Faces, Uses]:
             (
                 item.kind,
                 _ends(item),
+                _parameters(item),
                 face.Orientation() == turned,
                 shape_ids.Add(face.Located(here)),
                 face_ids.Add(face),
@@ -85,9 +87,10 @@ def edge_tables(faces: Sequence[Any]) -> tuple[Faces, Uses]:
     table = Faces(
         kind=tuple(row[0] for row in of_faces),
         ends=np.array([row[1] for row in of_faces], dtype=np.float64).reshape(-1, 4),
-        reversed=np.array([row[2] for row in of_faces], dtype=bool),
-        repeat=_first([row[3] for row in of_faces]),
-        same=_first([row[4] for row in of_faces]),
+        parameters=tuple(row[2] for row in of_faces),
+        reversed=np.array([row[3] for row in of_faces], dtype=bool),
+        repeat=_first([row[4] for row in of_faces]),
+        same=_first([row[5] for row in of_faces]),
         walked=np.array(whole, dtype=bool),
     )
     return table, uses_of(table, rows, records)
@@ -165,6 +168,14 @@ def _ends(face: Any) -> tuple[float, ...]:
     except Exception:
         # No surface, or a failure of the kernel, each of which has a class of its own.
         return (np.nan, np.nan, np.nan, np.nan)
+
+
+def _parameters(face: Any) -> tuple[ParameterKind, ParameterKind]:
+    try:
+        return tuple(face.parameter_kinds)
+    except Exception:
+        # As of the ends.
+        return "same", "same"
 
 
 def _first(groups: list[int]) -> Any:

@@ -61,6 +61,7 @@ def edges_of_3dm(model: Model) -> EdgeGraph:
     table = Faces(
         kind=tuple(face.kind for face in faces),
         ends=ends,
+        parameters=(("same", "same"),) * len(faces),
         reversed=np.array([bool(face.trims and face.trims[0]) for face in faces], dtype=bool),
         repeat=numbers,
         same=numbers,

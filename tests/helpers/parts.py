@@ -1,16 +1,25 @@
 """Parts made by Open CASCADE for tests of edges and places, and their tables without a file."""
 
+import math
 from pathlib import Path
 
 import numpy as np
 from OCP.BRep import BRep_Builder
 from OCP.BRepAdaptor import BRepAdaptor_Curve
-from OCP.BRepBuilderAPI import BRepBuilderAPI_Copy, BRepBuilderAPI_Transform
+from OCP.BRepBuilderAPI import (
+    BRepBuilderAPI_Copy,
+    BRepBuilderAPI_MakeEdge,
+    BRepBuilderAPI_MakeFace,
+    BRepBuilderAPI_MakeWire,
+    BRepBuilderAPI_Transform,
+)
 from OCP.BRepFilletAPI import BRepFilletAPI_MakeFillet
+from OCP.BRepLib import BRepLib
 from OCP.BRepPrimAPI import BRepPrimAPI_MakeBox
 from OCP.BRepTools import BRepTools
 from OCP.collections import IndexedMap_TopoDS_Shape_TopTools_ShapeMapHasher
-from OCP.gp import gp_Pnt, gp_Vec
+from OCP.Geom2d import Geom2d_Line
+from OCP.gp import gp_Dir2d, gp_Pnt, gp_Pnt2d, gp_Vec
 from OCP.TopAbs import TopAbs_ShapeEnum
 from OCP.TopExp import TopExp
 from OCP.TopoDS import TopoDS, TopoDS_Compound
@@ -81,3 +90,15 @@ def edges_of_shape(shape):
     found = IndexedMap_TopoDS_Shape_TopTools_ShapeMapHasher()
     TopExp.MapShapes_s(shape, TopAbs_ShapeEnum.TopAbs_EDGE, found)
     return [TopoDS.Edge(found.FindKey(i + 1)) for i in range(found.Extent())]
+
+
+def polygon(geometry, corners):
+    """A face bounded by straight lines in the parameters, anticlockwise, of a length of 1 each in their own."""
+    wire = BRepBuilderAPI_MakeWire()
+    for a, b in zip(corners, [*corners[1:], corners[0]], strict=True):
+        step = b[0] - a[0], b[1] - a[1]
+        line = Geom2d_Line(gp_Pnt2d(*a), gp_Dir2d(*step))
+        edge = BRepBuilderAPI_MakeEdge(line, geometry, 0.0, math.hypot(*step)).Edge()
+        BRepLib.BuildCurves3d_s(edge)
+        wire.Add(edge)
+    return BRepBuilderAPI_MakeFace(geometry, wire.Wire()).Face()

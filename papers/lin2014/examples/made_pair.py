@@ -18,4 +18,4 @@ def made_pair() -> tuple[Base, Base]:
     problem = read_problem(FOLDER / "made-pair.json")
     if not (isinstance(problem.a, BSplineSurface) and isinstance(problem.b, BSplineSurface)):
         raise TypeError("made-pair.json: expected two B-spline surfaces")
-    return Base(problem.a, problem.edge_a), Base(problem.b, problem.edge_b)  # type: ignore[arg-type]
+    return Base(problem.a, problem.edge_a), Base(problem.b, problem.edge_b)

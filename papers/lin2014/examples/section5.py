@@ -183,8 +183,8 @@ def example(figure: int) -> BlendTask:
     return BlendTask(
         name=f"figure-{figure}",
         title=f"Fig. {figure}: {PRINTED[figure].description}",
-        a=Base(problem.a, problem.edge_a),  # type: ignore[arg-type]  # checked when the problem was read
-        b=Base(problem.b, problem.edge_b),  # type: ignore[arg-type]
+        a=Base(problem.a, problem.edge_a),  # checked when the problem was read
+        b=Base(problem.b, problem.edge_b),
         continuity=PRINTED[figure].continuity,
         middle_curves=PRINTED[figure].middle_curves,
     )

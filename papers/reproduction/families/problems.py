@@ -8,8 +8,8 @@ from typing import Literal, TypeAlias, get_args
 import numpy as np
 
 from semispline.solver.arrays import FloatArray
-from semispline.solver.judge import Base, Edge, correspond, corresponding
-from semispline.solver.splines import BSplineSurface, map_domain, reverse_u, reverse_v, swap_directions
+from semispline.solver.judge import Base, correspond, corresponding
+from semispline.solver.splines import BSplineSurface, NaturalEdge, map_domain, reverse_u, reverse_v, swap_directions
 
 Family: TypeAlias = Literal["facing", "u-turn", "closed rims", "rough", "real"]
 
@@ -112,7 +112,7 @@ def measure_pair(a: Base, b: Base) -> PairMeasures:
 
 
 def _inwards(base: Base) -> int:
-    return 1 if base.edge[1] == "0" else -1
+    return 1 if base.side[1] == "0" else -1
 
 
 def _bend_and_turn(base: Base) -> tuple[float, float]:
@@ -130,7 +130,7 @@ def on_edge(rng: np.random.Generator, surface: BSplineSurface, decades: float) -
 
     The logarithms of the lengths of both domains spread evenly over so many decades about 0.
     """
-    edges: tuple[Edge, ...] = get_args(Edge)
+    edges: tuple[NaturalEdge, ...] = get_args(NaturalEdge)
     edge = edges[int(rng.integers(len(edges)))]
     lengths = 10.0 ** rng.uniform(-decades / 2, decades / 2, 2)
     starts = rng.uniform(-1, 1, 2) * lengths

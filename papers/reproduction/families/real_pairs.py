@@ -8,7 +8,8 @@ from pathlib import Path
 
 from semispline.papers.reproduction.families.problems import ShapeProblem, measure_pair
 from semispline.solver.io import read_surfaces
-from semispline.solver.judge import Base, Edge
+from semispline.solver.judge import Base
+from semispline.solver.splines import NaturalEdge
 
 IMPELLER = "impeller.igs"
 
@@ -30,9 +31,9 @@ class RealPair:
 
     file: str
     face_a: int
-    edge_a: Edge
+    edge_a: NaturalEdge
     face_b: int
-    edge_b: Edge
+    edge_b: NaturalEdge
     between: int | None
     kind: str
 

@@ -234,7 +234,7 @@ def test_the_boundary_comes_out_of_the_process_that_reads(tmp_path):
     assert trimmed_edge_warning("x", "u0", second) is None
     assert trimmed_edge_warning("two.step#1", "u1", second) == (
         "the edge u1 of two.step#1 lies outside of the face, up to 12 mm from the face's own boundary: "
-        "the face is trimmed, its surface goes on"
+        "the face is trimmed, its surface goes on; `semispline list two.step --edges 1` names its own edges"
     )
     assert "outside of the face, in part, by up to 12 mm" in trimmed_edge_warning("x", "v0", second)
     assert [entry.trimmed for entry in list_surfaces(path)] == [False, True]
@@ -302,7 +302,10 @@ def test_check_warns_and_answers_for_the_natural_edge(pair):
     done = run("check", *files, "--edge-a", "u1", "--edge-b", "u0", "--require", "G2", "--json", pair / "c.json")
     assert done.exit_code == 0, done.output
     assert "G2: yes" in done.stdout
-    assert done.stderr == f"warning: the edge u1 of {files[0]} {WORDS}: the face is trimmed, its surface goes on\n"
+    own = f"`semispline list {files[0]} --edges 0` names its own edges"
+    assert (
+        done.stderr == f"warning: the edge u1 of {files[0]} {WORDS}: the face is trimmed, its surface goes on; {own}\n"
+    )
     assert [WORDS in text for text in json.loads((pair / "c.json").read_text())["warnings"]] == [True]
     done = run("check", *reversed(files), "--edge-a", "u0", "--edge-b", "u0", "--json", "-")
     assert done.exit_code == 0
@@ -336,9 +339,7 @@ def test_c_of_a_stored_problem_warns_and_strict_refuses(pair):
         all_commands, ["generate", "--c", str(pair / "out"), "--problem", str(pair / "problem.json")]
     )
     assert done.exit_code == 0, done.output
-    assert done.stderr == (
-        f"warning: the edge u1 of {pair / 'cut.step#0'} {WORDS}: the face is trimmed, its surface goes on\n"
-    )
+    assert done.stderr.startswith(f"warning: the edge u1 of {pair / 'cut.step#0'} {WORDS}: the face is trimmed")
     assert len(list((pair / "out").iterdir())) == 3
     # The edges of one surface: none is there where it ends, and the other one stands in the file itself.
     write_problem(pair / "problem.json", replace(problem, edge_b="u0"))

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 import rhino3dm
 
+from semispline import list_edges, resolve_edge
 from semispline.solver.topology.half_edges import NONE
 from semispline.solver.topology.listing import place_lines
 from semispline.solver.topology.places import find_places, places_of
@@ -100,3 +101,27 @@ def test_fillets_of_a_real_file(shared):
 def test_a_file_without_surfaces_says_what_it_holds(shared):
     (line,) = place_lines(find_places(shared / "data/cad/v6_rhino_subd_logo.3dm"))
     assert line.startswith("no surfaces: 6 meshes, 6 SubD")
+
+
+def test_edges_of_3dm_files_are_named(tmp_path):
+    """A cylinder with its caps: a seam with a side each, rims; the caps' rims are free curves."""
+    path = written(tmp_path / "part.3dm", cylinder(), box())
+    kinds = [(edge.kind, edge.edge, edge.seam) for edge in list_edges(path, 0).edges]
+    assert sorted((kind, edge) for kind, edge, seam in kinds if seam) == [("whole", "u0"), ("whole", "u1")]
+    assert sorted((kind, edge) for kind, edge, seam in kinds if not seam) == [("whole", "v0"), ("whole", "v1")]
+    cap = list_edges(path, 1)
+    assert {edge.kind for edge in cap.edges} == {"free"}
+    assert sum(edge.length for edge in cap.edges) == pytest.approx(4 * np.pi, rel=1e-9)
+    assert {edge.neighbour for edge in cap.edges} == {0}
+    wall = list_edges(path, 3)
+    assert sorted(edge.edge for edge in wall.edges) == ["u0", "u1", "v0", "v1"]
+    named = next(edge for edge in wall.edges if edge.edge == "u1")
+    word = "near=" + ",".join(map(str, named.middle))
+    assert resolve_edge(f"{path}#3", word).entry.name == named.name
+    assert wall.tolerance == pytest.approx(1e-4 * read_edges(path).size)
+
+
+def test_a_pole_of_a_3dm_file_is_a_point(tmp_path):
+    face = list_edges(written(tmp_path / "ball.3dm", sphere()), 0)
+    assert sorted(edge.kind for edge in face.edges) == ["point", "point", "whole", "whole"]
+    assert sorted(edge.edge for edge in face.edges if edge.edge) == ["u0", "u1"]

@@ -1,0 +1,371 @@
+"""The edges of a face as its file has them, named; and e3 and near=x,y,z turned into names that `Base` knows."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from semispline.solver.errors import EdgeError, FileError
+from semispline.solver.io import LoadedSurface, in_one_unit, read_surfaces, split_spec
+from semispline.solver.splines import Surface, parse_edge
+from semispline.solver.topology.edge_names import EdgeKind, line_tolerance, named_edge
+from semispline.solver.topology.half_edges import NONE, EdgeGraph
+from semispline.solver.topology.measuring import MeasuredEdges, measured_edges
+from semispline.solver.topology.near import NEAR, nearest_edge
+from semispline.solver.topology.relations import relate
+
+_OF_A_FACE = re.compile(r"e([0-9]{1,9})")
+Point = tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class FaceEdge:
+    """An edge of a trimmed face.
+
+    Attributes
+    ----------
+    name : str
+        "e0", "e1", .. in walking order, the outer wire first.
+    wire : int
+        0 is the outer one.
+    kind : {"whole", "part", "inner", "free", "point", "not classified"}
+        A whole natural edge of the surface or a part of one, a line of constant parameter inside or a part of one, any
+        other curve, or a point.
+    edge : str or None
+        What `Base` calls it: "u1", "u1[0.2,0.6]", "u=0.3+", ..
+    seam : bool
+        The face lies on both sides.
+    length : float
+    neighbour : int or None
+        The face on the other side; itself at a seam; None where there is none, or more than one.
+    neighbour_edge : str or None
+    sewn : bool
+        The file says that both have this edge; else the neighbour was found by its place.
+    off : float
+        How far the edge is from the line that is named, at most.
+    start, middle, end : (float, float, float)
+        In walking order: the face lies to the left, seen from outside.
+    """
+
+    name: str
+    wire: int
+    kind: EdgeKind
+    edge: str | None
+    seam: bool
+    length: float
+    neighbour: int | None
+    neighbour_edge: str | None
+    sewn: bool
+    off: float
+    start: Point
+    middle: Point
+    end: Point
+
+
+@dataclass(frozen=True)
+class FaceEdges:
+    """The edges of a face.
+
+    Attributes
+    ----------
+    path : str
+    face : int
+        N of `PATH#N`.
+    kind : str
+        What the file holds.
+    reversed : bool
+        The face looks against S_u x S_v.
+    walked : bool
+        False where a wire is broken: the edges are then in the order of the file.
+    unit : str or None
+    tolerance : float
+        The length within which an edge is taken for a line of constant parameter.
+    edges : tuple of FaceEdge
+    """
+
+    path: str
+    face: int
+    kind: str
+    reversed: bool
+    walked: bool
+    unit: str | None
+    tolerance: float
+    edges: tuple[FaceEdge, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class ResolvedEdge:
+    """An edge of a surface in a file, by a name that `Base` knows.
+
+    Attributes
+    ----------
+    spec : str
+        "PATH#N": where a point says which face is meant the number is that face's.
+    loaded : LoadedSurface
+        The whole surface of the face, without its trimming; without its boundary where the edge is one of the face's.
+    edge : str
+    asked : str or None
+        The word that was resolved; None where it was a name already.
+    entry : FaceEdge or None
+        What is known of the edge of the face.
+    said : str
+        What was taken, in words; "" where nothing was resolved.
+    """
+
+    spec: str
+    loaded: LoadedSurface
+    edge: str
+    asked: str | None = None
+    entry: FaceEdge | None = None
+    said: str = ""
+
+    @property
+    def surface(self) -> Surface:
+        """The whole surface."""
+        return self.loaded.surface
+
+
+def is_of_a_face(word: str) -> bool:
+    """Tell whether a word names an edge of a face in a file: e3, near=x,y,z."""
+    return bool(_OF_A_FACE.fullmatch(word.strip())) or word.strip().startswith(NEAR)
+
+
+def list_edges(path: str | Path, face: int) -> FaceEdges:
+    """Return the edges of a face of a STEP, IGES, BREP or 3dm file, as `semispline list PATH --edges N` numbers them.
+
+    Raises
+    ------
+    FileError
+        Missing, broken, of another format, no such face, or one without a B-spline form.
+    ComputationError
+        The process that read the file was killed.
+    """
+    measured = measured_edges(path, [face])
+    _check_face(measured.graph, face, str(path))
+    (loaded,) = read_surfaces([f"{path}#{face}"])
+    return _edges_of(measured, face, loaded)
+
+
+def resolve_edge(spec: str | Path, word: str, name: str = "edge") -> ResolvedEdge:
+    """Return the surface and the name of an edge that is named as in a file.
+
+    Parameters
+    ----------
+    spec : str
+        PATH, or PATH#N.
+    word : str
+        "e3", "near=x,y,z", or a name that `Base` knows, which is returned as it is.
+    name : str
+        What messages call the word.
+
+    Raises
+    ------
+    EdgeError
+        No such edge, a free curve or a point, none near the point or several.
+    FileError, ComputationError
+        As `read_surface` and `list_edges`.
+    """
+    (found,) = resolve_edges([(str(spec), word)], [name])
+    return found
+
+
+def resolve_edges(
+    edges: Sequence[tuple[str, str]], names: Sequence[str] = ("--edge-a", "--edge-b")
+) -> list[ResolvedEdge]:
+    """Return what `resolve_edge` does for the edges of a blend, each file read once; all in one unit.
+
+    Two points in one file without numbers of faces are two clicks: they say which face lies between, and the bases are
+    the faces beyond; the same edge twice is a sharp edge with its two faces.
+    """
+    words = [word.strip() for _, word in edges]
+    asked = [is_of_a_face(word) for word in words]
+    for word, special, name in zip(words, asked, names, strict=True):
+        if not special:
+            parse_edge(word, name)
+    specs = [spec for spec, _ in edges]
+    measured = _measured(specs, words)
+    rows: list[int | None] = [None] * len(edges)
+    said = [""] * len(edges)
+    picked = [split_spec(spec) for spec in specs]
+    for k, (path, number) in enumerate(picked):
+        if not asked[k]:
+            continue
+        graph = measured[path].graph
+        if words[k].startswith(NEAR):
+            where = path if number is None else f"{path}#{number}"
+            rows[k], _, said[k] = nearest_edge(
+                graph, f"{names[k]} {words[k]}", measured[path].nearest[words[k], number], where
+            )
+        else:
+            rows[k] = _row_of(graph, words[k], _only_face(graph, number, path), names[k])
+    _take_faces(rows, picked, words, measured, names)
+    faces = [
+        number if row is None else int(measured[path].graph.uses.face[row])
+        for (path, number), row in zip(picked, rows, strict=True)
+    ]
+    full = [spec if n is None else f"{path}#{n}" for spec, (path, _), n in zip(specs, picked, faces, strict=True)]
+    own = _in_own_units(full, [path for path, _ in picked])
+    found = []
+    for k, (path, _) in enumerate(picked):
+        loaded, row, face = own[k], rows[k], faces[k]
+        if row is None or face is None:
+            found.append(ResolvedEdge(full[k], loaded, str(parse_edge(words[k], names[k]))))
+            continue
+        entry = _edges_of(measured[path], face, loaded).edges[int(measured[path].graph.uses.number[row])]
+        found.append(_resolved(full[k], loaded, words[k], entry, names[k], said[k]))
+    same = in_one_unit([one.loaded for one in found])
+    return [replace(one, loaded=loaded) for one, loaded in zip(found, same, strict=True)]
+
+
+def _in_own_units(specs: Sequence[str], paths: Sequence[str]) -> list[LoadedSurface]:
+    """Return the surfaces, each in the unit of its own file, as its edges are."""
+    found: dict[int, LoadedSurface] = {}
+    for path in dict.fromkeys(paths):
+        here = [k for k, other in enumerate(paths) if other == path]
+        found |= dict(zip(here, read_surfaces([specs[k] for k in here]), strict=True))
+    return [found[k] for k in range(len(specs))]
+
+
+def _measured(specs: Sequence[str], words: Sequence[str]) -> dict[str, MeasuredEdges]:
+    """Return the edges of each file of which a word speaks."""
+    wanted: dict[str, list[tuple[str, int | None]]] = {}
+    for spec, word in zip(specs, words, strict=True):
+        path, number = split_spec(spec)
+        if is_of_a_face(word):
+            wanted.setdefault(path, []).append((word, number))
+    return {
+        path: measured_edges(path, near=[key for key in keys if key[0].startswith(NEAR)])
+        for path, keys in wanted.items()
+    }
+
+
+def _take_faces(
+    rows: list[int | None],
+    picked: Sequence[tuple[str, int | None]],
+    words: Sequence[str],
+    measured: dict[str, MeasuredEdges],
+    names: Sequence[str],
+) -> None:
+    """Choose, for points in a file without a number, which face of their edge is meant; rows are changed."""
+    open_ones = [k for k, (_, number) in enumerate(picked) if number is None and words[k].startswith(NEAR)]
+    if len(open_ones) == 2 and picked[0][0] == picked[1][0]:
+        graph = measured[picked[0][0]].graph
+        first, second = (_uses_of_edge(graph, rows[k]) for k in open_ones)
+        pair = _beyond(graph, first, second)
+        if pair is not None:
+            rows[:] = pair
+            return
+    for k in open_ones:
+        graph = measured[picked[k][0]].graph
+        both = _uses_of_edge(graph, rows[k])
+        if len(both) > 1:
+            shown = " or ".join(f"{picked[k][0]}#{graph.uses.face[row]}" for row in both)
+            raise EdgeError(
+                f"{names[k]} {words[k]}: the edge lies between faces; say which is meant: {shown}, or give two points "
+                "whose edges bound one face: those beyond it are blended"
+            )
+
+
+def _beyond(graph: EdgeGraph, first: Sequence[int], second: Sequence[int]) -> list[int] | None:
+    """Return the uses by the faces beyond the one that two edges have in common; None where there is no such face."""
+    face = graph.uses.face
+    if set(first) == set(second):
+        return list(first) if len({int(face[row]) for row in first}) == 2 else None
+    shared = {int(face[row]) for row in first} & {int(face[row]) for row in second}
+    if len(shared) != 1:
+        return None
+    (between,) = shared
+    pair = [[row for row in uses if face[row] != between] for uses in (first, second)]
+    return [pair[0][0], pair[1][0]] if all(len(beyond) == 1 for beyond in pair) else None
+
+
+def _uses_of_edge(graph: EdgeGraph, row: int | None) -> list[int]:
+    """Return the use and that of the neighbour."""
+    assert row is not None
+    partner = int(relate(graph).partner[row])
+    twin = int(graph.uses.twin[row])
+    return [row, *(x for x in (partner, twin) if x != NONE)]
+
+
+def _only_face(graph: EdgeGraph, number: int | None, path: str) -> int:
+    if number is None:
+        if len(graph.faces) != 1:
+            raise FileError(f"{path}: holds {len(graph.faces)} surfaces; choose one as {path}#N")
+        return 0
+    _check_face(graph, number, path)
+    return number
+
+
+def _check_face(graph: EdgeGraph, face: int, path: str) -> None:
+    count = len(graph.faces)
+    if not 0 <= face < count:
+        raise FileError(f"{path}#{face}: no such surface; the file holds {count}, numbered 0 to {count - 1}")
+
+
+def _row_of(graph: EdgeGraph, word: str, face: int, name: str) -> int:
+    number = int(word[1:])
+    rows = graph.uses.of_face(face)
+    count = rows.stop - rows.start
+    if number >= count:
+        known = f"its edges are e0 to e{count - 1}" if count else "it has no edges"
+        raise EdgeError(f"{name}: found {word!r}, but face #{face} of {graph.path} has no such edge: {known}")
+    return int(rows.start) + number
+
+
+def _resolved(spec: str, loaded: LoadedSurface, word: str, entry: FaceEdge, name: str, near: str) -> ResolvedEdge:
+    title = f"{name} {word}: {entry.name} of {spec}"
+    if entry.edge is None:
+        why = {
+            "free": "is a free curve, along which no parameter of the surface is constant",
+            "point": "is a point",
+        }.get(entry.kind, "cannot be told: the edge was not found on the surface")
+        path, number = split_spec(spec)
+        raise EdgeError(f"{title} {why}; `semispline list {path} --edges {number or 0}` lists the edges of the face")
+    if entry.seam and near:
+        raise EdgeError(f"{title} is a seam: both its sides are of this face; name one of them, as {entry.edge}")
+    said = f"{entry.name} of {spec} is {entry.edge}" + (f" ({near})" if near else "")
+    # It is the face's own: what its surface does elsewhere needs no warning.
+    return ResolvedEdge(spec, replace(loaded, boundary=None), entry.edge, word, entry, said)
+
+
+def _edges_of(measured: MeasuredEdges, face: int, loaded: LoadedSurface) -> FaceEdges:
+    graph = measured.graph
+    rows = list(range(*graph.uses.of_face(face).indices(len(graph.uses))))
+    tolerance = max((line_tolerance(graph, row) for row in rows), default=0.0)
+    return FaceEdges(
+        path=graph.path,
+        face=face,
+        kind=graph.faces.kind[face],
+        reversed=bool(graph.faces.reversed[face]),
+        walked=bool(graph.faces.walked[face]),
+        unit=graph.unit,
+        tolerance=tolerance,
+        edges=tuple(_entries(measured, face, rows, loaded)),
+    )
+
+
+def _entries(measured: MeasuredEdges, face: int, rows: Sequence[int], loaded: LoadedSurface) -> Iterator[FaceEdge]:
+    graph, uses = measured.graph, measured.graph.uses
+    relations = relate(graph)
+    lengths = measured.lengths.get(face) or [float(x) for x in relations.length[list(rows)]]
+    for row, length in zip(rows, lengths, strict=True):
+        named = named_edge(graph, row, loaded.surface, loaded.deviation or 0.0)
+        beyond = int(uses.twin[row] if uses.twin[row] != NONE else relations.partner[row])
+        start, middle, end = (tuple(x) for x in uses.walked_points(row)[[0, uses.points.shape[1] // 2, -1]].tolist())
+        yield FaceEdge(
+            name=uses.name(row),
+            wire=int(uses.wire[row]),
+            kind=named.kind,
+            edge=None if named.name is None else str(named.name),
+            seam=bool(uses.seam[row] or uses.twin[row] != NONE),
+            length=0.0 if named.kind == "point" else length,
+            neighbour=None if beyond == NONE else int(uses.face[beyond]),
+            neighbour_edge=None if beyond == NONE else uses.name(beyond),
+            sewn=not bool(relations.matched[row]),
+            off=named.off,
+            start=start,
+            middle=middle,
+            end=end,
+        )
