@@ -31,10 +31,9 @@ ROOT = Path(__file__).resolve().parents[2]
 FOLDER = ROOT / "build/mutants"
 ROOMS = ("solver/judge", "solver/blending", "solver/proof")
 SAMPLE = 400
-# Processor time of the tests that one mutant is shown.
-BOUND = 15.0
-# The same where a reason to survive is written down.
-BOUND_EXPLAINED = 3.0
+# Processor time of the tests that one mutant is shown: in a process of its own, in memory, and in memory where a reason
+# to survive is written down.
+BOUND, BOUND_IN_MEMORY, BOUND_EXPLAINED = 15.0, 4.0, 1.5
 # Who takes five times as long as usual, and ten seconds more for imports, never ends.
 _TIMES, _MORE = 5.0, 10.0
 _FIRST = 8
@@ -123,7 +122,8 @@ def decide_all(root: Path, wanted: list[Mutant], accepted: list[dict[str, Any]],
     for test in table.failed:
         print(f"left out, fails without any mutant: {test}")
     explained = {m.key for m in wanted if reason(accepted, m)}
-    chosen = {m.key: chosen_for(m, table, root, BOUND_EXPLAINED if m.key in explained else BOUND) for m in wanted}
+    bounds = {m: BOUND_EXPLAINED if m.key in explained else BOUND_IN_MEMORY for m in wanted}
+    chosen = {m.key: chosen_for(m, table, root, bounds[m]) for m in wanted}
     records = read_records(results)
     to_show = {m: still_to_show(root, m, records.get(m.key), chosen[m.key]) for m in wanted}
     if open_ones := {m: tests for m, tests in to_show.items() if tests is not None}:
@@ -135,6 +135,7 @@ def decide_all(root: Path, wanted: list[Mutant], accepted: list[dict[str, Any]],
             host.end()
     records = read_records(results)
     alive = [m for m in wanted if is_to_confirm(records.get(m.key), explained=m.key in explained)]
+    chosen |= {m.key: chosen_for(m, table, root, BOUND) for m in alive}
     way = Way(partial(run_all, slots=slots), len(slots), "survived")
     decide(root, {m: chosen[m.key] for m in alive}, chosen, table, way, results)
 

@@ -221,11 +221,7 @@ def _uses(root: Path, file: str, name: str) -> list[tuple[str, int, int]]:
     files = [file] if name.startswith("_") else [p.relative_to(root).as_posix() for p in _sources(root)]
     found = []
     for path in files:
-        for statement, is_inner in _statements(root / path):
-            body = getattr(statement, "body", None)
-            last = body[0].lineno - 1 if body else statement.end_lineno
-            loaded = [x for x in ast.walk(statement) if isinstance(getattr(x, "ctx", None), ast.Load)]
-            names = {getattr(x, "id", getattr(x, "attr", "")) for x in loaded if getattr(x, "lineno", 0) <= last}
+        for statement, is_inner, last, names in _statements(root / path):
             if name not in names:
                 continue
             if is_inner:
@@ -245,14 +241,18 @@ def _sources(root: Path) -> list[Path]:
 
 
 @cache
-def _statements(path: Path) -> list[tuple[Any, bool]]:
-    """Statements of a file, and whether a function holds them."""
-    found: list[tuple[Any, bool]] = []
+def _statements(path: Path) -> list[tuple[Any, bool, int, set[str]]]:
+    """Statements of a file, whether a function holds them, their last line without a body, and the names used there."""
+    found: list[tuple[Any, bool, int, set[str]]] = []
 
     def visit(node: ast.AST, is_inner: bool) -> None:
         for child in ast.iter_child_nodes(node):
             if isinstance(child, ast.stmt):
-                found.append((child, is_inner))
+                body = getattr(child, "body", None)
+                last = body[0].lineno - 1 if body else child.end_lineno or 0
+                loaded = [x for x in ast.walk(child) if isinstance(getattr(x, "ctx", None), ast.Load)]
+                names = {getattr(x, "id", getattr(x, "attr", "")) for x in loaded if getattr(x, "lineno", 0) <= last}
+                found.append((child, is_inner, last, names))
             visit(child, is_inner or isinstance(child, ast.FunctionDef))
 
     visit(ast.parse(path.read_bytes()), False)
