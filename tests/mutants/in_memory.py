@@ -138,7 +138,7 @@ def break_in_memory(path: Path, source: bytes) -> bool:
             fresh.__dict__.update({k: getattr(module, k, None) for k in ("__file__", "__package__", "__path__")})
             sys.modules[name] = fresh  # dataclasses look here
             try:
-                exec(compile(source, file, "exec"), fresh.__dict__)
+                exec(compile(source, file, "exec", dont_inherit=True), fresh.__dict__)
             finally:
                 sys.modules[name] = module
             changed |= _renew(module, fresh, name) | _rename(module, fresh)
