@@ -47,8 +47,8 @@ class Host:
         other.close()
 
     def end(self) -> None:
-        """Close the pipe, which ends the process."""
-        self.pipe.close()
+        """Say that there is nothing left to do."""
+        self.pipe.send(None)
         os.waitpid(self.pid, 0)
 
 
@@ -71,7 +71,7 @@ def run_in_memory(queue: deque[Job], hosts: list[Host]) -> Iterator[tuple[Job, O
 
 
 class _Serving:
-    """Instead of a run of all the tests: those that are asked for, job by job, until the pipe is closed.
+    """Instead of a run of all the tests: those that are asked for, job by job.
 
     A red test counts if it is green without the change, and a file that cannot be read if the unbroken one can.
     """
@@ -84,12 +84,9 @@ class _Serving:
     def pytest_runtestloop(self, session: pytest.Session) -> bool:
         self.items = {item.nodeid: item for item in session.items}
         import_all(self.slot.tree)
-        while True:
-            try:
-                words, seconds, change = self.pipe.recv()
-            except EOFError:
-                return True
-            self.pipe.send(self.outcome(words, seconds, change))
+        while (asked := self.pipe.recv()) is not None:
+            self.pipe.send(self.outcome(*asked))
+        return True
 
     def outcome(self, tests: list[str], seconds: float, change: tuple[str, bytes]) -> Outcome:
         while True:
