@@ -6,9 +6,16 @@ import numpy as np
 import pytest
 
 from semispline.solver.blending import shape_parameters
+from semispline.solver.blending.gram import EnergyForm
 from semispline.solver.blending.jumps import jumps
 from semispline.solver.blending.knot_lines import knot_lines
-from semispline.solver.blending.representative import _jump_alike, has_free_rows
+from semispline.solver.blending.layout import _check_carries, middle_degree
+from semispline.solver.blending.problem import BlendProblem, _check_bends_continuously
+from semispline.solver.blending.representative import _jump_alike, has_free_rows, needs_constant_weights
+from semispline.solver.blending.rounding import EnergyRounding, _weight_spread
+from semispline.solver.blending.smooth_rows import smooth_rows
+from semispline.solver.blending.weights import rows_from_derivatives
+from semispline.solver.errors import OptionError
 from semispline.solver.options import BlendOptions
 from semispline.solver.splines import Basis
 
@@ -91,3 +98,84 @@ def test_rows_are_free_below_second_order_and_between(continuities, middle, free
 def test_a_bound_is_met_up_to_a_billionth(monkeypatch, value, said):
     monkeypatch.setattr(shape_parameters, "shape_unknowns", lambda problem, found: [("x", value, 2.0, 8.0)])
     assert shape_parameters.alpha_bounds(None, None) == said
+
+
+@pytest.mark.parametrize(
+    ("named", "constant"),
+    [
+        ({}, False),
+        ({"alpha": ("energy", 1.0)}, True),
+        ({"alpha": ((1.0, 2.0), 1.0), "alpha_v": "linear"}, True),
+        ({"middle_curves": 1}, True),
+    ],
+)
+def test_weights_are_constant_where_alpha_is_minimised_linear_or_rows_are_free(named, constant):
+    options = BlendOptions(**{"continuity": ("G2", "G2"), "middle_curves": 0, "alpha": (1.0, 2.0)} | named)
+    assert needs_constant_weights(options) is constant
+
+
+@pytest.mark.parametrize(("share", "matters"), [(5e-4, False), (2e-3, True)])
+def test_rounding_of_a_thousandth_matters(share, matters):
+    assert EnergyRounding(1.0, share).matters is matters
+
+
+def test_weights_spread_over_all_rows():
+    curves = [SimpleNamespace(weights=w) for w in (np.array([1.0, 2.0]), None, np.array([4.0, 3.0]))]
+    assert _weight_spread(SimpleNamespace(control_curves=curves)) == 4
+    assert _weight_spread(SimpleNamespace(control_curves=curves[1:2])) == 1
+
+
+def test_position_alone_has_no_derivatives():
+    assert rows_from_derivatives(0, 3, (1.0,)).tolist() == [[1]]
+
+
+@pytest.mark.parametrize(("degrees", "degree"), [((2, 2), 2), ((2, 5), 3), ((4, 6), 4), ((6, 4), 4), ((1, 2), 3)])
+def test_middle_curves_have_the_lower_degree_and_are_cubic_at_least(degrees, degree):
+    a, b = (Basis(p, np.repeat([0.0, 1.0], p + 1)) for p in degrees)
+    assert middle_degree(a, b) == degree
+
+
+def simple(degree, times=1):
+    return Basis(degree, np.concatenate([np.zeros(degree + 1), [0.5] * times, np.ones(degree + 1)]))
+
+
+@pytest.mark.parametrize(("degree", "order", "is_carried"), [(4, 3, True), (3, 3, False), (2, 2, True)])
+def test_a_knot_of_a_blend_carries_the_order_of_its_contacts(degree, order, is_carried):
+    if is_carried:
+        _check_carries(simple(degree), order, 8)
+    else:
+        with pytest.raises(OptionError, match="carries at most G2"):
+            _check_carries(simple(degree), order, 8)
+
+
+@pytest.mark.parametrize(
+    ("degree", "times", "name"),
+    [(3, 1, None), (4, 2, None), (2, 1, "degree_u"), (2, 2, "degree_u"), (3, 2, "u_knots"), (4, 3, "u_knots")],
+)
+def test_curvature_is_continuous_across_knots_for_the_fairest_shape(degree, times, name):
+    if name is None:
+        _check_bends_continuously(simple(degree, times))
+    else:
+        with pytest.raises(OptionError, match=f"^{name}: "):
+            _check_bends_continuously(simple(degree, times))
+
+
+def test_middle_curves_alone_are_smoother_across_the_seam_than_the_contacts():
+    rows = [simple(5, 3)] * 5
+    problem = SimpleNamespace(
+        seam_order=1, form=SimpleNamespace(rows=rows), a=SimpleNamespace(count=2), b=SimpleNamespace(count=2), rows=rows
+    )
+    # Degree 5, nine control points: as smooth as eight of them at both ends allow.
+    assert [BlendProblem.seam_order_of(problem, row) for row in range(5)] == [1, 1, 3, 1, 1]
+
+
+@pytest.mark.parametrize(("order", "is_tried"), [(-1, True), (0, True), (1, True), (2, False), (3, False)])
+def test_rows_without_close_knots_keep_points_for_their_seam(order, is_tried):
+    # Four points are left where two knots were close.
+    row = Basis(3, np.array([0, 0, 0, 0, 1e-9, 2, 2, 2, 2.0]))
+    form = EnergyForm(Basis(2, np.array([0, 0, 0, 1.0, 1, 1])), (row,) * 3)
+    found = smooth_rows(form, range(1, 2), [order])
+    assert (found is not None) is is_tried
+    if found is not None:
+        step, _ = found.correction(np.random.default_rng(0).normal(size=(row.size, 3)))
+        assert bool(np.abs(step[0] - step[-1]).max() < 1e-10) is (order >= 0)

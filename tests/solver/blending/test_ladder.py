@@ -199,7 +199,8 @@ def test_the_last_rung_has_the_power_of_the_weight():
 
 def test_rows_of_the_last_rung_do_not_know_alpha():
     found = on_rung("om^(n+1)", 2)[2]
-    assert np.ptp(found.rows[:, :, 3], axis=0).max() == 0
+    assert (np.ptp(found.rows[:, :, 3], axis=0) == 0).all()
+    assert len(found.rows) == 3
     assert found.rung.ratio == found.rows[0, :, 3].max() / found.rows[0, :, 3].min()
     assert found.along.degree == 9
 
@@ -236,3 +237,22 @@ def test_position_alone_asks_for_nothing():
     )
     assert found.rung.name == "mean"
     assert found.rung.ratio == 4
+
+
+@pytest.mark.parametrize(("degree", "most"), [(5, 2), (6, 16)])
+def test_finer_splines_are_tried_where_the_last_rung_passes_degree_25(monkeypatch, degree, most):
+    # Order 4: the last rung has degree 25, or 30.
+    rows, along = base(np.random.default_rng(3), 4, 3.0, degree=degree)
+    parts = []
+    fit = ladder.fitted_jets
+
+    def watched(jets, along, count, **more):
+        parts.append(count)
+        # What fits is not the question.
+        return fit(jets, along, 1, **more)
+
+    monkeypatch.setattr(ladder, "fitted_jets", watched)
+    window = Window((0.25, 1e9))
+    assert (window.p2, window.per_a) == ((0, 0), 0)
+    tamed(rows, along, 3, SPANS, order=4, blend_degree=9, blend_spans=SPANS, window=window)
+    assert max(parts) == most
