@@ -105,7 +105,9 @@ def test_a_bound_is_met_up_to_a_billionth(monkeypatch, value, said):
     [
         ({}, False),
         ({"alpha": ("energy", 1.0)}, True),
-        ({"alpha": ((1.0, 2.0), 1.0), "alpha_v": "linear"}, True),
+        ({"alpha": ((1.0, 2.0), 1.0)}, True),
+        ({"alpha": ("fair", "fair"), "alpha_v": "linear"}, True),
+        ({"alpha": ("fair", "fair"), "alpha_v": "constant"}, False),
         ({"middle_curves": 1}, True),
     ],
 )

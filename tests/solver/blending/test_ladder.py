@@ -248,7 +248,7 @@ def test_finer_splines_are_tried_where_the_last_rung_passes_degree_25(monkeypatc
 
     def watched(jets, along, count, **more):
         parts.append(count)
-        # What fits is not the question.
+        # How well they fit is not the question.
         return fit(jets, along, 1, **more)
 
     monkeypatch.setattr(ladder, "fitted_jets", watched)
