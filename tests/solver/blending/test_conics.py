@@ -182,12 +182,12 @@ def test_a_perturbed_net_is_refused(where, change):
 
 
 @pytest.mark.parametrize("change", [1e-13, 1e-7])
-@pytest.mark.parametrize("column", [0, 1, 2])
-def test_a_plane_curve_that_is_no_conic_is_refused(column, change):
+@pytest.mark.parametrize(("column", "factor"), [(0, 1), (1, 1), (2, 1), (1, 1e-4), (1, 1e4)])
+def test_a_plane_curve_that_is_no_conic_is_refused(column, factor, change):
     # All rows stay images of one curve: rank 3.
     knots, points = standard_arcs(np.linspace(0, TURN, 5))
     points[3, column] += change
-    rows = images(points, random_frames(np.random.default_rng(7), 3))
+    rows = factor * images(points, random_frames(np.random.default_rng(7), 3))
     assert (recognised_conic(rows, basis_of(knots)) is not None) is (change < 1e-10)
 
 
@@ -291,9 +291,11 @@ def test_what_coordinates_lose_is_allowed(far, change, is_one):
 @pytest.mark.parametrize(("by", "is_same"), [(1e-10, True), (1e-7, False)])
 def test_arcs_that_differ_by_rounding_are_the_same(by, is_same):
     one = recognised_conic(*ellipse(np.linspace(0, TURN, 5)))
+    # Knots are compared in parts of the domain.
+    one = replace(one, along=basis_of(100 * one.along.knots))
     points, knots = one.points.copy(), one.along.knots.copy()
     points[3, 0] += by
-    knots[3:5] += by
+    knots[3:5] += 100 * by
     for other in (replace(one, turn=one.turn + by), replace(one, points=points), replace(one, along=basis_of(knots))):
         assert same_arcs(one, other) is is_same
 

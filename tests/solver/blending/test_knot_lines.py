@@ -5,16 +5,32 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from semispline.solver.blending import shape_parameters
+from semispline.solver.blending import fair_search, shape_parameters
+from semispline.solver.blending.candidates import _pays_without_p2
 from semispline.solver.blending.gram import EnergyForm
 from semispline.solver.blending.jumps import jumps
 from semispline.solver.blending.knot_lines import knot_lines
-from semispline.solver.blending.layout import _check_carries, middle_degree
-from semispline.solver.blending.problem import BlendProblem, _check_bends_continuously
-from semispline.solver.blending.representative import _jump_alike, has_free_rows, needs_constant_weights
+from semispline.solver.blending.layout import (
+    _check_carries,
+    _every_fourth,
+    _paired_means,
+    fourth_basis,
+    middle_bases,
+    middle_basis,
+    middle_degree,
+)
+from semispline.solver.blending.problem import BlendProblem, _check_bends_continuously, second_weight
+from semispline.solver.blending.representative import (
+    _is_closed,
+    _jump_alike,
+    has_free_rows,
+    needs_constant_weights,
+    read_rows,
+)
 from semispline.solver.blending.rounding import EnergyRounding, _weight_spread
 from semispline.solver.blending.smooth_rows import smooth_rows
-from semispline.solver.blending.weights import rows_from_derivatives
+from semispline.solver.blending.warnings import strained_by
+from semispline.solver.blending.weights import normalised_rows, rows_from_derivatives
 from semispline.solver.errors import OptionError
 from semispline.solver.options import BlendOptions
 from semispline.solver.splines import Basis
@@ -181,3 +197,88 @@ def test_rows_without_close_knots_keep_points_for_their_seam(order, is_tried):
     if found is not None:
         step, _ = found.correction(np.random.default_rng(0).normal(size=(row.size, 3)))
         assert bool(np.abs(step[0] - step[-1]).max() < 1e-10) is (order >= 0)
+
+
+@pytest.mark.parametrize(("off", "degree"), [(5e-15, 1), (1e-12, 2)])
+def test_means_that_differ_by_rounding_change_no_rows(off, degree):
+    line = Basis(1, np.array([0, 0, 1, 1.0]))
+    rows = np.ones((3, 2, 4))
+    rows[1:, :, 3] += off * np.array([1, 3])[:, None]
+    assert normalised_rows(rows, line, 1, (1.0, 1.0))[1] == degree
+
+
+@pytest.mark.parametrize(("end", "closed"), [((3.0, 0, 0), False), ((0.0, 0, 0), True)])
+def test_a_ring_with_a_corner_is_closed(end, closed):
+    row = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], end])
+    along = Basis(1, np.array([0, 0, 1, 2, 3, 3.0]))
+    side = SimpleNamespace(rows=row[None].repeat(3, axis=0), order=0, along=along, largest=3.0)
+    assert _is_closed(side) is closed
+    # The second row is read whatever the order is.
+    assert [len(read_rows(SimpleNamespace(rows=side.rows, order=order))) for order in (0, 1, 2)] == [2, 2, 3]
+
+
+def test_p2_moves_the_third_row_by_both_spans_over_two_degrees():
+    assert second_weight(3, (2.0, 6.0)) == 2
+
+
+@pytest.mark.parametrize(
+    ("names", "cured"), [((None, None), False), ((None, "none"), False), (("none", "spans"), True)]
+)
+def test_what_a_cure_changed_is_cured(names, cured):
+    cures = tuple(name and SimpleNamespace(name=name) for name in names)
+    assert BlendProblem.is_cured.fget(SimpleNamespace(cures=cures)) is cured
+
+
+@pytest.mark.parametrize(("bulge", "said"), [(1.5, "bulge of side b is 1.5: try one nearer to 1"), (1.0, "")])
+def test_a_bulge_that_strains_is_named(bulge, said):
+    found = SimpleNamespace(a=1.0, b=1.0, p2=(0.0, 1e9))
+    assert strained_by(BlendOptions(bulge=(1.0, bulge)), found, 1) == said
+
+
+def test_middle_knots_are_those_of_the_paper_or_every_fourth():
+    a, b = (Basis(1, np.array([0, 0, *inner, 1, 1])) for inner in ([0.5], [0.1, 0.2, 0.8, 0.9]))
+    for name, one in (("paper", middle_basis(a, b)), ("fourth", fourth_basis(a, b))):
+        (found,) = middle_bases(a, b, 1, name)
+        assert found.knots.tolist() == one.knots.tolist()
+    assert middle_basis(a, b).size != fourth_basis(a, b).size
+
+
+def test_every_fourth_knot_is_alike_from_both_ends():
+    places = {n: _every_fourth(np.arange(float(n))).tolist() for n in (1, 4, 5, 9, 11)}
+    assert places == {1: [0], 4: [1, 2], 5: [1, 3], 9: [1, 4, 7], 11: [1, 5, 9]}
+
+
+def test_knots_are_averaged_in_pairs_from_both_ends():
+    means = {n: _paired_means(np.arange(float(n)) ** 2).tolist() for n in (1, 3, 4, 5, 7)}
+    assert means == {1: [0], 3: [5 / 3], 4: [0.5, 6.5], 5: [0.5, 4, 12.5], 7: [0.5, 29 / 3, 30.5]}
+
+
+@pytest.mark.parametrize(("octaves", "more"), [(0.45, 0), (0.55, 1), (-0.45, 0)])
+def test_cells_of_a_scan_are_of_one_size(octaves, more):
+    problem = SimpleNamespace(bounds=((1.0, 2.0), (0.5, 8 * 2**octaves)), exits=SimpleNamespace(u_turn=False))
+    assert fair_search._cells(problem) == fair_search._CELLS + more
+
+
+@pytest.mark.parametrize(("p2", "end"), [(-1 + 1e-10, "lower"), (-1 + 1e-8, ""), (1 - 1e-8, ""), (1 - 1e-10, "upper")])
+def test_an_end_of_p2_is_met_up_to_a_billionth(p2, end):
+    unknowns = SimpleNamespace(ends=(slice(0, 1),), low=np.array([0, -1.0]), high=np.array([0, 1.0]))
+    assert fair_search._p2_end(unknowns, np.array([0, p2]), 0) == end
+
+
+@pytest.mark.parametrize(
+    ("condoned", "ends", "fairness", "pays"),
+    [
+        ((0, 1), (True, True), 9.0, True),
+        ((1, 0), (False, False), 0.0, False),
+        ((0, 0), (False, True), 1.0, True),
+        ((0, 0), (False, True), 9.0, False),
+        ((0, 0), (True, True), 0.5, False),
+    ],
+)
+def test_a_side_goes_without_p2_for_less_to_let_pass_or_an_end_that_is_left(condoned, ends, fairness, pays):
+    def layout(count, at_end, value):
+        fair = SimpleNamespace(at_end=at_end)
+        return SimpleNamespace(found=SimpleNamespace(condoned=(0,) * count, fair=fair, fairness=value))
+
+    without, best = layout(condoned[0], ends, fairness), layout(condoned[1], (True, True), 1.0)
+    assert _pays_without_p2(without, best) is pays

@@ -306,3 +306,11 @@ def test_knots_within_a_billionth_of_the_range_are_one(times, breaks):
     feet = np.array([0.5 + off, 0.8, 0.8 + off])
     merged = _merged(Run(straight, np.array([0, 0.5, 2.0])), feet)
     assert merged.tolist() == (breaks or sorted([0, 0.5, *feet, 2]))
+
+
+def test_points_of_rims_that_are_a_little_apart_belong_together_by_angle():
+    a, b = Base(cylinder(full_circle(4)), "u0"), Base(cylinder(full_circle(3), 1 + 1e-5), "u0")
+    s = np.linspace(0.01, 0.99, 20)
+    others = corresponding_points(a, b, Correspondence(flipped=False, shift=0.0), s)
+    rims = [base.surface.evaluate_grid(np.zeros(1), at)[0] for base, at in ((a, s), (b, others))]
+    assert rims[1] == pytest.approx((1 + 1e-5) * rims[0] * [1, 1, 0], abs=1e-9)
