@@ -5,10 +5,13 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from semispline.solver.blending import fair_search, shape_parameters
-from semispline.solver.blending.candidates import _pays_without_p2
+from semispline.solver.blending import candidates, fair_search, representative, shape_parameters
+from semispline.solver.blending.candidates import _may_want_a_middle_curve, _pays_without_p2
+from semispline.solver.blending.facing import _coincide
+from semispline.solver.blending.fair_objective import FairObjective
+from semispline.solver.blending.fairness_table import LOOPS
 from semispline.solver.blending.gram import EnergyForm
-from semispline.solver.blending.jumps import jumps
+from semispline.solver.blending.jumps import _lambda, _without_joint, jumps
 from semispline.solver.blending.knot_lines import knot_lines
 from semispline.solver.blending.layout import (
     _check_carries,
@@ -44,13 +47,13 @@ def test_sixteen_roundings_of_the_largest_coordinate_over_the_shorter_span(size)
     inner, seam = knot_lines(size * np.array([[[0.0], [1.0], [3.0]]]), UNEVEN, 1, closed=True)
     # A slope is a difference of two control points over a span of 1, or 2.
     expected = 16 * EPS * 3 * size * np.array([1, 2])
-    assert inner.rounding == pytest.approx(expected, rel=1e-12)
-    assert seam.rounding == pytest.approx(expected, rel=1e-12)
+    assert inner.rounding == pytest.approx(expected, rel=1e-12, abs=0)
+    assert seam.rounding == pytest.approx(expected, rel=1e-12, abs=0)
 
 
 def test_rows_that_were_larger_are_rounded_more():
     (line,) = knot_lines(np.array([[[0.0], [1.0], [3.0]]]), UNEVEN, 0, largest=12.0)
-    assert line.rounding == pytest.approx([16 * EPS * 12], rel=1e-12)
+    assert line.rounding == pytest.approx([16 * EPS * 12], rel=1e-12, abs=0)
 
 
 @pytest.mark.parametrize(("excess", "continuity"), [(1e-10, 1), (1e-8, 0)])
@@ -282,3 +285,108 @@ def test_a_side_goes_without_p2_for_less_to_let_pass_or_an_end_that_is_left(cond
 
     without, best = layout(condoned[0], ends, fairness), layout(condoned[1], (True, True), 1.0)
     assert _pays_without_p2(without, best) is pays
+
+
+@pytest.mark.parametrize("fall", [0.3, -0.3])
+def test_a_factor_whose_slopes_fall_alike_is_quadratic(fall):
+    basis, points = _lambda(np.array([0, 1.0, 2]), np.full(3, fall), closed=False)
+    assert basis.degree == 2
+    assert points.ravel() == pytest.approx([1, 1 - fall / 4, 1, 1 - fall / 4, 1], abs=1e-15)
+
+
+@pytest.mark.parametrize(("times", "left"), [(1, 1), (2, 1), (0, 0)])
+def test_only_a_knot_of_full_multiplicity_loses_a_copy(times, left):
+    basis = simple(2, times)
+    rows, found = _without_joint(np.zeros((2, basis.size, 3)), basis, 0.5)
+    assert (np.count_nonzero(found.knots == 0.5), rows.shape[1]) == (left, found.size)
+
+
+@pytest.mark.parametrize(
+    ("bulges", "a", "b", "p2"), [((3.0, 5.0), 6.0, 5.0, (9.0, 50.0)), ((1.0, 1.0), 2.0, 1.0, (1.0, 2.0))]
+)
+def test_a_bulge_scales_alpha_and_twice_p2(bulges, a, b, p2):
+    found = shape_parameters.bulged(shape_parameters.Found(2.0, 1.0, method="linear", p2=(1.0, 2.0)), bulges)
+    assert (found.a, found.b, found.p2) == (a, b, p2)
+
+
+@pytest.mark.parametrize("free", [(True, False), (False, True), (True, True), (False, False)])
+def test_one_free_shape_parameter_is_searched(monkeypatch, free):
+    monkeypatch.setattr(shape_parameters, "solve_fair", lambda problem, known: "solution")
+    monkeypatch.setattr(shape_parameters, "found_fair", lambda solution, method: "found")
+    second = SimpleNamespace(at=lambda a: 0.0)
+    problem = SimpleNamespace(free=free, given=(1.0, 1.0), p2=(second, second))
+    found = shape_parameters.find_shape_parameters(problem, BlendOptions(alpha="fair"))
+    assert (found == "found") is any(free)
+
+
+@pytest.mark.parametrize(
+    ("cures", "alike", "is_left"),
+    [(("none", "none"), False, True), (("spans", "none"), False, False), (("spans", "spans"), True, True)],
+)
+def test_what_both_sides_share_is_left_along(monkeypatch, cures, alike, is_left):
+    found = [SimpleNamespace(cure=cure) for cure in cures]
+    monkeypatch.setattr(representative, "_cured", lambda side, order: found[side.index])
+    monkeypatch.setattr(representative, "_jump_alike", lambda *_: alike)
+    monkeypatch.setattr(representative, "_as_found", lambda cured: "left")
+    monkeypatch.setattr(representative, "_with_cure", lambda side, cured: (side, "cured"))
+    a, b = (SimpleNamespace(order=2, index=index, is_rational=False) for index in (0, 1))
+    options = BlendOptions(continuity=("G2", "G2"), middle_curves=0)
+    said = [cure for _, cure in representative.smooth_along(a, b, options)]
+    assert said == ["left" if is_left else "cured"] * 2
+
+
+@pytest.mark.parametrize(("slope", "coincides"), [(0.0, True), (1.0, False)])
+def test_curves_that_touch_at_their_start_alone_do_not_coincide(slope, coincides):
+    def side(rise):
+        return SimpleNamespace(
+            along=Basis(1, np.array([0, 0, 1, 1.0])),
+            edge=lambda x: (np.stack([x, rise * x, 0 * x], axis=1), None),
+            tangents=lambda x: np.tile([1, rise, 0.0], (len(x), 1)),
+        )
+
+    assert _coincide(side(0.0), side(slope)) is coincides
+
+
+@pytest.mark.parametrize(
+    ("refused", "value", "why"), [(0, 1.0, ""), (0, np.inf, "fold"), (3, 1.0, "fold"), (LOOPS, 1.0, "loop")]
+)
+def test_a_place_without_a_value_says_why(refused, value, why):
+    measured = SimpleNamespace(refused=np.array([refused]), values=np.array([value]))
+    objective = SimpleNamespace(
+        table=SimpleNamespace(measure=lambda monomials: measured),
+        unknowns=SimpleNamespace(monomials=lambda y: (y, None)),
+    )
+    assert FairObjective.refusal(objective, np.zeros(2)) == why
+
+
+@pytest.mark.parametrize(
+    ("alpha_v", "seam", "constant", "wants"),
+    [
+        ("constant", -1, True, True),
+        ("constant", 0, True, False),
+        ("constant", 1, True, False),
+        ("constant", -1, False, False),
+        ("linear", -1, True, False),
+    ],
+)
+def test_open_pairs_of_constant_alpha_and_weights_may_want_a_middle_curve(alpha_v, seam, constant, wants):
+    layout = SimpleNamespace(
+        options=SimpleNamespace(alpha_v=alpha_v),
+        problem=SimpleNamespace(seam_order=seam, has_constant_weights=constant),
+        found=SimpleNamespace(stopped_by="fold"),
+    )
+    assert _may_want_a_middle_curve(layout) is wants
+
+
+@pytest.mark.parametrize(
+    ("wide", "is_known"), [((1.0, 8.0), True), ((0.5, 4.0), True), ((1.0, 4.0), False), ((2.0, 8.0), False)]
+)
+def test_a_box_that_only_adds_to_the_window_cannot_be_worse(monkeypatch, wide, is_known):
+    def problem(a, b, options):
+        return SimpleNamespace(bounds=((1.0, 4.0), wide if options.box else (1.0, 4.0)))
+
+    monkeypatch.setattr(candidates, "make_problem", problem)
+    monkeypatch.setattr(candidates, "_is_searched", lambda *_: True)
+    monkeypatch.setattr(candidates, "find_shape_parameters", lambda *_: SimpleNamespace(fair="known"))
+    found = candidates._known_within(None, None, BlendOptions(alpha="fair", box=(0.5, 8.0)))
+    assert found == ("known" if is_known else None)

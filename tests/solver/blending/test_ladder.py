@@ -9,7 +9,7 @@ from scipy.interpolate import BPoly
 from helpers.bases import random_knots
 from semispline.solver.blending import ladder
 from semispline.solver.blending.knot_lines import least_continuity
-from semispline.solver.blending.ladder import LEAST_SHARE, Window, power_jets, tamed, weight_range
+from semispline.solver.blending.ladder import Window, power_jets, tamed, weight_range
 from semispline.solver.blending.weights import normalised_rows
 from semispline.solver.generated import contact_numpy, rows_numpy
 from semispline.solver.splines import Basis, basis_matrix, clamped, uniform_knots
@@ -163,7 +163,7 @@ def test_weights_are_tame_to_a_limit(factor):
     rows[:, :, 3] = 1
     rows[1, :, 3] = 1.5, 1.0, 0.5
     # Row 1 of the blend is (1 + a) w_0 - a w_1: for the first column 1 - a / 2.
-    most = 2 * (1 - LEAST_SHARE * factor)
+    most = 2 * (1 - 0.1 * factor)
     found = tamed(
         rows, along, 1, (1.0,), order=len(rows) - 1, blend_degree=3, blend_spans=(3.0,), window=Window((0.1, most))
     )

@@ -188,3 +188,14 @@ def test_weights_of_a_millionth_are_none(part, is_weight):
     filled = RationalSystem(form, plain, [-1]).completed(points)[low:high]
     assert (filled[:, 3] == 1).all()
     assert (filled[:, 7] == is_weight).all()
+
+
+def test_excess_is_the_part_of_the_energy_that_a_step_to_the_least_takes():
+    form = made_form(lambda n: 1 + np.random.default_rng(1).uniform(0, 0.6, n))
+    low, high = form.offsets[1], form.offsets[2]
+    plain = SimpleNamespace(rows=range(1, 2), size=high - low, free=slice(low, high))
+    points = np.random.default_rng(2).normal(size=(form.offsets[-1], 4))
+    points[:, 3] = form.weights
+    system = RationalSystem(form, plain, [-1])
+    energy, least = (form.products(p[None, :, :3])[0, 0] for p in (points, system.completed(points)))
+    assert system.excess(points) == pytest.approx((energy - least) / energy, rel=1e-9)

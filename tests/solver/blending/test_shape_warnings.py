@@ -355,3 +355,11 @@ def test_a_crease_of_the_base_itself_is_said(degrees, said):
     cure = SimpleNamespace(left=(SimpleNamespace(degrees=degrees, v=0.5),))
     assert len(list(_creased([Crease("v", 0.5, 1.0)], (cure, None)))) == said
     assert list(_creased([], (cure, None))) == []
+
+
+@pytest.mark.parametrize(
+    ("angle", "said"), [(9e-4, "G1 inside"), (1.1e-3, "the blend is creased at v = 0.5, by up to")]
+)
+def test_curvature_jumps_where_there_is_no_crease(angle, said):
+    (warning,) = warnings_of(roof(0.0), creases=[Crease("v", 0.5, angle, 1.0, 0.5)])
+    assert warning.startswith(said)
