@@ -14,6 +14,7 @@ from semispline.solver.blending.gram import EnergyForm
 from semispline.solver.blending.measured_energy import measure_energy, thin_plate_energy
 from semispline.solver.blending.pipeline import state_problem
 from semispline.solver.blending.rational_energy import RationalForm, RationalSystem, free_weights
+from semispline.solver.errors import ComputationError
 from semispline.solver.splines import Basis
 
 
@@ -199,3 +200,25 @@ def test_excess_is_the_part_of_the_energy_that_a_step_to_the_least_takes():
     system = RationalSystem(form, plain, [-1])
     energy, least = (form.products(p[None, :, :3])[0, 0] for p in (points, system.completed(points)))
     assert system.excess(points) == pytest.approx((energy - least) / energy, rel=1e-9)
+
+
+def free_row(points=None):
+    form = made_form(None)
+    low, high = form.offsets[1], form.offsets[2]
+    return RationalSystem(form, SimpleNamespace(rows=range(1, 2), size=high - low, free=slice(low, high)), [-1])
+
+
+def test_one_point_that_does_not_settle_is_enough_to_refuse(monkeypatch):
+    system = free_row()
+    step = np.zeros((system.size, 3))
+    step[0] = 1.0
+    monkeypatch.setattr(system, "_step", lambda numerators: step)
+    with pytest.raises(ComputationError, match="too ill-conditioned"):
+        system.completed(np.ones((system.form.offsets[-1], 4)))
+
+
+def test_a_coordinate_that_is_zero_everywhere_is_no_trouble():
+    system = free_row()
+    points = np.random.default_rng(3).normal(size=(system.form.offsets[-1], 4))
+    points[:, 2:] = 0, 1
+    assert (system.completed(points)[:, 2] == 0).all()
