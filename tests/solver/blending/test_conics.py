@@ -7,11 +7,14 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from helpers.circles import arcs, cylinder
 from helpers.conics import occ_net, standard_arcs
 from helpers.same_surface import departure
+from semispline import Base
 from semispline.derivations.circles import circle_points
 from semispline.solver.blending.conics import _boost, cured_conic, recognised_conic, same_arcs
 from semispline.solver.blending.knot_lines import knot_lines, least_continuity
+from semispline.solver.blending.matching import matched_edges
 from semispline.solver.splines import Basis, clamped, elevation_matrix, refinement_matrix
 from semispline.solver.splines.refinement import elevated_knots
 
@@ -309,3 +312,17 @@ def test_derivatives_at_knot_lines():
         # One factor for all rows: (R_v)' - (R_v) = c R, c = 4 (cos - 1) for quarters.
         jump = line.after[1] - line.before[1]
         assert jump == pytest.approx(-4 * (1 - np.cos(np.pi / 4)) * line.after[0], abs=1e-12)
+
+
+def test_where_a_rim_starts_on_another_does_not_depend_on_its_domain():
+    quarters = np.linspace(0, 1, 5)
+    a = Base(cylinder(arcs(TURN * quarters)), "u1")
+    # Turned by a tenth of a turn, in quarters that begin at its own start.
+    shifts = [
+        matched_edges(
+            a, Base(cylinder(arcs(TURN * (quarters + 0.1), start + quarters), 2.0, (3.0, 4.0)), "u0"), "no"
+        ).shift
+        for start in (0.0, 5.0, -5.0)
+    ]
+    assert 0.85 < shifts[0] < 0.95
+    assert shifts == pytest.approx([shifts[0]] * 3, abs=1e-12)
