@@ -286,7 +286,7 @@ def contact_rows_from_pieces(
     """
     blend = end_derivatives_from_pieces(order, degree, end)
     base = end_derivatives_from_pieces(order, base_degree, base_end)
-    base = base.subs(dict(zip(span_symbols(order), span_symbols(order, "H"), strict=True)), simultaneous=True)
+    base = base.xreplace(dict(zip(span_symbols(order), span_symbols(order, "H"), strict=True)))
     sign = (1 if end == "start" else -1) * (1 if base_end == "start" else -1)
     conditions = special_conditions(order)
     factors = [condition.coeff(base_derivative(d, 0)).subs(A, sign * A) for d, condition in enumerate(conditions)]

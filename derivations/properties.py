@@ -202,7 +202,11 @@ def derivative_step() -> sp.Expr:
     high_slope = (p - 1) * (b / (t_p - t1) - c / (t_pp - t2))
     left = low / (t_p - t0) + (x - t0) / (t_p - t0) * low_slope
     left += -high / (t_pp - t1) + (t_pp - x) / (t_pp - t1) * high_slope
-    return sp.cancel(left - p * (low / (t_p - t0) - high / (t_pp - t1)))
+    # Linear in the three functions: one by one they are brought to a common denominator much faster.
+    residual = sp.expand(left - p * (low / (t_p - t0) - high / (t_pp - t1)))
+    parts = {letter: residual.coeff(letter) for letter in (a, b, c)}
+    rest = residual - sum(letter * part for letter, part in parts.items())
+    return sum((letter * sp.cancel(part) for letter, part in parts.items()), sp.cancel(sp.expand(rest)))
 
 
 def _hat_residual(side: int) -> sp.Expr:

@@ -11,11 +11,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import cache
 from itertools import pairwise
 from keyword import iskeyword
 from typing import Any
 
-from sympy import Expr, Float, Matrix, Poly, Rational, Symbol, cancel, diag, factor, factorial, sympify
+from sympy import Expr, Float, ImmutableMatrix, Matrix, Poly, Rational, Symbol, cancel, diag, factor, factorial, sympify
 from sympy.polys.constructor import construct_domain
 
 X = Symbol("x")
@@ -122,8 +123,8 @@ def basis_pieces(degree: int, knots: Sequence[Any]) -> tuple[Span, ...]:
     return tuple(spans)
 
 
-def _span_pieces(degree: int, knots: list[Any], k: int, domain: Any) -> tuple[Poly, ...]:
-    """Run Cox-de Boor on span k; `knots` are elements of `domain`, a field."""
+def _span_pieces(degree: int, knots: list[Any], k: int, domain: Any, highest: int | None = None) -> tuple[Poly, ...]:
+    """Run Cox-de Boor on span k; `knots` are elements of `domain`, a field; powers above `highest` are left out."""
     zero = Poly(0, X, domain=domain)
     pieces = [Poly(1, X, domain=domain)]
     for d in range(1, degree + 1):
@@ -137,7 +138,7 @@ def _span_pieces(degree: int, knots: list[Any], k: int, domain: Any) -> tuple[Po
                 total += lower[r] * _line(domain.one, -knots[i], knots[i + d] - knots[i], domain)
             if r < d and knots[i + d + 1] != knots[i + 1]:
                 total += lower[r + 1] * _line(-domain.one, knots[i + d + 1], knots[i + d + 1] - knots[i + 1], domain)
-            pieces.append(total)
+            pieces.append(total if highest is None else total.rem(Poly(X ** (highest + 1), X, domain=domain)))
     return tuple(pieces)
 
 
@@ -272,7 +273,12 @@ def end_derivatives_from_pieces(order: int, degree: int, end: str = "start") -> 
     [   1,     0],
     [3/h1, -3/h1]])
     """
-    sign = _end_sign(end)
+    return _read_off(order, degree, _end_sign(end)).as_mutable()
+
+
+@cache
+def _read_off(order: int, degree: int, sign: int) -> ImmutableMatrix:
+    """Return `end_derivatives_from_pieces`, once: contact of many pairs of degrees asks for the same few."""
     h = span_symbols(degree)
     clamped = [sympify(0)] * (degree + 1)
     # One span is enough: the one next to the end, whose pieces see h_1..h_p only.
@@ -281,14 +287,15 @@ def end_derivatives_from_pieces(order: int, degree: int, end: str = "start") -> 
     else:
         knots, span = [*(-width for width in reversed(h)), *clamped], degree - 1
     domain, elements = construct_domain(knots, field=True)
-    pieces = _span_pieces(degree, elements, span, domain)
+    # The derivatives are those at the origin: no more powers are needed.
+    pieces = _span_pieces(degree, elements, span, domain, order)
     if sign < 0:
         pieces = pieces[::-1]
     matrix = Matrix.zeros(order + 1, order + 1)
     for i, piece in enumerate(pieces[: order + 1]):
         for d in range(min(order, degree) + 1):
             matrix[d, i] = factor(piece.coeff_monomial(X**d) * factorial(d))
-    return matrix
+    return matrix.as_immutable()
 
 
 def end_derivative_step(order: int, end: str = "start") -> Matrix:

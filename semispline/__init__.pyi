@@ -1,6 +1,7 @@
 from .solver.blending.measured_energy import thin_plate_energy as thin_plate_energy
 from .solver.blending.pipeline import blend as blend
 from .solver.blending.result import BlendResult as BlendResult
+from .solver.errors import BandError as BandError
 from .solver.errors import ComputationError as ComputationError
 from .solver.errors import ContactError as ContactError
 from .solver.errors import ControlPointError as ControlPointError
@@ -31,6 +32,8 @@ from .solver.judge.curvature import zebra as zebra
 from .solver.judge.curvature_range import CurvatureAt as CurvatureAt
 from .solver.judge.curvature_range import CurvatureRange as CurvatureRange
 from .solver.judge.curvature_range import measure_curvature_range as measure_curvature_range
+from .solver.judge.face_contact import FaceContact as FaceContact
+from .solver.judge.face_contact import measure_face_contact as measure_face_contact
 from .solver.judge.fairness import Fairness as Fairness
 from .solver.judge.fairness import measure_fairness as measure_fairness
 from .solver.judge.loops import Exits as Exits
@@ -102,5 +105,11 @@ from .solver.splines.simplification import remove_knots as remove_knots
 from .solver.splines.surfaces import BSplineCurve as BSplineCurve
 from .solver.splines.surfaces import BSplineSurface as BSplineSurface
 from .solver.splines.surfaces import SemiStructuredSurface as SemiStructuredSurface
+from .solver.topology.bands import Band as Band
+from .solver.topology.bands import band_along as band_along
+from .solver.topology.place import Place as Place
+from .solver.topology.place import Places as Places
+from .solver.topology.place import PlaceSide as PlaceSide
+from .solver.topology.places import find_places as find_places
 
 __version__: str

@@ -27,7 +27,7 @@ from semispline.solver.reports import (
 )
 
 if TYPE_CHECKING:
-    from semispline.solver.judge import Contact
+    from semispline.solver.judge import Base, Contact
 
 app = typer.Typer(no_args_is_help=True, add_completion=False, pretty_exceptions_enable=False)
 
@@ -112,7 +112,7 @@ def check_command(
         bases = Base(first.surface, cast(Any, edge_a)), Base(second.surface, cast(Any, edge_b))
         contact = measure_contact(*bases, order=4)
     misses = _misses(contact, required)
-    doubts = _doubts(contact, required, misses)
+    doubts = _doubts(*bases, contact, required, misses)
     warnings = face_warnings((a, edge_a, first), (b, edge_b, second))
     if json_file is not None:
         record = {"a": a, "edge_a": edge_a, "b": b, "edge_b": edge_b, "unit": first.unit, **contact_record(contact)}
@@ -134,6 +134,10 @@ def check_command(
 @reports_errors
 def list_command(
     file: Annotated[str, typer.Argument(metavar="FILE", help="A CAD file: STEP, IGES, BREP or 3dm.")],
+    pairs: Annotated[
+        bool,
+        typer.Option("--pairs", help="Propose places to blend instead: fillets, gaps, chamfers, sharp edges."),
+    ] = False,
     json_file: Annotated[
         str | None, typer.Option("--json", metavar="FILE", help="Write the list; - is standard output.")
     ] = None,
@@ -142,6 +146,9 @@ def list_command(
     from semispline.solver.io import check_outputs, list_file
 
     check_outputs({"--json": _file(json_file)}, [file])
+    if pairs:
+        _list_pairs(file, json_file)
+        return
     with _progress("reading"):
         entries, others = list_file(file)
     if json_file is not None:
@@ -149,6 +156,18 @@ def list_command(
         _write_json(json_file, {"format": "semispline/1", "kind": "surface_list", **record})
     if json_file != "-":
         print_entries(entries, others)
+
+
+def _list_pairs(file: str, json_file: str | None) -> None:
+    from semispline.solver.topology import find_places, place_lines, places_record
+
+    with _progress("reading"):
+        places = find_places(file)
+    if json_file is not None:
+        _write_json(json_file, {"format": "semispline/1", "kind": "place_list", **places_record(places)})
+    if json_file != "-":
+        for line in place_lines(places):
+            typer.echo(line)
 
 
 @app.command("show")
@@ -242,7 +261,7 @@ def _misses(contact: Contact, require: Continuity | None) -> list[str]:
     ]
 
 
-def _doubts(contact: Contact, require: Continuity | None, misses: list[str]) -> list[str]:
+def _doubts(a: Base, b: Base, contact: Contact, require: Continuity | None, misses: list[str]) -> list[str]:
     """Return what qualifies the answer: places without a normal, and measures of which rounding hides a part.
 
     Raises
@@ -250,16 +269,15 @@ def _doubts(contact: Contact, require: Continuity | None, misses: list[str]) -> 
     ContactError
         Rounding hides so much that there is no answer.
     """
-    from semispline.solver.judge import doubtful, untold
+    from semispline.solver.judge import doubtful, rounding_causes, untold
 
     if require is None:
         return []
     hidden = untold(contact, require)
     if hidden and not misses:
-        raise ContactError(
-            f"{require} cannot be told: {'; '.join(hidden)}; move both surfaces nearer to the origin, in the program "
-            "that made them, or choose knots that are further apart"
-        )
+        causes = rounding_causes(a, b, int(require[1])).words(("A", "B"))
+        remedy = causes or "choose knots that are further apart, or ask for a lower continuity"
+        raise ContactError(f"{require} cannot be told: {'; '.join(hidden)}; {remedy}")
     places = contact.no_normal if require in ("G1", "G2", "G3", "G4") else ()
     return [f"{place.surface.upper()} has {place}" for place in places] + doubtful(contact, require)
 

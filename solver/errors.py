@@ -45,3 +45,7 @@ class TrimError(ComputationError):
 
 class FoldError(ComputationError):
     """A finished blend that folds or is creased, where that was not allowed."""
+
+
+class BandError(ComputationError):
+    """A free curve of a face along which no band meets its limits."""

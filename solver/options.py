@@ -17,7 +17,7 @@ Flip: TypeAlias = Literal["auto", "yes", "no"]
 # A pair has the values at both ends of v.
 Alpha: TypeAlias = float | tuple[float, float] | Literal["fair", "energy", "natural"]
 AlphaV: TypeAlias = Literal["auto", "constant", "linear"]
-VScale: TypeAlias = Literal["paper", "unit", "length"]
+VScale: TypeAlias = Literal["paper", "unit", "length", "stretched"]
 Auto: TypeAlias = Literal["auto"]
 
 # Energies have the fourth power of alpha^2 and of the box: far from any blend, and far from where floats end.
@@ -71,9 +71,10 @@ class BlendOptions:
     box : (float, float), optional
         Admissible alpha^2 and beta^2. For least energy in units of their natural sizes, 1/8 to 8 unless given; for the
         fairest shape in units of an arc's, 1/4 to 4, or to 16 where exits and chords disagree, 1/8 to 2 for G3 and G4.
-    v_scale : {"paper", "unit", "length"}, optional
-        What (11) takes the length of the v-domain for: itself, 1, or mean contact length over mean gap. With the last
-        two the blend does not depend on the units of v nor on the order of the bases.
+    v_scale : {"paper", "unit", "length", "stretched"}, optional
+        What (11) takes the length of the v-domain for: itself, 1, mean contact length over mean gap, or 3.5 times that,
+        with which the free rows of G1 do not pull pipes together. But for the first one the blend does not depend on
+        the units of v nor on the order of the bases.
     u_knots : sequence of float, optional
         Inner knots of U instead of uniform ones.
     middle_knots : "fourth", "paper", or a sequence of sequences of float, optional
@@ -123,7 +124,7 @@ class BlendOptions:
         None, "range", "LOW HIGH", "Range of a searched alpha² and beta², times an arc's (energy: their natural sizes)."
     )
     v_scale: VScale | None = _option(
-        None, "text", "SCALE", "Length of v in the energy: paper (as it is), unit or length."
+        None, "text", "SCALE", "Length of v in the energy: paper (as it is), unit, length or stretched."
     )
     u_knots: Sequence[float] | None = _option(
         None, "numbers", "K1,K2,...", "Inner knots in u, in (0, 1); uniform if left out."
@@ -261,7 +262,7 @@ class BlendOptions:
             "degree_u": (3 if papers else across) if self.degree_u == "auto" else self.degree_u,
             "alpha_v": "constant" if papers or (self.alpha_v == "auto" and nothing_searched) else self.alpha_v,
             "p2": "zero" if self.p2 == "auto" and without_p2 else self.p2,
-            "v_scale": self.v_scale or ("paper" if papers else "length"),
+            "v_scale": self.v_scale or ("paper" if papers else "stretched" if 1 in self.orders else "length"),
             "middle_knots": ("paper" if papers else "fourth") if self.middle_knots is None else self.middle_knots,
         }
         return replace(self, **cast("dict[str, Any]", unsaid))

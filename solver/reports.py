@@ -249,7 +249,7 @@ def _quadrature(result: BlendResult) -> str:
     """Say how well the energy of a rational blend is known."""
     if result.quadrature_error is None:
         return ""
-    return f", by quadrature, relative error {result.quadrature_error / max(result.energy, 1e-300):.1e}"
+    return f", by quadrature, error {result.quadrature_error:.1e}"
 
 
 def _objective(result: BlendResult) -> str:
@@ -307,7 +307,7 @@ def print_entries(entries: Sequence[SurfaceEntry], others: Mapping[str, int]) ->
         if entry.problem:
             notes.append(f"cannot be used: {entry.problem}")
         if entry.deviation is not None:
-            off = f"up to {entry.deviation:.3g} off, in the unit of the file"
+            off = f"about {entry.deviation:.3g} off at worst, in the unit of the file"
             notes.append(f"#{entry.number} has no exact B-spline form: the surface taken for it is {off}")
     _print_table(rows)
     for note in notes:

@@ -162,32 +162,37 @@ def spline_basis(knots: Mapping[Any, Sequence[Any]]) -> Callable[..., Any]:
     UndefinedError
         When called with an index that the knot vector of that order does not have.
     """
+    # A vector is hashed once here, and not again at each value: its fractions make that slow.
+    values = {name: (len(vector), _basis_values(tuple(vector))) for name, vector in knots.items()}
 
     def basis(i: Any, order: Any, x: Any, name: Any, derivative: Any = 0) -> Fraction:
-        vector = tuple(knots[name])
-        count = len(vector) - int(order)
+        length, value = values[name]
+        count = length - int(order)
         if not 0 <= i < count or count < order:
             raise UndefinedError(f"B[{i}] of {count} functions of order {order}")
-        return _basis_value(int(i), int(order), Fraction(x), vector, int(derivative))
+        return value(int(i), int(order), Fraction(x), int(derivative))
 
     return basis
 
 
 @cache
-def _spans(order: int, vector: tuple[Any, ...]) -> tuple[Span, ...]:
-    return basis_pieces(order - 1, [as_expression(t) for t in vector])
+def _basis_values(vector: tuple[Any, ...]) -> Callable[[int, int, Fraction, int], Fraction]:
+    """Return the basis functions over one knot vector, which remember their values."""
 
+    @cache
+    def spans(order: int) -> tuple[Span, ...]:
+        return basis_pieces(order - 1, [as_expression(t) for t in vector])
 
-@cache
-def _basis_value(i: int, order: int, x: Fraction, vector: tuple[Any, ...], derivative: int) -> Fraction:
-    spans = _spans(order, vector)
-    point = sp.Rational(x.numerator, x.denominator)
-    span = next((s for s in spans if s.start <= point < s.end), spans[-1])
-    if not span.first <= i < span.first + len(span.pieces):
-        return Fraction(0)
-    piece = span.pieces[i - span.first]
-    value = (piece.diff((X, derivative)) if derivative else piece).eval(point)
-    return as_fraction(value)
+    @cache
+    def value(i: int, order: int, x: Fraction, derivative: int) -> Fraction:
+        point = sp.Rational(x.numerator, x.denominator)
+        span = next((s for s in spans(order) if s.start <= point < s.end), spans(order)[-1])
+        if not span.first <= i < span.first + len(span.pieces):
+            return Fraction(0)
+        piece = span.pieces[i - span.first]
+        return as_fraction((piece.diff((X, derivative)) if derivative else piece).eval(point))
+
+    return value
 
 
 def bernstein(i: Any, degree: Any, x: Any) -> Any:

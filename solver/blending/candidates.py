@@ -1,7 +1,8 @@
 """Which layout of rows a fair blend takes: those that are tried, in order, and why each was taken or not.
 
-The quintic without middle curve was best or within 5 % of the best of six layouts in nine of ten facing pairs, and best
-on closed rims, where free rows pull circles together (docs/shapes.md).
+The fairer of the quintics without and with one middle curve was best or within 5 % of the best of six layouts in nine
+of ten facing pairs. On U-turns and on closed rims, where free rows pull circles together, the one without was
+(docs/shapes.md).
 """
 
 from __future__ import annotations
@@ -10,18 +11,22 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import cast
 
-from semispline.solver.blending.fair_search import FairSolution
+from semispline.solver.blending.fair_search import MOST_CONDONED, AllRefusedError, FairSolution
 from semispline.solver.blending.linear_problem import WIDER, gap_ratio, try_linear_alpha
-from semispline.solver.blending.problem import LOWER, BlendProblem, SecondParameter, make_problem
+from semispline.solver.blending.problem import BlendProblem, make_problem
 from semispline.solver.blending.shape_parameters import Found, alpha_bounds, find_shape_parameters, found_fair
 from semispline.solver.blending.sides import Side
+from semispline.solver.blending.windows import LOWER, SecondParameter
 from semispline.solver.errors import ComputationError, OptionError
 from semispline.solver.options import AlphaV, BlendOptions
 
 # A p2 that leads to an end of the window is left out where that leads away from it, and fairness grows to at most this
 # multiple.
 WITHOUT_P2 = 1.1
-# A middle curve is tried where gap / |R_w| varies by this factor along a contact and alpha is constant all the same.
+# A middle curve is taken where fairness falls to this share: it has a sixth as many control points again.
+MIDDLE_SHARE = 0.95
+QUINTIC = 5
+# Where it wins seldom it is tried where gap / |R_w| varies by this factor along a contact, alpha constant all the same.
 MIDDLE_RATIO = 2.0
 
 
@@ -91,8 +96,9 @@ def find_layout(a: Side, b: Side, said: BlendOptions) -> tuple[Layout, tuple[Can
     def search(
         options: BlendOptions, problem: BlendProblem, known: FairSolution | None, remark: str = ""
     ) -> Layout | None:
+        most_condoned = min((len(layout.found.condoned) for layout in _found(tried)), default=MOST_CONDONED)
         try:
-            found = find_shape_parameters(problem, options, known)
+            found = find_shape_parameters(problem, options, known, most_condoned)
             result: Layout | ComputationError = Layout(options, problem, found)
         except ComputationError as refusal:
             if not _is_searched(problem, options):
@@ -110,7 +116,7 @@ def find_layout(a: Side, b: Side, said: BlendOptions) -> tuple[Layout, tuple[Can
     # The quartic suits U-turns that want little alpha, whatever becomes of the quintic in a lower window.
     doubtful = best is None or (best.problem.exits.u_turn and _is_doubtful(best))
     best = None if best is None else _away_from_ends(best, search)
-    if (doubtful or _is_doubtful(cast("Layout", best))) and said.degree_u == "auto" and first.degree_u == 5:
+    if (doubtful or _is_doubtful(cast("Layout", best))) and said.degree_u == "auto" and first.degree_u == QUINTIC:
         quartic = attempt(replace(first, degree_u=4, alpha_v="constant"))
         best = _fairer(best, quartic)
         best = _away_from_ends(best, search) if best is not None and best is quartic else best
@@ -119,8 +125,15 @@ def find_layout(a: Side, b: Side, said: BlendOptions) -> tuple[Layout, tuple[Can
     best, linear = _with_linear_alpha(best, first.alpha_v)
     # What a linear alpha would follow, a middle curve follows less well.
     if said.middle_curves == "auto" and _may_want_a_middle_curve(best):
-        best = cast("Layout", _fairer(best, attempt(replace(first, middle_curves=1, alpha_v="constant"))))
+        middle = attempt(replace(first, middle_curves=1, alpha_v="constant"))
+        if middle is not None and _fairness(middle) < _fairness(best):
+            middle = _away_from_ends(middle, search)
+        best = middle if middle is not None and _pays_with_a_middle_curve(middle, best) else best
     return best, (*(_candidate(one, best) for one in tried), *linear)
+
+
+def _found(tried: list[_Tried]) -> list[Layout]:
+    return [one.result for one in tried if isinstance(one.result, Layout)]
 
 
 def _with_linear_alpha(constant: Layout, alpha_v: AlphaV) -> tuple[Layout, tuple[Candidate, ...]]:
@@ -133,9 +146,11 @@ def _with_linear_alpha(constant: Layout, alpha_v: AlphaV) -> tuple[Layout, tuple
     # A box that was asked for is not widened.
     wider = WIDER if constant.options.box is None else 1.0
     trial = try_linear_alpha(constant.problem, fair, always=alpha_v == "linear", wider=wider)
-    if trial.problem is None or trial.solution is None:
-        return constant, ()
     options = replace(constant.options, alpha_v="linear")
+    if trial.problem is None:
+        return constant, ()
+    if trial.solution is None:
+        return constant, (_candidate(_Tried(options, ComputationError(trial.verdict)), constant),)
     tried = Layout(options, trial.problem, found_fair(trial.solution, constant.found.method))
     best = tried if trial.taken else constant
     verdict = "chosen" if trial.taken else trial.verdict
@@ -154,11 +169,26 @@ def _is_doubtful(layout: Layout) -> bool:
 
 
 def _may_want_a_middle_curve(layout: Layout) -> bool:
-    """Tell whether a middle curve may follow what a constant alpha does not; closed rims it would pull together."""
-    problem = layout.problem
-    if layout.options.alpha_v != "constant" or problem.seam_order >= 0 or not problem.has_constant_weights:
+    """Tell whether a middle curve may follow what a constant alpha does not.
+
+    Closed rims it would pull together. With other degrees, those of G3 and G4 too, and on U-turns it wins seldom: there
+    it is tried where something is wrong, or the gap varies.
+    """
+    options, problem = layout.options, layout.problem
+    if options.alpha_v != "constant" or problem.seam_order >= 0 or not problem.has_constant_weights:
         return False
-    return bool(layout.found.stopped_by) or gap_ratio(problem) >= MIDDLE_RATIO
+    is_usual = options.degree_u == QUINTIC and not problem.exits.u_turn
+    return is_usual or bool(layout.found.stopped_by) or gap_ratio(problem) >= MIDDLE_RATIO
+
+
+def _pays_with_a_middle_curve(middle: Layout, best: Layout) -> bool:
+    """Tell whether a middle curve is worth its points: there is less to let pass, or it is fairer by enough."""
+    let_pass = len(middle.found.condoned) - len(best.found.condoned)
+    if let_pass:
+        return let_pass < 0
+    share = 1.0 if best.found.stopped_by and not middle.found.stopped_by else MIDDLE_SHARE
+    is_sound = sum(_at_end(middle)) <= sum(_at_end(best)) and _is_settled(middle) >= _is_settled(best)
+    return is_sound and _fairness(middle) < share * _fairness(best)
 
 
 def _away_from_ends(layout: Layout, search: _Search) -> Layout:
@@ -197,6 +227,10 @@ def _pays_without_p2(without: Layout, best: Layout) -> bool:
 
 def _at_end(layout: Layout) -> tuple[bool, bool]:
     return cast("FairSolution", layout.found.fair).at_end
+
+
+def _is_settled(layout: Layout) -> bool:
+    return cast("FairSolution", layout.found.fair).settled
 
 
 def _known_within(a: Side, b: Side, options: BlendOptions) -> FairSolution | None:
@@ -247,10 +281,14 @@ def _loser(layout: Layout, best: Layout) -> str:
     return f"fairness {_fairness(layout):.4g} {more}{window}"
 
 
+def _refusal(error: ComputationError) -> str:
+    return error.reasons if isinstance(error, AllRefusedError) else str(error)
+
+
 def _candidate(one: _Tried, best: Layout) -> Candidate:
     options, result = one.options, one.result
     fairness = _fairness(result) if isinstance(result, Layout) else None
-    said = _loser(result, best) if isinstance(result, Layout) else str(result)
+    said = _loser(result, best) if isinstance(result, Layout) else _refusal(result)
     verdict = "chosen" if result is best else f"{one.remark}: {said}" if one.remark else said
     return Candidate(
         cast("int", options.degree_u), cast("int", options.middle_curves), options.alpha_v, fairness, verdict

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import ceil, pi
+from typing import Literal, TypeAlias
 
 import numpy as np
 
@@ -30,6 +31,9 @@ _FULL_TURN = 1e-9
 _SAME = 1e-9
 # The weight of a rim's plane at infinity that is nearer to the conic than this makes it no ellipse.
 _ELLIPSE = 1 - 1e-6
+# Radii that agree to this part make a circle of an ellipse: files write coordinates with some ten digits.
+_ROUND = 1e-8
+ConicName: TypeAlias = Literal["circle", "ellipse", "parabola", "hyperbola"]
 _LEAST_SAMPLES = 12
 # Blends are smooth to second order inside, whatever the contact is.
 _LEAST_ORDER = 2
@@ -53,6 +57,24 @@ class Conic:
     points: FloatArray
     turn: float
     frames: FloatArray
+
+    @property
+    def kind(self) -> ConicName:
+        """What the rim itself, row 0, is; a piece of it is named as the whole."""
+        frame = self.frames[0]
+        # The rim is where the weight is: a line that this plane curve does not meet, touches, or crosses.
+        apart = float(np.hypot(*frame[:2, 3]))
+        if not apart < _ELLIPSE * frame[2, 3]:
+            return "hyperbola" if apart > frame[2, 3] / _ELLIPSE else "parabola"
+        # The boost has made the weight constant: these are its conjugate radii.
+        x, y = frame[:2, :3] / frame[2, 3]
+        even = max(abs(float(x @ x - y @ y)), 2 * abs(float(x @ y))) <= _ROUND * float(x @ x + y @ y)
+        return "circle" if even else "ellipse"
+
+    def cured_rows(self, order: int) -> tuple[FloatArray, Basis] | None:
+        """Return `smooth_rows`, or None where their weights are not positive."""
+        smooth = self.smooth_rows(order)
+        return smooth if (smooth[0][0, :, 3] > 0).all() else None
 
     def smooth_rows(self, order: int) -> tuple[FloatArray, Basis]:
         """Return the same surface beside the edge, C^order (2 at least) along, over the same domain.
@@ -88,10 +110,7 @@ def cured_conic(rows: FloatArray, along: Basis, order: int) -> tuple[FloatArray,
     (6, (1, 7, 4))
     """
     conic = recognised_conic(rows, along)
-    if conic is None:
-        return None
-    smooth = conic.smooth_rows(order)
-    return smooth if (smooth[0][0, :, 3] > 0).all() else None
+    return None if conic is None else conic.cured_rows(order)
 
 
 def same_arcs(a: Conic, b: Conic) -> bool:

@@ -8,7 +8,7 @@ from typing import Literal, TypeAlias
 import numpy as np
 
 from semispline.solver.arrays import FloatArray
-from semispline.solver.blending.conics import cured_conic
+from semispline.solver.blending.conics import Conic, recognised_conic
 from semispline.solver.blending.jumps import Jump, jumps, smoothed
 from semispline.solver.blending.own_lines import closed_lines
 from semispline.solver.blending.weights import SEPARABLE
@@ -36,6 +36,8 @@ class CuredRows:
         The lines of the base that asked for it.
     left : tuple of Jump
         Lines that are still not C1: creased in the base itself, or G1 where no cure is exact.
+    conic : Conic or None
+        What the rim is where "conic" acts.
     """
 
     rows: FloatArray
@@ -44,6 +46,7 @@ class CuredRows:
     cure: CureName
     found: tuple[Jump, ...]
     left: tuple[Jump, ...]
+    conic: Conic | None = None
 
 
 def cured_rows(
@@ -85,9 +88,9 @@ def cured_rows(
         return CuredRows(rows, along, degree, "none", (), ())
     # A parabola without weights along keeps its degree, and stays without them.
     has_weights = rows.shape[-1] == 4 and np.ptp(rows[0, :, 3]) > SEPARABLE * np.abs(rows[0, :, 3]).max()
-    conic = cured_conic(rows, along, smoothness) if has_weights else None
-    if conic is not None:
-        return CuredRows(*conic, degree, "conic", found, ())
+    conic = recognised_conic(rows, along) if has_weights else None
+    if conic is not None and (smooth := conic.cured_rows(smoothness)) is not None:
+        return CuredRows(*smooth, degree, "conic", found, (), conic)
     kinds = {jump.kind for jump in found}
     if kinds in ({"G1"}, {"G1", "shared"}):
         bent = closed_lines(rows, along, degree, spans, closed=closed)

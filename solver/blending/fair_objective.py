@@ -9,8 +9,9 @@ from numpy.typing import NDArray
 
 from semispline.solver.arrays import FloatArray
 from semispline.solver.blending.fairness_table import LOOPS, FairnessTable
-from semispline.solver.blending.problem import BlendProblem, second_weight
+from semispline.solver.blending.problem import BlendProblem
 from semispline.solver.blending.projected import Point
+from semispline.solver.blending.windows import second_weight
 
 # What is flat or a cylinder has J = 0 for every alpha: then the nearest to the arc's is taken. J of a visible shape is
 # 10 to 1000.

@@ -27,7 +27,7 @@ from semispline.solver.blending.fairness_grid import (
 from semispline.solver.blending.fairness_table import FOLDS, LEAST_COSINE, LOOPS, FairnessTable, narrow_width
 from semispline.solver.blending.linear_alpha import LinearInV
 from semispline.solver.blending.problem import BlendProblem
-from semispline.solver.blending.projected import Point, descend, unbound
+from semispline.solver.blending.projected import MOST_STEPS, Point, descend, unbound
 from semispline.solver.errors import ComputationError
 
 # Cells of the scan in each direction, at least, and for U-turns; one more for each factor of 2 by which the ends of the
@@ -38,6 +38,11 @@ _SCAN_COSINE = 0.0
 _STARTS = 3
 # Gradients of log J at the end of a start, and of the search.
 _NEAR, _END = 0.02, 1e-4
+# What is refused, the first to be let pass first.
+_REFUSABLE, _CONDONED = (FOLDS, LOOPS), ("folds", "loops")
+MOST_CONDONED = len(_CONDONED)
+# Steps on a grid where folds are let pass: J has no end there, and its slope none either.
+_STEPS_AMONG_FOLDS = 12
 # Parts of the way back to a start, where a finer grid refuses.
 _BACK = (0.0, 0.02, 0.05, 0.1, 0.2, 0.4, 0.7, 1.0)
 # A grid of more nodes is not gone to without one between.
@@ -98,7 +103,9 @@ class FairSolution:
     settled: bool = True
 
 
-def solve_fair(problem: BlendProblem, known: FairSolution | None = None) -> FairSolution:
+def solve_fair(
+    problem: BlendProblem, known: FairSolution | None = None, most_condoned: int = MOST_CONDONED
+) -> FairSolution:
     """Find the shape parameters of the fairest blend.
 
     Where the bases are so rough, or face each other so badly, that every cell that is tried is refused, the fairest is
@@ -110,35 +117,37 @@ def solve_fair(problem: BlendProblem, known: FairSolution | None = None) -> Fair
     problem : BlendProblem
     known : FairSolution, optional
         That of a narrower window, or for constant alpha: the search starts from there, too.
+    most_condoned : int
+        How many of the reasons for a refusal, folds and loops, may be let pass: none that a better blend does without.
 
     Raises
     ------
-    ComputationError
-        No candidate can be measured.
+    AllRefusedError
+        No candidate is left, or can be measured.
     """
     refused: dict[str, int] = {}
-    for refusable, condoned in (((FOLDS, LOOPS), ()), ((LOOPS,), ("folds",))):
+    for count in range(most_condoned):
         try:
-            found = _solved(problem, refusable, known)
-        except _AllRefusedError as refusal:
+            found = _solved(problem, _REFUSABLE[count:], known)
+            return replace(found, refused=refused or found.refused, condoned=_CONDONED[:count])
+        except AllRefusedError as refusal:
             refused = refused or refusal.counts
-            continue
-        return replace(found, refused=refused or found.refused, condoned=condoned)
-    return replace(_solved(problem, (), known), refused=refused, condoned=("folds", "loops"))
+    found = _solved(problem, _REFUSABLE[most_condoned:], known)
+    return replace(found, refused=refused or found.refused, condoned=_CONDONED[:most_condoned])
 
 
-class _AllRefusedError(ComputationError):
+class AllRefusedError(ComputationError):
+    """Every candidate folds, runs loops, or cannot be measured."""
+
     def __init__(self, counts: dict[str, int]) -> None:
         reasons = " and ".join(f"{n} run loops" if name == "loops" else f"{n} fold" for name, n in counts.items() if n)
-        super().__init__(
-            f"no candidate is left: {reasons or 'none can be measured'}; try another edge, another direction (flip), "
-            "or a middle curve"
-        )
         self.counts = counts
+        self.reasons = f"no candidate is left: {reasons or 'none can be measured'}"
+        super().__init__(f"{self.reasons}; try another edge, another direction (flip), or a middle curve")
 
 
 def _solved(problem: BlendProblem, refusable: tuple[int, ...], known: FairSolution | None = None) -> FairSolution:
-    """Find them with what is refused; `_AllRefusedError` where that leaves nothing."""
+    """Find them with what is refused; `AllRefusedError` where that leaves nothing."""
     # Where a large block was freed, the C library keeps what is freed after it: else half of the time goes into pages.
     np.empty(_WORKSPACE)
     layers, exponents = problem.shape_layers()
@@ -157,8 +166,10 @@ def _solved(problem: BlendProblem, refusable: tuple[int, ...], known: FairSoluti
     cells, values = _scan(rough, _cells(problem))
     refused = dict(rough.refused)
     if known is None and not np.isfinite(values).any():
-        raise _AllRefusedError(refused)
-    starts = [*_starts(cells, values), *([] if known is None else [_known_start(problem, unknowns, known)])]
+        raise AllRefusedError(refused)
+    # Among folds one start will do: which of their valleys is deepest means little.
+    count = _STARTS if FOLDS in refusable else 1
+    starts = [*_starts(cells, values)[:count], *([] if known is None else [_known_start(problem, unknowns, known)])]
     points = [_with_finite_model(rough.point(start)) for start in starts]
     ends = [_descended(rough, point, _NEAR) for point in points]
     # What is known of the same rows was found on finer grids: a rough one would only lead away from it.
@@ -200,7 +211,7 @@ def _solved(problem: BlendProblem, refusable: tuple[int, ...], known: FairSoluti
         start = kept[np.argmin(search.values(kept))]
         found = _settled(_refined(search.point(start), start, levels[-1:]), start, finer, others, times_v)
     if found is None:
-        raise _AllRefusedError({name: refused[name] + finer(_FINER[0]).refused[name] for name in refused})
+        raise AllRefusedError({name: refused[name] + finer(_FINER[0]).refused[name] for name in refused})
     solution = _solution(problem, unknowns, found[0], search, sum(objective.tried for objective in grids), refused)
     # The finest of the grids that refuse the place says why.
     shut = [] if found[0].shut is None else [objective.refusal(found[0].shut) for objective in reversed(grids)]
@@ -291,7 +302,8 @@ def _admitted(objective: FairObjective, point: Point, start: FloatArray) -> Poin
 def _descended(objective: FairObjective, start: Point, tolerance: float) -> Point:
     unknowns = objective.unknowns
     longest = np.where(unknowns.logarithmic, _STEP, _STEP_P2)
-    return descend(objective, start, unknowns.low, unknowns.high, longest, tolerance)
+    most = MOST_STEPS if FOLDS in objective.table.refusable else _STEPS_AMONG_FOLDS
+    return descend(objective, start, unknowns.low, unknowns.high, longest, tolerance, most)
 
 
 def _with_finite_model(point: Point) -> Point:

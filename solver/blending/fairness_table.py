@@ -76,7 +76,7 @@ class FairnessTable:
         refusable: tuple[int, ...] = (FOLDS, LOOPS),
     ) -> None:
         self.across, self.along = across, along
-        self._refusable = refusable
+        self.refusable = refusable
         self.least_cosine = least_cosine
         offsets = problem.form.offsets
         count, rows, d = len(layers), len(problem.rows), layers.shape[2]
@@ -203,7 +203,7 @@ class FairnessTable:
         return np.asarray(by_candidate.reshape(len(by_candidate), -1) @ self._table.T)
 
     def _refused(self, rows: FloatArray, planes: list[FloatArray]) -> NDArray[np.int8]:
-        if not self._refusable:
+        if not self.refusable:
             return np.zeros(rows.shape[3], dtype=np.int8)
         # Without the columns of the lines, and candidates first.
         shape = 3, len(self.across.weights), -1, self._shape[-1]
@@ -224,7 +224,7 @@ class FairnessTable:
                 self._needed = needed = needed[:1]
         loops = np.any(turns - needed > LOOP, axis=-1)
         found = np.where(loops, LOOPS, 0)
-        if FOLDS in self._refusable:
+        if FOLDS in self.refusable:
             found = np.where(folds(normal, self.least_cosine), FOLDS, found)
         return found.astype(np.int8)
 

@@ -238,11 +238,9 @@ class EnergyForm:
         rows = np.split(points, self.offsets[1:-1])
         nets = [[self._nets(members, rows, dv) for members in self._members] for dv in range(3)]
         back = [[None if net is None else np.zeros(net.shape) for net in level] for level in nets]
-        U, p = self.u.knots, self.u.degree
-        roots = [root @ derivative_matrix(p, U, du).toarray() for du, root in enumerate(self._roots)]
         for along in self._along():
             weights = along[0].weights
-            for du, root in enumerate(roots):
+            for du, root in enumerate(self._roots_of_points):
                 dv = 2 - du
                 curves = np.zeros((m + 1, d, *weights.shape))
                 for samples, members, net in zip(along, self._members, nets[dv], strict=True):
@@ -255,11 +253,10 @@ class EnergyForm:
                     if total is not None:
                         samples.add_transposed(pulled[members].reshape(-1, *weights.shape), dv, total)
         result = np.zeros_like(points)
-        for dv, level in enumerate(back):
-            for members, total in zip(self._members, level, strict=True):
-                if total is not None:
-                    basis = self.rows[members[0]]
-                    lines = derivative_matrix(basis.degree, basis.knots, dv).T @ total.T
+        for level, transposed in zip(back, self._transposed, strict=True):
+            for members, total, matrix in zip(self._members, level, transposed, strict=True):
+                if total is not None and matrix is not None:
+                    lines = matrix @ total.T
                     for i, part in zip(members, np.split(lines, len(members), axis=1), strict=True):
                         result[self.offsets[i] : self.offsets[i + 1]] += part
         return result
@@ -353,6 +350,21 @@ class EnergyForm:
             dense[:, np.arange(len(s.first)), s.local(order)] = (values * np.sqrt(s.weights)).swapaxes(0, 1)
             roots.append(np.asarray(np.linalg.qr(dense.reshape(-1, self.u.size - order), mode="r")))
         return roots
+
+    @cached_property
+    def _roots_of_points(self) -> list[FloatArray]:
+        """The roots times the matrices of the derivatives, so that they take control points in u."""
+        return [
+            root @ derivative_matrix(self.u.degree, self.u.knots, du).toarray() for du, root in enumerate(self._roots)
+        ]
+
+    @cached_property
+    def _transposed(self) -> list[list[SparseMatrix | None]]:
+        """Transposed matrices of the derivatives of each order along v, for each distinct space that has them."""
+        return [
+            [derivative_matrix(b.degree, b.knots, dv).T if dv <= b.degree else None for b in self._kinds[0]]
+            for dv in range(3)
+        ]
 
 
 def _sums(degree: int, knots: FloatArray, points: FloatArray, order: int) -> FloatArray:

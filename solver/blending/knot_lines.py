@@ -102,9 +102,3 @@ def knot_lines(
         worst = np.maximum(rounding[-1], rounding[0])
         lines.append(KnotLine(float(breaks[0]), before[-1], after[0], worst, -1))
     return tuple(lines)
-
-
-def least_continuity(rows: FloatArray, along: Basis, *, closed: bool = False) -> int:
-    """Return how many derivatives of the homogeneous rows agree across every knot line, the degree where all do."""
-    lines = knot_lines(rows, along, along.degree, closed=closed)
-    return min((line.continuity for line in lines), default=along.degree)

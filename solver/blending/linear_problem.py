@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from semispline.solver.arrays import FloatArray
-from semispline.solver.blending.fair_search import FairSolution, solve_fair
+from semispline.solver.blending.fair_search import AllRefusedError, FairSolution, solve_fair
 from semispline.solver.blending.gram import EnergyForm
 from semispline.solver.blending.linear_alpha import LinearEnds, raised_basis
 from semispline.solver.blending.problem import BlendProblem
@@ -119,12 +119,11 @@ def try_linear_alpha(
     if ratio < TRIED_RATIO and not always and not constant.stopped_by:
         return LinearTrial(None, None, False, f"gap over speed varies by {ratio:.3g} along the contact, not tried")
     linear = with_linear_alpha(problem, wider)
-    solution = solve_fair(linear, constant)
+    try:
+        solution = solve_fair(linear, constant, len(constant.condoned))
+    except AllRefusedError as refusal:
+        return LinearTrial(linear, None, False, refusal.reasons)
     share = solution.value / constant.value if constant.value > 0 else 1.0
-    if len(solution.condoned) > len(constant.condoned):
-        return LinearTrial(
-            linear, solution, False, f"every cell that was tried is refused ({' and '.join(solution.condoned)})"
-        )
     pays = share <= TAKEN_SHARE or always or len(solution.condoned) < len(constant.condoned)
     if pays or (constant.stopped_by and not solution.stopped_by and share < 1):
         return LinearTrial(linear, solution, True, f"fairness is {share:.3g} of that with a constant alpha")

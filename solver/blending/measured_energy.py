@@ -19,8 +19,8 @@ class MeasuredEnergy:
     ----------
     value : float
     quadrature_error : float or None
-        How far a rule of half the nodes is off, so that the value is far better; None where the surface is polynomial
-        and its integrals are exact.
+        In the unit of the value: how far a rule of half the nodes is off, so that the value is far better; None where
+        the surface is polynomial and its integrals are exact.
     """
 
     value: float

@@ -9,15 +9,16 @@ from typing import Any
 import numpy as np
 
 from semispline.solver.arrays import FloatArray, require
-from semispline.solver.blending.candidates import Layout, find_layout
-from semispline.solver.blending.matching import directions_to_try, matched_edges
-from semispline.solver.blending.measured_energy import measure_energy
+from semispline.solver.blending.candidates import Candidate, Layout, find_layout
+from semispline.solver.blending.matching import directions_to_try
+from semispline.solver.blending.measured_energy import MeasuredEnergy, measure_energy
+from semispline.solver.blending.placing import PlacedSides, place_sides
 from semispline.solver.blending.problem import BlendProblem, make_problem
 from semispline.solver.blending.result import BlendResult, Objective
 from semispline.solver.blending.rounding import measure_energy_rounding, rounding_warning
 from semispline.solver.blending.shape_parameters import Found, active_bounds, admissible, bulged
 from semispline.solver.blending.shape_warnings import shape_warnings
-from semispline.solver.blending.sides import Side, make_side, matched_sides, of_one_degree
+from semispline.solver.blending.sides import Side
 from semispline.solver.blending.warnings import (
     bare_places,
     bound_warnings,
@@ -35,12 +36,13 @@ from semispline.solver.judge import (
     Correspondence,
     ShapeReport,
     check_regular_edge,
-    local_origin,
     measure_contact,
     measure_creases,
     measure_regularity,
     measure_shape,
+    measure_turn,
     required_limits,
+    rounding_causes,
     untold,
 )
 from semispline.solver.options import BlendOptions, Flip, named_options
@@ -95,18 +97,66 @@ def blend(
     """
     started = time.perf_counter()
     said = named_options(options, named)
-    if len(tied := _tied(a, b, said.flip)) > 1:
-        return _strictly(_less_turning(a, b, tied, replace(said, strict=False)), said.strict)
-    placed = place_sides(a, b, said, tied[0])
-    sides, frame, matched = placed.sides, placed.frame, placed.matched
-    # The few numbers that are not linear, then everything that is.
-    layout, candidates = find_layout(*placed.scaled, said)
-    chosen, problem = layout.options, layout.problem
-    found = bulged(layout.found, chosen.bulges)
-    surface = _surface(problem, found, sides, frame)
-    measured = measure_energy(surface)
-    energy = measured.value
+    directions = _tied(a, b, said.flip)
+    solved: list[_Solved] = []
+    failures: dict[Flip, ComputationError] = {}
+    for flip in directions:
+        try:
+            solved.append(_solved(a, b, said, flip))
+        except ComputationError as failure:
+            failures[flip] = failure
     seconds = time.perf_counter() - started
+    while solved:
+        least = solved[0] if len(solved) == 1 else _least_turning(solved)
+        try:
+            result = _judged(a, b, least, seconds)
+        except ComputationError as failure:
+            failures[least.flip] = failure
+            solved.remove(least)
+        else:
+            return _strictly(result, said.strict)
+    raise next(failures[flip] for flip in directions if flip in failures)
+
+
+@dataclass(frozen=True, eq=False)
+class _Solved:
+    """A blend in one direction of b, before anything is said of it."""
+
+    flip: Flip
+    placed: PlacedSides
+    layout: Layout
+    candidates: tuple[Candidate, ...]
+    found: Found
+    surface: SemiStructuredSurface
+    energy: MeasuredEnergy
+
+
+def _solved(a: Base, b: Base, said: BlendOptions, flip: Flip) -> _Solved:
+    """Solve for the blend: the few numbers that are not linear, then everything that is."""
+    placed = place_sides(a, b, said, flip)
+    layout, candidates = find_layout(*placed.scaled, said)
+    found = bulged(layout.found, layout.options.bulges)
+    surface = _surface(layout.problem, found, placed.sides, placed.frame)
+    return _Solved(flip, placed, layout, candidates, found, surface, measure_energy(surface))
+
+
+def _least_turning(solved: list[_Solved]) -> _Solved:
+    """Return the blend whose normal turns least; of equals the first."""
+    turns = []
+    for one in solved:
+        try:
+            turns.append(measure_turn(one.surface).degrees)
+        except InputError:
+            # No surface: that is said when it is judged.
+            turns.append(np.inf)
+    return next(one for one, turn in zip(solved, turns, strict=True) if turn <= min(turns) + _EQUAL_TURNS)
+
+
+def _judged(a: Base, b: Base, solved: _Solved, seconds: float) -> BlendResult:
+    """Let the judge measure a blend, and refuse what misses its limits."""
+    placed, layout, found, surface = solved.placed, solved.layout, solved.found, solved.surface
+    sides, frame, matched = placed.sides, placed.frame, placed.matched
+    chosen, problem, energy = layout.options, layout.problem, solved.energy.value
     rounding = measure_energy_rounding(problem, found, surface, frame, energy)
     # What came out, judged by code that knows nothing of the above.
     contact_a, contact_b = _checked_contacts(a, b, surface, chosen, matched, found)
@@ -126,16 +176,16 @@ def blend(
         + seam_warning(a, b)
         + contact_warnings((a, b), surface, (contact_a, contact_b), chosen, found)
     )
-    result = BlendResult(
+    return BlendResult(
         surface=surface,
         continuity=chosen.continuities,
         options=chosen,
-        candidates=candidates,
+        candidates=solved.candidates,
         objective=_objective(layout, energy, frame[1]),
         method=found.method,
         energy=energy,
         energy_rounding=rounding.energy,
-        quadrature_error=measured.quadrature_error,
+        quadrature_error=solved.energy.quadrature_error,
         weights=problem.weights,
         cures=problem.cures,
         alpha2=None if sides[0].order == 0 else found.a,
@@ -163,7 +213,6 @@ def blend(
         constraint_rank=found.constraint_rank,
         seconds=seconds,
     )
-    return _strictly(result, chosen.strict)
 
 
 @dataclass(frozen=True, eq=False)
@@ -191,47 +240,10 @@ def state_problem(a: Base, b: Base, options: BlendOptions | None = None, **named
     """State the first problem that `blend` solves; arguments and errors are those of `blend`."""
     said = named_options(options, named)
     if len(tied := _tied(a, b, said.flip)) > 1:
-        less_turning = _less_turning(a, b, tied, replace(said, method="reduced", strict=False))
+        less_turning = blend(a, b, replace(said, method="reduced", strict=False))
         tied = ("yes" if less_turning.flipped else "no",)
     placed = place_sides(a, b, said, tied[0])
     return StatedProblem(make_problem(*placed.scaled, said), placed.sides, placed.frame, placed.matched)
-
-
-@dataclass(frozen=True, eq=False)
-class PlacedSides:
-    """The bases as the blend sees them: contact at w = 0, one parameter v.
-
-    Attributes
-    ----------
-    sides : (Side, Side)
-        In model units.
-    scaled : (Side, Side)
-        In coordinates of size 1.
-    frame : (ndarray of shape (3,), float)
-        Centre and size: scaled coordinates are (x - centre) / size.
-    matched : Correspondence
-    """
-
-    sides: tuple[Side, Side]
-    scaled: tuple[Side, Side]
-    frame: tuple[FloatArray, float]
-    matched: Correspondence
-
-
-def place_sides(a: Base, b: Base, options: BlendOptions, flip: Flip) -> PlacedSides:
-    """Bring both contacts to one parameter v and to coordinates of size 1."""
-    at_a, at_b = options.continuities
-    sides = make_side(a, at_a, "base a"), make_side(b, at_b, "base b")
-    matched = matched_edges(a, b, flip)
-    # Far from the origin each operation would round by the distance: there is but one rounding, of the result.
-    origin = local_origin(a.surface, b.surface)
-    local = matched_sides(sides[0].moved(origin, 1.0), sides[1].moved(origin, 1.0), matched)
-    if not local[0].is_rational:
-        local = of_one_degree(*local)
-    sides = local[0].moved(-origin, 1.0), local[1].moved(-origin, 1.0)
-    centre, size = _frame(*sides)
-    scaled = local[0].moved(centre - origin, size), local[1].moved(centre - origin, size)
-    return PlacedSides(sides, scaled, (centre, size), matched)
 
 
 def _objective(layout: Layout, energy: float, size: float) -> Objective:
@@ -245,7 +257,6 @@ def _objective(layout: Layout, energy: float, size: float) -> Objective:
         rows = f"thin plate, v_scale {options.v_scale}, within {excess:.0e} of the least for these shape parameters"
     if found.fairness is not None:
         return Objective("fairness", found.fairness, found.known, rows)
-    value = energy if options.v_scale == "paper" else float(problem.energy_products(points[None])[0, 0]) * size**2
     if found.proven_gap is not None:
         known = f"proved least over the box to {found.proven_gap:.1e} of itself"
         if problem.is_rational:
@@ -256,6 +267,7 @@ def _objective(layout: Layout, energy: float, size: float) -> Objective:
         return Objective("nothing", None, "contacts and options prescribe all", rows)
     else:
         known = "nothing but the rows was free"
+    value = energy if options.v_scale == "paper" else float(problem.energy_products(points[None])[0, 0]) * size**2
     return Objective("thin plate", value, known, rows)
 
 
@@ -266,39 +278,11 @@ def _tied(a: Base, b: Base, flip: Flip) -> tuple[Flip, ...]:
     return directions_to_try(a, b) if flip == "auto" else (flip,)
 
 
-def _less_turning(a: Base, b: Base, directions: tuple[Flip, ...], options: BlendOptions) -> BlendResult:
-    """Blend in each direction, and return the blend whose normal turns least; of equals the first.
-
-    Raises
-    ------
-    ComputationError
-        That of the first direction, where all fail.
-    """
-    results: list[BlendResult] = []
-    failures: list[ComputationError] = []
-    for flip in directions:
-        try:
-            results.append(blend(a, b, replace(options, flip=flip)))
-        except ComputationError as failure:
-            failures.append(failure)
-    if not results:
-        raise failures[0]
-    least = min(result.shape.turn.degrees for result in results)
-    return next(result for result in results if result.shape.turn.degrees <= least + _EQUAL_TURNS)
-
-
 def _strictly(result: BlendResult, strict: bool) -> BlendResult:
     """Return the result, refused if it has warnings and is to have none."""
     if strict and result.warnings:
         raise FoldError(f"{'; '.join(result.warnings)}; look at the warnings, or blend without strict")
     return result
-
-
-def _frame(a: Side, b: Side) -> tuple[FloatArray, float]:
-    """Centre and size of the control points that contact reads: the solve works in coordinates of size 1."""
-    points = np.concatenate([side.points() for side in (a, b)])
-    low, high = points.min(axis=0), points.max(axis=0)
-    return (low + high) / 2, float((high - low).max()) or 1.0
 
 
 def _surface(
@@ -358,7 +342,8 @@ def _checked_contacts(
         hidden = untold(contact, wanted)
         if hidden:
             shown = shape if wanted[0] == "G" else None
-            said = remedy(base, surface, bare_places(contact, name), shown, int(wanted[1]), strained)
+            causes = rounding_causes(base, Base(surface, "u1" if index else "u0"), int(wanted[1]))
+            said = remedy(base, causes, bare_places(contact, name), shown, int(wanted[1]), strained)
             raise ContactError(f"contact {name}: {'; '.join(hidden)} for {wanted}; {said}")
         for measure, value, limit in measured:
             if not value <= limit:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from semispline.solver.arrays import FloatArray
 
 # Steps, halvings of one step, and refusals of one, at most.
-_MOST_STEPS, _MOST_HALVINGS, _MOST_REFUSALS = 60, 12, 5
+MOST_STEPS, _MOST_HALVINGS, _MOST_REFUSALS = 60, 12, 5
 # A step has to gain this fraction of what the slope promises.
 _ENOUGH = 1e-4
 # A model is at least so convex, in units of its most convex direction.
@@ -39,6 +39,7 @@ def descend(
     high: FloatArray,
     longest: FloatArray,
     tolerance: float,
+    most: int = MOST_STEPS,
 ) -> Point:
     """Go down from a start until no entry of the gradient that bounds leave free exceeds the tolerance.
 
@@ -52,6 +53,8 @@ def descend(
     longest : ndarray, shape (n,)
         Of each entry of a step.
     tolerance : float
+    most : int
+        Steps, at most.
 
     Source: J. Nocedal, S. Wright, Numerical Optimization, 2006, sections 3.1 and 6.1, with an active set of bounds.
 
@@ -64,7 +67,7 @@ def descend(
     array([1., 0.])
     """
     at = replace(start, hessian=convex(start.hessian), shut=None)
-    for _ in range(_MOST_STEPS):
+    for _ in range(most):
         free = unbound(at.x, at.gradient, low, high)
         if not len(free) or np.abs(at.gradient[free]).max() <= tolerance:
             break

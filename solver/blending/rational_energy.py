@@ -21,12 +21,12 @@ from semispline.solver.errors import ComputationError
 from semispline.solver.generated.energy_numpy import gram_block
 from semispline.solver.splines import (
     Basis,
+    Samples,
     basis_matrix,
     breakpoints,
-    derivative_matrix,
-    gauss_rule,
     greville,
     merge_breakpoints,
+    sample,
 )
 
 # Second derivatives, and by what each counts in the energy.
@@ -34,8 +34,6 @@ _SECOND = ((2, 0), (1, 1), (0, 2))
 _FACTORS = [float(gram_block(*np.eye(3)[a], *np.eye(3)[b])) for a, b in _SECOND]
 # Weights of free rows below this part of the least weight of the contacts, or as much above the largest, are not tame.
 TAME = 1 / 2
-# Derivatives up to the second.
-_ORDERS = ((0, 0), (1, 0), (0, 1), *_SECOND)
 _MOST_REFINEMENTS = 5
 # Weights below this fraction of the largest are none.
 _NO_WEIGHT = 1e-6
@@ -78,7 +76,8 @@ class RationalForm:
 
     def system(self, rows: range) -> SparseMatrix:
         """Return the square matrix of the form that couples the control points of the given rows."""
-        blocks = [[self._block(i, j) for j in rows] for i in rows]
+        upper = {(i, j): self._block(i, j) for i in rows for j in rows if i <= j}
+        blocks = [[upper[i, j] if i <= j else upper[j, i].T for j in rows] for i in rows]
         return sp.csr_array(sp.block_array(blocks, format="csr"))
 
     def gradient(self, points: FloatArray, rows: range) -> FloatArray:
@@ -86,10 +85,10 @@ class RationalForm:
         second = self._second(points)
         parts = []
         for i in rows:
-            pulled = [np.zeros((points.shape[1], len(self._v))) for _ in range(3)]
-            for factor, values, fields in zip(_FACTORS, second, self._fields[i], strict=True):
+            pulled = [np.zeros((points.shape[1], self._node_weights.shape[1])) for _ in range(3)]
+            for factor, values, fields in zip(_FACTORS, second, self._fields(i), strict=True):
                 for b, field in fields.items():
-                    pulled[b] += factor * np.einsum("duv,uv,uv->dv", values, field, self._node_weights)
+                    pulled[b] += np.einsum("duv,uv->dv", values, factor * field * self._node_weights)
             parts.append(sum(self._along[i][b].T @ pulled[b].T for b in range(3)))
         return np.concatenate(parts)
 
@@ -105,8 +104,13 @@ class RationalForm:
 
     def _derivatives(self, points: FloatArray) -> dict[tuple[int, int], FloatArray]:
         pieces = np.split(points, self.offsets[1:-1])
-        rows = [np.stack([basis[b] @ x for basis, x in zip(self._along, pieces, strict=True)]) for b in range(3)]
-        return {(a, b): np.asarray(np.einsum("ui,ivd->duv", self._across[a], rows[b])) for a, b in _ORDERS}
+        found: dict[tuple[int, int], FloatArray] = {}
+        for b in range(3):
+            rows = np.stack([(basis[b] @ x).T for basis, x in zip(self._along, pieces, strict=True)])
+            for a in range(3 - b):
+                values = self._across[a] @ rows.reshape(len(rows), -1)
+                found[a, b] = values.reshape(len(values), *rows.shape[1:]).transpose(1, 0, 2)
+        return found
 
     @cached_property
     def _reciprocal(self) -> dict[tuple[int, int], FloatArray]:
@@ -120,78 +124,70 @@ class RationalForm:
         f[0, 2] = -(w[0, 2] * f[0, 0] + 2 * w[0, 1] * f[0, 1]) * f[0, 0]
         return f
 
-    @cached_property
-    def _fields(self) -> list[list[dict[int, FloatArray]]]:
-        """Second derivatives of N_i M f: for each row and derivative the factors of M, M' and M'', over the nodes."""
-        f, fields = self._reciprocal, []
-        for i in range(len(self.rows)):
-            n, n1, n2 = (values[:, i : i + 1] for values in self._across)
-            fields.append(
-                [
-                    {0: n2 * f[0, 0] + 2 * n1 * f[1, 0] + n * f[2, 0]},
-                    {0: n1 * f[0, 1] + n * f[1, 1], 1: n1 * f[0, 0] + n * f[1, 0]},
-                    {0: n * f[0, 2], 1: 2 * n * f[0, 1], 2: n * f[0, 0]},
-                ]
-            )
-        return fields
+    def _fields(self, i: int) -> list[dict[int, FloatArray]]:
+        """Second derivatives of N_i M f: for each of them the factors of M, M' and M'', over the nodes."""
+        f = self._reciprocal
+        n, n1, n2 = (values[:, i : i + 1] for values in self._across)
+        return [
+            {0: n2 * f[0, 0] + 2 * n1 * f[1, 0] + n * f[2, 0]},
+            {0: n1 * f[0, 1] + n * f[1, 1], 1: n1 * f[0, 0] + n * f[1, 0]},
+            {0: n * f[0, 2], 1: 2 * n * f[0, 1], 2: n * f[0, 0]},
+        ]
 
     def _block(self, i: int, j: int) -> SparseMatrix:
-        total = sp.csr_array((self.rows[i].size, self.rows[j].size))
-        middle = np.zeros((3, 3, len(self._v)))
-        for factor, left, right in zip(_FACTORS, self._fields[i], self._fields[j], strict=True):
-            for b, one in left.items():
-                for c, other in right.items():
-                    middle[b, c] += factor * np.einsum("uv,uv,uv->v", one, other, self._node_weights)
-        for b in range(3):
-            for c in range(3):
-                total = total + self._along[i][b].T @ sp.csr_array(self._along[j][c] * middle[b, c][:, None])
-        return total
+        middle = np.zeros((3, 3, self._node_weights.shape[1]))
+        for factor, left, right in zip(_FACTORS, self._fields(i), self._fields(j), strict=True):
+            for c, other in right.items():
+                weighted = factor * other * self._node_weights
+                for b, one in left.items():
+                    middle[b, c] += np.einsum("uv,uv->v", one, weighted)
+        # All three of a row have entries in the same places.
+        first = self._along[j][0]
+        values = np.stack([basis.data.reshape(self._node_weights.shape[1], -1) for basis in self._along[j]])
+        parts = np.einsum("bcv,cvk->bvk", middle, values)
+        combined = [sp.csr_array((part.ravel(), first.indices, first.indptr), shape=first.shape) for part in parts]
+        return sp.csr_array(sum(basis.T @ part for basis, part in zip(self._along[i], combined, strict=True)))
 
     @cached_property
-    def _rules(self) -> tuple[tuple[FloatArray, FloatArray], tuple[FloatArray, FloatArray]]:
-        """Nodes and weights in u and in v."""
+    def _samples(self) -> tuple[Samples, list[Samples]]:
+        """The bases at the nodes in u, and those of each row at the nodes in v."""
         along = merge_breakpoints(*(breakpoints(row.knots) for row in self.rows))
-        count = self.finer * (1 + max(self.u.degree, *(row.degree for row in self.rows)))
-        rules = (gauss_rule(breaks, 2 * count - 1) for breaks in (breakpoints(self.u.knots), along))
-        first, second = ((x.T.ravel(), w.T.ravel()) for x, w in rules)
-        return first, second
-
-    @property
-    def _v(self) -> FloatArray:
-        return self._rules[1][0]
+        degree = 2 * self.finer * (1 + max(self.u.degree, *(row.degree for row in self.rows))) - 1
+        known: dict[tuple[int, bytes], Samples] = {}
+        for row in self.rows:
+            key = row.degree, row.knots.tobytes()
+            if key not in known:
+                known[key] = sample(row, along, degree)
+        of_rows = [known[row.degree, row.knots.tobytes()] for row in self.rows]
+        return sample(self.u, breakpoints(self.u.knots), degree), of_rows
 
     @cached_property
     def _node_weights(self) -> FloatArray:
-        return np.multiply.outer(self._rules[0][1], self._rules[1][1])
+        of_u, of_rows = self._samples
+        return np.multiply.outer(of_u.weights.T.ravel(), of_rows[0].weights.T.ravel())
 
     @cached_property
     def _across(self) -> list[FloatArray]:
         """Basis functions in u and their derivatives at the nodes, each of shape (nodes, m + 1)."""
-        return [matrix.toarray() for matrix in _bases(self.u, self._rules[0][0])]
+        return [matrix.toarray() for matrix in _matrices(self._samples[0])]
 
     @cached_property
     def _along(self) -> list[list[SparseMatrix]]:
         """Basis functions of each row and their derivatives at the nodes in v."""
-        known: dict[tuple[int, bytes], list[SparseMatrix]] = {}
-        result = []
-        for row in self.rows:
-            key = row.degree, row.knots.tobytes()
-            if key not in known:
-                known[key] = _bases(row, self._v)
-            result.append(known[key])
-        return result
+        of_rows = self._samples[1]
+        known = {id(samples): _matrices(samples) for samples in of_rows}
+        return [known[id(samples)] for samples in of_rows]
 
 
-def _bases(basis: Basis, x: FloatArray) -> list[SparseMatrix]:
-    found: list[SparseMatrix] = []
-    for order in range(3):
-        if order > basis.degree:
-            found.append(sp.csr_array((len(x), basis.size)))
-            continue
-        knots = basis.knots[order : len(basis.knots) - order]
-        values = basis_matrix(basis.degree - order, knots, x)
-        found.append(sp.csr_array(values @ derivative_matrix(basis.degree, basis.knots, order)))
-    return found
+def _matrices(samples: Samples) -> list[SparseMatrix]:
+    """Return the basis functions and their derivatives at the nodes, span by span, zeros among the entries."""
+    count, width = samples.weights.size, samples.basis.degree + 1
+    columns = np.repeat(samples.local().T, len(samples.weights), axis=0).ravel()
+    ends = np.arange(0, columns.size + 1, width)
+    return [
+        sp.csr_array((samples.derivative(order).T.ravel(), columns, ends), shape=(count, samples.basis.size))
+        for order in range(3)
+    ]
 
 
 def free_weights(plain: FreeSystem, u: Basis, rows: tuple[Basis, ...], weights: FloatArray) -> FloatArray:

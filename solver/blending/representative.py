@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 from semispline.solver.arrays import FloatArray
 from semispline.solver.blending.closing import seam_order
-from semispline.solver.blending.conics import cured_conic, recognised_conic, same_arcs
+from semispline.solver.blending.conics import recognised_conic, same_arcs
 from semispline.solver.blending.cures import CuredRows, CureName, cured_rows
 from semispline.solver.blending.jumps import Jump
 from semispline.solver.blending.ladder import Rung, Window, tamed
@@ -84,7 +84,7 @@ def smooth_along(a: Side, b: Side, options: BlendOptions) -> tuple[tuple[Side, C
     """
     order, shared = max(a.order, b.order), not has_free_rows(options)
     found_a, found_b = (_cured(side, order) for side in (a, b))
-    if found_a.cure == found_b.cure == "none" or (shared and _jump_alike(a, b, found_a, found_b)):
+    if found_a.cure == found_b.cure == "none" or (shared and _jump_alike(a, found_a, found_b)):
         return (a, _as_found(found_a)), (b, _as_found(found_b))
     # A conic without such knots is made smooth too, for both to run alike, where that does not spoil its weights.
     if a.is_rational:
@@ -109,11 +109,10 @@ def _cured(side: Side, order: int) -> CuredRows:
     return found
 
 
-def _jump_alike(a: Side, b: Side, found_a: CuredRows, found_b: CuredRows) -> bool:
+def _jump_alike(a: Side, found_a: CuredRows, found_b: CuredRows) -> bool:
     """Tell whether both sides jump by the same factors at the same places: then no row differs, and no crease is."""
-    if found_a.cure == found_b.cure == "conic":
-        of_a, of_b = (recognised_conic(read_rows(side), side.along) for side in (a, b))
-        return of_a is not None and of_b is not None and same_arcs(of_a, of_b)
+    if found_a.conic is not None and found_b.conic is not None:
+        return same_arcs(found_a.conic, found_b.conic)
     if len(found_a.found) != len(found_b.found):
         return False
     # Both have one domain.
@@ -130,8 +129,10 @@ def _jump_alike(a: Side, b: Side, found_a: CuredRows, found_b: CuredRows) -> boo
 def _as_the_other(side: Side, found: CuredRows, other: CuredRows, order: int) -> CuredRows:
     if found.cure != "none" or other.cure != "conic" or not is_separable(read_rows(side)[..., 3]):
         return found
-    conic = cured_conic(read_rows(side), side.along, order)
-    return found if conic is None else replace(found, rows=conic[0], along=conic[1], cure="conic")
+    conic = recognised_conic(read_rows(side), side.along)
+    if conic is None or (smooth := conic.cured_rows(order)) is None:
+        return found
+    return replace(found, rows=smooth[0], along=smooth[1], cure="conic", conic=conic)
 
 
 def _as_found(found: CuredRows) -> Cure | None:
@@ -144,8 +145,9 @@ def _with_cure(side: Side, found: CuredRows) -> tuple[Side, Cure | None]:
     if found.cure == "none":
         return side, _as_found(found)
     places = ", ".join(f"{jump.v:.5g}" for jump in found.found if jump not in found.left)
+    kind = "conic" if found.conic is None else found.conic.kind
     words = {
-        "conic": f"circle reparametrised, degree {found.along.degree}, corresponds by angle",
+        "conic": f"{kind} reparametrised, degree {found.along.degree}" + ", corresponds by angle" * (kind == "circle"),
         "spans": f"spans scaled by the jump of speed at v = {places}",
         "slopes": f"G1 at v = {places}, closed by slopes of the reparametrisation",
     }[found.cure]

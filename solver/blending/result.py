@@ -60,7 +60,8 @@ class BlendResult:
         By how much rounding of the control points may change it, at most; above 0.001 of the energy `warnings` say so
         and nothing is proved.
     quadrature_error : float or None
-        Of `energy`, where the blend is rational: how far a rule of half the nodes is off.
+        Of `energy`, where the blend is rational, in its unit as `energy_rounding` is: how far a rule of half the nodes
+        is off, which is far more than the rule that was used is.
     weights : pair of Representative or None
         How the weights of a rational base were made tame; None for a polynomial one.
     cures : pair of Cure or None
@@ -112,7 +113,7 @@ class BlendResult:
     constraint_rank : (int, int) or None
         Rank of the constraint Jacobian at the solution, and its number of rows; only for method casadi.
     seconds : float
-        For the solve, without the final checks.
+        For the solve, in both directions of b where both were tried, without the final checks.
     """
 
     surface: SemiStructuredSurface

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import cast
 
-from semispline.solver.blending.fair_search import FairSolution, solve_fair
+from semispline.solver.blending.fair_search import MOST_CONDONED, FairSolution, solve_fair
 from semispline.solver.blending.linear_alpha import LinearInV, scaled
 from semispline.solver.blending.problem import BlendProblem
 from semispline.solver.options import BlendOptions
@@ -46,10 +46,16 @@ class Found:
         return () if self.fair is None else self.fair.condoned
 
 
-def find_shape_parameters(problem: BlendProblem, options: BlendOptions, known: FairSolution | None = None) -> Found:
+def find_shape_parameters(
+    problem: BlendProblem,
+    options: BlendOptions,
+    known: FairSolution | None = None,
+    most_condoned: int = MOST_CONDONED,
+) -> Found:
     """Find alpha^2 and beta^2 of least energy or fairest shape; where both are fixed there is nothing to find.
 
-    A search for the fairest shape starts from what is known of a narrower window, too.
+    A search for the fairest shape starts from what is known of a narrower window, too, and lets no more pass than it
+    may.
     Each method waits inside the function until it is asked for: CasADi alone takes longer to load than to solve.
     """
     method = options.method
@@ -57,7 +63,7 @@ def find_shape_parameters(problem: BlendProblem, options: BlendOptions, known: F
         a, b = problem.given
         return Found(a, b, method="linear", p2=(problem.p2[0].at(a), problem.p2[1].at(b)))
     if "fair" in options.alphas:
-        return found_fair(solve_fair(problem, known), method)
+        return found_fair(solve_fair(problem, known, most_condoned), method)
     if method == "reduced":
         from semispline.solver.blending.reduced import solve_reduced
 

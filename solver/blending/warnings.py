@@ -8,13 +8,11 @@ import numpy as np
 
 from semispline.solver.blending.problem import BlendProblem
 from semispline.solver.blending.shape_parameters import Found, alpha_bounds, p2_ends, shape_unknowns
-from semispline.solver.judge import Base, Contact, NoNormal, doubtful, is_closed, model_size
+from semispline.solver.judge import Base, Contact, NoNormal, RoundingCauses, doubtful, is_closed, rounding_causes
 from semispline.solver.options import BlendOptions
-from semispline.solver.splines import SemiStructuredSurface, bounding_box
+from semispline.solver.splines import SemiStructuredSurface
 
 _NAMED = 5
-# So many sizes from the origin rounding is that of the distance rather than that of the blend.
-_FAR = 1e3
 # A span beside the edge below this fraction of the base makes its second derivatives round by 1e6 times as much.
 _NARROW = 1e-3
 # A p2 so many times alpha^2 is beyond all that a search finds, and derivatives round by it.
@@ -101,7 +99,7 @@ def strained_by(options: BlendOptions, found: Found, index: int) -> str:
 
 def remedy(
     base: Base,
-    surface: SemiStructuredSurface,
+    causes: RoundingCauses,
     bare: list[NoNormal],
     shape: float | None,
     order: int = 2,
@@ -112,8 +110,8 @@ def remedy(
     Parameters
     ----------
     base : Base
-    surface : SemiStructuredSurface
-        The blend.
+    causes : RoundingCauses
+        Of the base and the blend.
     bare : list of NoNormal
         Where the base has no proper normal.
     shape : float or None
@@ -123,23 +121,25 @@ def remedy(
     strained : str
         What was asked for that may be the cause, and what to try.
     """
-    distance = float(np.abs(bounding_box(surface)).max()) / model_size(surface)
-    if distance > _FAR:
-        return f"the origin is {distance:.0e} times the size of the blend away: work in coordinates nearer to it"
-    if bare:
-        return f"the base has {bare[0]}: choose another edge, or a base that is regular there"
     across, end = base.edge
     breaks = base.surface.breakpoints["uv".index(across)]
-    width = float(np.diff(breaks)[0 if end == "0" else -1])
-    if width < _NARROW * float(breaks[-1] - breaks[0]):
+    widths = np.diff(breaks)[:: 1 if end == "0" else -1]
+    width = float(widths[0])
+    is_narrow = width < _NARROW * float(breaks[-1] - breaks[0])
+    # Of several causes that which makes the bound larger.
+    by_knots = float(widths.mean() / width) ** order if is_narrow else 1.0
+    said = causes.words(("the base", "the blend"))
+    if said and by_knots < max(causes.by_distance, causes.by_weights):
+        return said + (f"; {strained}" if strained else "")
+    if bare:
+        return f"the base has {bare[0]}: choose another edge, or a base that is regular there"
+    if is_narrow:
         return (
             f"knots_{across} of the base leave a span of {width:.1e} beside the edge, across which derivatives round: "
             "remove these knots or take them further apart, or ask for a lower continuity"
         )
     if strained or order > 2:
-        return (
-            strained or f"derivatives of order {order} round: ask for G2, or work in coordinates nearer to the origin"
-        )
+        return strained or f"derivatives of order {order} round: ask for G2"
     if shape is None:
         return "derivatives across the edge round: try bases of similar size, or a lower continuity"
     return (
@@ -170,7 +170,8 @@ def contact_warnings(
         geometric = wanted[0] == "G" and wanted != "G0"
         for text in doubtful(contact, wanted):
             shown, strained = least if geometric else None, strained_by(options, found, index)
-            warnings.append(f"contact {name}: {text}; {remedy(base, surface, bare, shown, int(wanted[1]), strained)}")
+            causes = rounding_causes(base, Base(surface, "u1" if index else "u0"), int(wanted[1]))
+            warnings.append(f"contact {name}: {text}; {remedy(base, causes, bare, shown, int(wanted[1]), strained)}")
         if geometric:
             warnings += [f"base {name}: {place}; {wanted} says nothing there" for place in bare[:_NAMED]]
     return tuple(warnings)

@@ -9,7 +9,6 @@ linear in the number of control points, and nothing is factorised, allocated or 
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -22,6 +21,7 @@ from semispline.solver.blending import (
     casadi_matrix,
     constrained_problem,
     contact_rows,
+    make_side,
     state_problem,
 )
 from semispline.solver.c_export.readme import readme
@@ -36,7 +36,7 @@ from semispline.solver.io import (
     write_texts,
 )
 from semispline.solver.judge import Base
-from semispline.solver.splines import Surface
+from semispline.solver.options import BlendOptions
 
 NAME = "blend"
 # Errors of the control points of exported code, as a fraction of the size: of the energy that is the square.
@@ -74,11 +74,11 @@ def write_c(folder: str | Path, problem_file: str | Path) -> tuple[list[Path], t
     loaded = read_surfaces(specs) if specs else []
     read = iter(loaded)
     surfaces = [next(read).surface if isinstance(base, str) else base for base in bases]
-    _require_polynomial(surfaces)
     edges: list[Any] = [stored.edge_a, stored.edge_b]
     named = [edge for base, edge in zip(bases, edges, strict=True) if isinstance(base, str)]
     warnings = face_warnings(*zip(specs, named, loaded, strict=True), strict=stored.options.strict)
     a, b = (Base(surface, edge) for surface, edge in zip(surfaces, edges, strict=True))
+    _require_polynomial(a, b, stored.options)
     texts = c_files(state_problem(a, b, stored.options.decided("generated C")))
     if Path(folder).is_dir():
         check_outputs(
@@ -87,9 +87,10 @@ def write_c(folder: str | Path, problem_file: str | Path) -> tuple[list[Path], t
     return write_texts(folder, texts), warnings
 
 
-def _require_polynomial(surfaces: Sequence[Surface]) -> None:
-    for name, surface in zip("ab", surfaces, strict=True):
-        if surface.is_rational:
+def _require_polynomial(a: Base, b: Base, options: BlendOptions) -> None:
+    """Refuse bases that are rational where contact reads them: weights that are all equal there are none."""
+    for name, base, continuity in zip("ab", (a, b), options.continuities, strict=True):
+        if make_side(base, continuity, f"base {name}").is_rational:
             raise InputError(
                 f"{name}: rational, and generated C minimises the energy (11), which is a polynomial's; "
                 "blend it in Python, or approximate it without weights"

@@ -11,7 +11,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import cKDTree
 
 from semispline.solver.arrays import FloatArray
 from semispline.solver.splines import Surface
@@ -223,6 +222,9 @@ def _corners_on(surface: Surface, edge: str, boundary: FaceBoundary) -> FloatArr
     low, high = surface.domain[1 if edge[0] == "u" else 0]
     at = np.linspace(low, high, _CHORDS + 1)
     points, tangents = _along(surface, edge, at), _along(surface, edge, at, 1)
+    # SciPy waits, as in the functions of `splines.knots`: most readers ask for no corner.
+    from scipy.spatial import cKDTree
+
     nearest = cKDTree(points).query(ends)[1]
     speed = np.maximum(np.sum(tangents**2, axis=1), np.finfo(np.float64).tiny)
     feet = at[nearest] + np.sum((ends - points[nearest]) * tangents[nearest], axis=1) / speed[nearest]

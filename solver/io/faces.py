@@ -102,8 +102,8 @@ class SurfaceEntry:
     trimmed : bool or None
         None where the file does not tell.
     deviation : float or None
-        Where the face has no exact B-spline form: how far the one that is read out was found from it, in the unit of
-        the file.
+        Where the face has no exact B-spline form: how far the one that is read out is from it at the worst place that
+        was found, in the unit of the file.
     problem : str or None
         Why the face cannot be read out.
     """

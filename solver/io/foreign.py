@@ -26,7 +26,7 @@ def limits(path: str | Path) -> tuple[float, float]:
 
 
 def read_apart(path: str | Path, module: str, kernel: str, more: Iterable[str] = ()) -> Any:
-    """Return what `work(path, *more)` of a module of this room returns, called in a process of its own.
+    """Return what `work(path, *more)` of a module returns, called in a process of its own.
 
     Raises
     ------
@@ -38,7 +38,7 @@ def read_apart(path: str | Path, module: str, kernel: str, more: Iterable[str] =
     require_file(path)
     seconds, megabytes = limits(path)
     try:
-        return call(f"semispline.solver.io.{module}", [str(path), *more], seconds, megabytes)
+        return call(module, [str(path), *more], seconds, megabytes)
     except WorkerError as error:
         size = Path(path).stat().st_size
         damaged = "the file is damaged or too complex; export it anew"

@@ -68,7 +68,7 @@ class OccFace:
 
         if BRep_Tool.NaturalRestriction_s(self.face):
             return False
-        ends = self._ends
+        ends = self.ends
         return any(
             distance_to_ends(pcurve_points(edge, self.face), ends).min(axis=1).max() > ON_EDGE
             for edge in edges_of(self.face)
@@ -79,7 +79,7 @@ class OccFace:
         if self.trimmed() is False:
             return None
         try:
-            return occ_boundary(self.face, self._ends)
+            return occ_boundary(self.face, self.ends)
         except Exception:
             # Each failure of the kernel has a class of its own.
             return joined([])
@@ -108,7 +108,7 @@ class OccFace:
 
     @cached_property
     def _conversion(self) -> Conversion:
-        return converted(self._geometry, self._ends)
+        return converted(self._geometry, self.ends)
 
     @cached_property
     def _geometry(self) -> Any:
@@ -120,7 +120,7 @@ class OccFace:
         return resolved(geometry)
 
     @cached_property
-    def _ends(self) -> Ends:
+    def ends(self) -> Ends:
         """Range of the parameters that `surface` returns: that of the face where the surface has no end."""
         from OCP.BRepTools import BRepTools
 
@@ -166,7 +166,8 @@ def open_occ(path: str | Path, bounded: Collection[int] = ()) -> Model:
     """
     require_file(path)
     require_kernel(path)
-    unit, faces, others = read_apart(path, "occ_worker", "Open CASCADE", map(str, bounded))
+    worker = "semispline.solver.io.occ_worker"
+    unit, faces, others = read_apart(path, worker, "Open CASCADE", map(str, bounded))
     return Model(str(path), unit, [_ReadFace(*face) for face in faces], others)
 
 

@@ -15,6 +15,7 @@ import numpy as np
 from semispline.solver.arrays import FloatArray
 from semispline.solver.errors import FileError
 from semispline.solver.io.faces import surface_from_net, without_equal_weights
+from semispline.solver.judge import surface_points
 from semispline.solver.splines import BSplineSurface
 
 KINDS = {
@@ -53,6 +54,8 @@ _WANTED, _LARGEST = 1e-7, 1e-4
 _MOST_SPANS, _DEGREE = 200, 14
 # Places along each parameter at which an approximation is measured, at most; an error of a high degree has many waves.
 _PLACES = 200
+# Around so many of the worst ones it is then sought on grids of so many places across, so often.
+_REFINED, _ACROSS, _ZOOMS = 3, 7, 3
 Ends = tuple[float, float, float, float]
 
 
@@ -65,8 +68,8 @@ class Conversion:
     surface : BSplineSurface
         Clamped, without trimming.
     deviation : float or None
-        How far it is at most, of many places, from what the file holds, in the unit of the file; None where it is
-        exact.
+        How far it is from what the file holds at the worst place that was found, in the unit of the file; None where
+        it is exact. No bound: another place may be a little worse.
     """
 
     surface: BSplineSurface
@@ -280,38 +283,74 @@ def _approximated(geometry: Any, ends: Ends) -> Conversion:
 def _distance_at_knots(surface: BSplineSurface, geometry: Any) -> float:
     """Return the largest distance at knots and middles of spans, where the parameters of both forms are the same."""
     u, v = (np.unique(np.concatenate([x, (x[1:] + x[:-1]) / 2])) for x in surface.breakpoints)
-    grid = surface.evaluate_grid(u, v)
-    expected = [[_coordinates(geometry.Value(a, b)) for b in v.tolist()] for a in u.tolist()]
-    return float(np.linalg.norm(grid - np.array(expected), axis=-1).max())
+    pairs = [(a, b) for a in u.tolist() for b in v.tolist()]
+    # By the referee, for which no SciPy has to be loaded.
+    found = surface_points(surface, *np.array(pairs).T)
+    expected = np.array([_coordinates(geometry.Value(a, b)) for a, b in pairs])
+    return float(np.linalg.norm(found - expected, axis=-1).max())
 
 
 def _deviation(surface: BSplineSurface, geometry: Any, ends: Ends) -> float:
-    """Return the largest distance from points of an approximation to the surface itself.
+    """Return the largest distance from points of an approximation to the surface itself, as far as a search finds it.
 
-    Source: Gauss-Newton steps to the foot point, from the same parameters on, within the range of the face.
+    On a grid, and then around its worst places on finer and finer ones.
     """
-    from OCP.gp import gp_Pnt, gp_Vec
-
     degrees = surface.degree_u, surface.degree_v
     u, v = (_places(x, degree) for x, degree in zip(surface.breakpoints, degrees, strict=True))
     grid = surface.evaluate_grid(u, v)
     away = grid - np.array([[_coordinates(geometry.Value(a, b)) for b in v.tolist()] for a in u.tolist()])
     at_same = np.linalg.norm(away, axis=-1)
-    point, along_u, along_v = gp_Pnt(), gp_Vec(), gp_Vec()
-    worst = 0.0
-    for i, j in zip(*np.unravel_index(np.argsort(-at_same, axis=None), at_same.shape), strict=True):
-        nearest = float(at_same[i, j])
-        if nearest <= worst:
+    found: dict[tuple[int, int], float] = {}
+    # The foot is no farther than the point with the same parameters.
+    for place in np.argsort(-at_same, axis=None).tolist():
+        i, j = divmod(place, len(v))
+        if at_same[i, j] <= max(found.values(), default=-1.0):
             break
-        at = np.array([u[i], v[j]])
-        for _ in range(4):
-            geometry.D1(float(at[0]), float(at[1]), point, along_u, along_v)
-            offset = grid[i, j] - _coordinates(point)
-            nearest = min(nearest, float(np.linalg.norm(offset)))
-            slopes = np.stack([_coordinates(along_u), _coordinates(along_v)], axis=1)
-            at = np.clip(at + np.linalg.lstsq(slopes, offset)[0], ends[::2], ends[1::2])
-        worst = max(worst, nearest)
-    return worst
+        found[i, j] = _foot_distance(grid[i, j], geometry, ends, (u[i], v[j]), float(at_same[i, j]))
+    worst = sorted(found, key=lambda key: -found[key])[:_REFINED]
+    return max(found[worst[0]], *(_zoomed(surface, geometry, ends, (u, v), place) for place in worst))
+
+
+def _zoomed(
+    surface: BSplineSurface, geometry: Any, ends: Ends, places: tuple[FloatArray, FloatArray], worst: tuple[int, int]
+) -> float:
+    """Return the largest distance around one of the places, on grids that are each as wide as two steps before."""
+    low = [float(x[max(i - 1, 0)]) for x, i in zip(places, worst, strict=True)]
+    high = [float(x[min(i + 1, len(x) - 1)]) for x, i in zip(places, worst, strict=True)]
+    largest = 0.0
+    for _ in range(_ZOOMS):
+        u, v = (np.linspace(a, b, _ACROSS) for a, b in zip(low, high, strict=True))
+        grid = surface.evaluate_grid(u, v)
+        off = [
+            [_foot_distance(point, geometry, ends, (a, b)) for point, b in zip(row, v.tolist(), strict=True)]
+            for row, a in zip(grid, u.tolist(), strict=True)
+        ]
+        at = np.unravel_index(int(np.argmax(off)), (_ACROSS, _ACROSS))
+        largest = max(largest, off[at[0]][at[1]])
+        low, high = (
+            [float(x[np.clip(i + k, 0, _ACROSS - 1)]) for x, i in zip((u, v), at, strict=True)] for k in (-1, 1)
+        )
+    return largest
+
+
+def _foot_distance(
+    target: FloatArray, geometry: Any, ends: Ends, start: tuple[float, float], nearest: float = np.inf
+) -> float:
+    """Return the distance of a point from a surface near some parameters.
+
+    Source: Gauss-Newton steps to the foot point, within the range of the face.
+    """
+    from OCP.gp import gp_Pnt, gp_Vec
+
+    point, along_u, along_v = gp_Pnt(), gp_Vec(), gp_Vec()
+    at = np.array(start)
+    for _ in range(4):
+        geometry.D1(float(at[0]), float(at[1]), point, along_u, along_v)
+        offset = target - _coordinates(point)
+        nearest = min(nearest, float(np.linalg.norm(offset)))
+        slopes = np.stack([_coordinates(along_u), _coordinates(along_v)], axis=1)
+        at = np.clip(at + np.linalg.lstsq(slopes, offset)[0], ends[::2], ends[1::2])
+    return nearest
 
 
 def _places(breaks: FloatArray, degree: int) -> FloatArray:

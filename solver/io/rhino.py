@@ -51,13 +51,15 @@ _ON_EDGE = 3e-4
 class RhinoFace:
     """A surface of a 3dm file.
 
-    `net` as `rhino_worker` has it; `curves` lie along the edges that bound the face, None where it has no face.
+    `net` and `trims` as `rhino_worker` has them; `curves` lie along the edges that bound the face, None where it has no
+    face.
     """
 
     kind: str
     net: tuple[Any, ...] | None
     curves: Sequence[tuple[int, FloatArray, FloatArray]] | None
     where: str
+    trims: tuple[bool, Sequence[Sequence[tuple[int, int, bool]]]] | None = None
 
     def trimmed(self) -> bool | None:
         """Whether curves cut the face out of its surface."""
@@ -82,7 +84,7 @@ class RhinoFace:
         parts = []
         for degree, knots, net in self.curves or ():
             breaks = np.unique(knots[degree : len(knots) - degree])
-            parts.append((*cubic_pieces(_evaluator(degree, knots, net), breaks, _ON_EDGE * size), ""))
+            parts.append((*cubic_pieces(curve_evaluator(degree, knots, net), breaks, _ON_EDGE * size), ""))
         return joined(parts)
 
     def surface(self) -> BSplineSurface:
@@ -126,7 +128,7 @@ def open_3dm(path: str | Path, bounded: Collection[int] = ()) -> Model:
     """
     require_file(path)
     _library(path)
-    return _model(path, read_apart(path, "rhino_worker", "openNURBS"))
+    return _model(path, read_apart(path, "semispline.solver.io.rhino_worker", "openNURBS"))
 
 
 def read_3dm(path: str | Path) -> Model:
@@ -146,8 +148,10 @@ def read_3dm(path: str | Path) -> Model:
 
 
 def _model(path: str | Path, found: tuple[str, Sequence[Any], Mapping[str, int]]) -> Model:
-    unit, found_faces, others = found
-    faces = [RhinoFace(kind, net, curves, f"{path}#{k}") for k, (kind, net, curves) in enumerate(found_faces)]
+    unit, surfaces, others = found
+    faces = [
+        RhinoFace(kind, net, curves, f"{path}#{k}", trims) for k, (kind, net, curves, trims) in enumerate(surfaces)
+    ]
     return Model(str(path), _UNITS.get(unit), faces, others)
 
 
@@ -190,7 +194,7 @@ def _library(what: str | Path) -> Any:
     return rhino3dm
 
 
-def _evaluator(
+def curve_evaluator(
     degree: int, knots: FloatArray, net: FloatArray
 ) -> Callable[[FloatArray], tuple[FloatArray, FloatArray]]:
     """Return a function to points and derivatives of a rational curve with control points (w x, w y, w z, w)."""

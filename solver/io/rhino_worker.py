@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import rhino3dm
@@ -21,13 +21,18 @@ from semispline.solver.io.foreign import limits
 Net = tuple[int, int, FloatArray, FloatArray, FloatArray, bool]
 # Degree, knots and control points (n, 4) multiplied by their weights.
 Curve = tuple[int, FloatArray, FloatArray]
+# Whether the face looks against its surface; loop by loop, the outer one first, of each trim in the order of the file:
+# the edge (the same for all its trims in the file; -1 where it is a point), its place among the curves of the face, and
+# whether the trim runs against it.
+Trims = tuple[bool, list[list[tuple[int, int, bool]]]]
+Found = tuple[str, Net | None, list[Curve] | None, Trims | None]
 _SHAPES = {"plane": "IsPlanar", "cylinder": "IsCylinder", "cone": "IsCone", "sphere": "IsSphere", "torus": "IsTorus"}
 # How far a surface may be from the shape after which it is called, in the unit of the file.
 _SAME = 1e-9
 _MAGIC = b"3D Geometry File Format"
 
 
-def work(path: str) -> tuple[str, list[tuple[str, Net | None, list[Curve] | None]], dict[str, int]]:
+def work(path: str) -> tuple[str, list[Found], dict[str, int]]:
     """Return the name of the unit, what `rhino.RhinoFace` takes of each surface, and what else the file holds.
 
     Raises
@@ -39,14 +44,16 @@ def work(path: str) -> tuple[str, list[tuple[str, Net | None, list[Curve] | None
         file: Any = rhino3dm.File3dm.Read(path)
         if file is None:
             raise FileError(f"{path}: {_why_not(path)}")
-        found: list[tuple[str, Net | None, list[Curve] | None]] = []
+        found: list[Found] = []
+        edges = 0
         others: Counter[str] = Counter()
         for item in file.Objects:
             geometry = item.Geometry
             if isinstance(geometry, rhino3dm.Brep):
-                found += [(_kind(surface), _net(surface), curves) for surface, curves in _brep_surfaces(geometry)]
+                found += [(_kind(surface), _net(surface), *of) for surface, of in _brep_surfaces(geometry, edges)]
+                edges += len(cast(Any, geometry).Edges)
             elif isinstance(geometry, rhino3dm.Surface):
-                found.append((_kind(geometry), _net(geometry), None))
+                found.append((_kind(geometry), _net(geometry), None, None))
             else:
                 others["curve" if isinstance(geometry, rhino3dm.Curve) else _kind(geometry)] += 1
         return file.Settings.ModelUnitSystem.name, found, dict(others)
@@ -100,23 +107,23 @@ def _with_ends(knots: Sequence[float]) -> FloatArray:
     return np.array([inner[0], *inner, inner[-1]])
 
 
-def _brep_surfaces(brep: Any) -> list[tuple[Any, list[Curve] | None]]:
-    """Return surfaces of a Brep with the edges of the face that lies on each.
+def _brep_surfaces(brep: Any, first_edge: int) -> list[tuple[Any, tuple[list[Curve] | None, Trims | None]]]:
+    """Return surfaces of a Brep with the edges of the face that lies on each; they are numbered from `first_edge` on.
 
     rhino3dm does not say which face lies on which surface: they are matched by domain and by a few points.
     """
     faces = [brep.Faces[i] for i in range(len(brep.Faces))]
     waiting = {i: _fingerprint(face.UnderlyingSurface()) for i, face in enumerate(faces)}
-    found: list[tuple[Any, list[Curve] | None]] = []
+    found: list[tuple[Any, tuple[list[Curve] | None, Trims | None]]] = []
     for k in range(len(brep.Surfaces)):
         surface = brep.Surfaces[k]
         wanted = _fingerprint(surface)
         match = next((i for i, other in waiting.items() if other == wanted), None)
-        curves = None
+        of: tuple[list[Curve] | None, Trims | None] = (None, None)
         if match is not None:
             del waiting[match]
-            curves = _edge_curves(brep, faces[match])
-        found.append((surface, curves))
+            of = _edge_curves(brep, faces[match]), _trims(faces[match], first_edge)
+        found.append((surface, of))
     return found
 
 
@@ -126,12 +133,30 @@ def _fingerprint(surface: Any) -> tuple[float, ...]:
     return (u.T0, u.T1, v.T0, v.T1, *(c for p in points for c in (p.X, p.Y, p.Z)))
 
 
-def _edge_curves(brep: Any, face: Any) -> list[Curve]:
+def _trims(face: Any, first_edge: int) -> Trims:
+    numbers = _edge_numbers(face)
+    loops = [face.Loops[i] for i in range(len(face.Loops))]
+    loops.sort(key=lambda loop: loop.LoopType != cast(Any, rhino3dm).BrepLoopType.Outer)
+    return face.OrientationIsReversed, [
+        [
+            (-1, -1, False)
+            if trim.EdgeIndex < 0
+            else (first_edge + trim.EdgeIndex, numbers.index(trim.EdgeIndex), trim.IsReversed)
+            for trim in (loop.Trims[k] for k in range(len(loop.Trims)))
+        ]
+        for loop in loops
+    ]
+
+
+def _edge_numbers(face: Any) -> list[int]:
     # A trim along a singular side has no edge; a seam has two trims.
     trims = [face.Loops[i].Trims for i in range(len(face.Loops))]
-    numbers = {loop[k].EdgeIndex for loop in trims for k in range(len(loop))} - {-1}
+    return sorted({loop[k].EdgeIndex for loop in trims for k in range(len(loop))} - {-1})
+
+
+def _edge_curves(brep: Any, face: Any) -> list[Curve]:
     curves = []
-    for number in sorted(numbers):
+    for number in _edge_numbers(face):
         curve = brep.Edges[number].ToNurbsCurve()
         net = [curve.Points[i] for i in range(len(curve.Points))]
         points = np.array([(p.X, p.Y, p.Z, p.W) for p in net])

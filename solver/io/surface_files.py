@@ -20,8 +20,8 @@ from semispline.solver.io.face_boundary import FaceBoundary, edge_offset
 from semispline.solver.io.faces import MILLIMETRES, Face, Model, SurfaceEntry, describe, picked, without_equal_weights
 from semispline.solver.splines import BSplineSurface, SemiStructuredSurface, Surface
 
-_OCC = (".step", ".stp", ".iges", ".igs", ".brep", ".brp")
-_READABLE = (".json", *_OCC, ".3dm")
+OCC_SUFFIXES = (".step", ".stp", ".iges", ".igs", ".brep", ".brp")
+_READABLE = (".json", *OCC_SUFFIXES, ".3dm")
 _MESHES = (".obj", ".stl", ".ply", ".gltf", ".glb")
 _WRITABLE = (*_READABLE, *_MESHES)
 # Formats that name a unit get this one for a surface whose own is not known.
@@ -44,7 +44,7 @@ class LoadedSurface:
     kind : str
         What the file holds.
     deviation : float or None
-        Where that has no exact B-spline form: how far `surface` was found from it.
+        Where that has no exact B-spline form: how far `surface` is from it at the worst place that was found.
     """
 
     surface: Surface
@@ -120,11 +120,11 @@ def approximation_warning(spec: str | Path, loaded: LoadedSurface) -> str | None
     --------
     >>> square = BSplineSurface(1, 1, [0, 0, 1, 1], [0, 0, 1, 1], [[[0, 0, 0], [0, 1, 0]], [[1, 0, 0], [1, 1, 0]]])
     >>> approximation_warning("a.step#2", LoadedSurface(square, "mm", kind="offset", deviation=4.123e-6))
-    'a.step#2 (offset) has no exact B-spline form: the surface taken for it is up to 4.12e-06 mm off'
+    'a.step#2 (offset) has no exact B-spline form: the surface taken for it is about 4.12e-06 mm off at worst'
     """
     if loaded.deviation is None:
         return None
-    off = f"up to {loaded.deviation:.3g} {loaded.unit or 'model units'} off"
+    off = f"about {loaded.deviation:.3g} {loaded.unit or 'model units'} off at worst"
     return f"{spec} ({loaded.kind}) has no exact B-spline form: the surface taken for it is {off}"
 
 
@@ -397,7 +397,7 @@ def _reader(suffix: str) -> Callable[[str | Path, Sequence[int]], Model] | None:
         from semispline.solver.io.rhino import open_3dm
 
         return open_3dm
-    if suffix in _OCC:
+    if suffix in OCC_SUFFIXES:
         from semispline.solver.io.occ import open_occ
 
         return open_occ
@@ -425,7 +425,7 @@ def _check_written(written: Path, surface: BSplineSurface, where: str) -> None:
 
     try:
         # What this process wrote, it can read without a process of its own.
-        read = read_occ if written.suffix.lower() in _OCC else read_3dm
+        read = read_occ if written.suffix.lower() in OCC_SUFFIXES else read_3dm
         found = picked(read(written), None).surface()
         same = isinstance(found, BSplineSurface) and _agree(found, surface)
     except FileError:

@@ -27,8 +27,11 @@ from .curvature_range import measure_curvature_range as measure_curvature_range
 from .de_boor import curve_points as curve_points
 from .de_boor import surface_points as surface_points
 from .edge_normals import check_regular_edge as check_regular_edge
+from .face_contact import FaceContact as FaceContact
+from .face_contact import measure_face_contact as measure_face_contact
 from .fairness import Fairness as Fairness
 from .fairness import measure_fairness as measure_fairness
+from .limits import cad_measures as cad_measures
 from .limits import doubtful as doubtful
 from .limits import required_limits as required_limits
 from .limits import shortfalls as shortfalls
@@ -45,6 +48,8 @@ from .parametric import geometry as geometry
 from .parametric import geometry_grid as geometry_grid
 from .regularity import Regularity as Regularity
 from .regularity import measure_regularity as measure_regularity
+from .rounding import RoundingCauses as RoundingCauses
+from .rounding import rounding_causes as rounding_causes
 from .sections import extent as extent
 from .shape import ShapeReport as ShapeReport
 from .shape import measure_shape as measure_shape

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
 from functools import cache
 from itertools import pairwise
-from math import comb, perm
+from math import factorial, perm
 from typing import TypeAlias
 
 import numpy as np
@@ -61,8 +61,7 @@ def parts_of(surface: Surface, cuts: int = 1) -> Iterator[Part]:
             matrix = bezier_matrix(degree, group.knots[low - degree : high + degree + 2], breaks)
             points = (matrix @ group.points[low - degree : high + 1]).reshape(-1, degree + 1, len(group.rows), d)
             own = points.transpose(2, 3, 0, 1)
-            ends = np.repeat([0.0, 1.0], degree + 1)
-            nets[group.rows] = own @ elevation_matrix(degree, ends, q).toarray().T if degree < q else own
+            nets[group.rows] = own @ _elevation(degree, q).T if degree < q else own
         yield Part(np.diff(breaks), nets)
 
 
@@ -147,7 +146,9 @@ class _Pieces:
     origin: FloatArray
     # Grids share their parameters.
     known: dict[tuple[int, bytes], _Places] = field(default_factory=dict)
-    # Of the last grid of a rational surface: weights and points of each order.
+    # Of the last parameters v of a grid: what `_along` returns, by order.
+    sections: dict[tuple[bytes, int], FloatArray] = field(default_factory=dict)
+    # Of the last parameters of a rational surface: points and weights of each order.
     quotients: dict[tuple[str, bytes, bytes], _Quotients] = field(default_factory=dict)
 
     @staticmethod
@@ -185,15 +186,25 @@ class _Pieces:
         )
 
     def _on_grid(self, u: FloatArray, v: FloatArray, du: int, dv: int) -> FloatArray:
-        at_u, at_v, d = self._places(0, u), self._places(1, v), self.columns
-        n_v, of_u = len(at_v.pieces), at_u.basis(du)
-        along = np.einsum("vj,vjx->vx", at_v.basis(dv), self.points[at_v.pieces])
-        # Components apart, and each in one piece: what is done with them is then done fast.
-        pieces = along.reshape(n_v, -1, d).transpose(1, 2, 0).reshape(-1, self.degree_u + 1, d * n_v)
-        found = np.empty((len(of_u), d * n_v))
+        at_u, d = self._places(0, u), self.columns
+        of_u, pieces = at_u.basis(du), self._along(v, dv)
+        found = np.empty((len(of_u), pieces.shape[2]))
         for start, end in pairwise(at_u.ends):
             found[start:end] = of_u[start:end] @ pieces[at_u.pieces[start]]
-        return found.reshape(len(of_u), d, n_v).transpose(0, 2, 1)
+        return found.reshape(len(of_u), d, -1).transpose(0, 2, 1)
+
+    def _along(self, v: FloatArray, dv: int) -> FloatArray:
+        """Return Bezier points along u at each v, of a derivative by v: shape (U, p + 1, d x len(v))."""
+        key = v.tobytes(), dv
+        if key not in self.sections:
+            if any(known != key[0] for known, _ in self.sections):
+                self.sections.clear()
+            at_v = self._places(1, v)
+            along = np.einsum("vj,vjx->vx", at_v.basis(dv), self.points[at_v.pieces])
+            # Components apart, and each in one piece: what is done with them is then done fast.
+            apart = along.reshape(len(v), -1, self.columns).transpose(1, 2, 0)
+            self.sections[key] = apart.reshape(-1, self.degree_u + 1, self.columns * len(v))
+        return self.sections[key]
 
     def _euclidean(self, kind: str, values: _Values, u: ArrayLike, v: ArrayLike, order: tuple[int, int]) -> FloatArray:
         u, v = np.asarray(u, dtype=np.float64), np.asarray(v, dtype=np.float64)
@@ -217,7 +228,10 @@ class _Pieces:
 
 @dataclass(frozen=True, eq=False)
 class _Quotients:
-    """Derivatives of X / w on one set of parameters: of each order once, by the product rule on X = w S."""
+    """Taylor coefficients of S = X / w on one set of parameters: of each order once, from X / w(0) and w / w(0).
+
+    Of a product these are sums of products, without binomials.
+    """
 
     homogeneous: Callable[[int, int], FloatArray]
     weights: dict[tuple[int, int], FloatArray] = field(default_factory=dict)
@@ -225,17 +239,26 @@ class _Quotients:
 
     def derivative(self, du: int, dv: int) -> FloatArray:
         """Return the derivative of an order, shape (..., 3); each component lies in one piece."""
+        value, factor = self._coefficient(du, dv), float(factorial(du) * factorial(dv))
+        value = value if factor == 1 else factor * value
+        return value.transpose(*range(1, value.ndim), 0)
+
+    def _coefficient(self, du: int, dv: int) -> FloatArray:
+        """Return the coefficient of an order, shape (3, ...)."""
         if (du, dv) not in self.known:
-            lower = [(i, j) for i in range(du + 1) for j in range(dv + 1) if i or j]
             # Those below first: their weights are needed.
-            below = {(i, j): self.derivative(du - i, dv - j) for i, j in lower}
-            raw = np.moveaxis(self.homogeneous(du, dv), -1, 0)
-            self.weights[du, dv] = raw[3]
-            value = np.array(raw[:3])
-            for (i, j), other in below.items():
-                value -= comb(du, i) * comb(dv, j) * self.weights[i, j] * np.moveaxis(other, -1, 0)
-            value /= self.weights[0, 0]
-            self.known[du, dv] = np.moveaxis(value, 0, -1)
+            below = [(i, j, self._coefficient(du - i, dv - j)) for i in range(du + 1) for j in range(dv + 1) if i or j]
+            raw = self.homogeneous(du, dv)
+            raw = np.ascontiguousarray(raw.transpose(-1, *range(raw.ndim - 1)))
+            if not below:
+                self.weights[0, 0] = raw[3].copy()
+            raw /= self.weights[0, 0] * float(factorial(du) * factorial(dv))
+            if below:
+                self.weights[du, dv] = raw[3]
+            value, product = raw[:3], np.empty_like(raw[:3])
+            for i, j, other in below:
+                value -= np.multiply(self.weights[i, j], other, out=product)
+            self.known[du, dv] = value
         return self.known[du, dv]
 
 
@@ -274,6 +297,12 @@ def _counted_from(surface: Surface, origin: FloatArray) -> Surface:
         return replace(surface, control_points=surface.control_points - origin)
     curves = (replace(curve, control_points=curve.control_points - origin) for curve in surface.control_curves)
     return replace(surface, control_curves=tuple(curves))
+
+
+@cache
+def _elevation(degree: int, raised: int) -> FloatArray:
+    """Return the matrix from Bezier points to those of a higher degree."""
+    return np.asarray(elevation_matrix(degree, np.repeat([0.0, 1.0], degree + 1), raised).toarray())
 
 
 @cache

@@ -69,7 +69,8 @@ class Contact:
     size : float
         Largest extent of the control points of both surfaces.
     rounding : dict
-        What rounding of the input alone may do to each measure above; infinite where the measure is nothing else.
+        What rounding of the input alone may do to each measure above; infinite where the measure is nothing else. Where
+        that would hide the answer, and derivatives to many digits are within the limit: what floating ones were off by.
     allowed : dict
         What each measure may be to count as none: its limit, with that rounding on top.
     no_normal : tuple of NoNormal

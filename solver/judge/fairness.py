@@ -124,9 +124,8 @@ class _Scaled:
         (u_start, u_end), (v_start, v_end) = self.surface.domain
         factor = (u_end - u_start) ** du * (v_end - v_start) ** dv
         # Components apart, each in one piece.
-        return np.ascontiguousarray(np.moveaxis(self.surface.evaluate_grid(u, v, du, dv), -1, 0)) * (
-            factor / self.window
-        )
+        found = self.surface.evaluate_grid(u, v, du, dv).transpose(2, 0, 1)
+        return np.ascontiguousarray(found) * (factor / self.window)
 
 
 def _length_along(surface: _Scaled) -> float:

@@ -30,6 +30,13 @@ CEILINGS = {
     "second_rate_jump_relative": (1e-4, 1e-3),
 }
 
+# What checkers of CAD systems take for good: the gap in millimetres, or of the length of the edge; curvature and its
+# rates of the largest along it.
+CAD_GAP, CAD_GAP_OF_LENGTH = 1e-3, 1e-5
+CAD_ANGLE = 0.01  # degrees
+CAD_JUMP = 0.02
+CAD_RATE = 0.1
+
 # Of surfaces that already differ in lower order these say nothing.
 _RATES = ("rate_jump_relative", "second_rate_jump_relative")
 
@@ -57,6 +64,33 @@ def allowed_measures(size: float, rounding: dict[str, float]) -> dict[str, float
         "second_rate_jump_relative": SECOND_RATE_LIMIT,
     }
     return {name: limits[name] + noise for name, noise in rounding.items()}
+
+
+def cad_measures(length: float, millimetres: float | None = None) -> dict[str, float]:
+    """Return the limits of checkers of CAD systems for an edge of a length.
+
+    Parameters
+    ----------
+    length : float
+        Of the edge, model units.
+    millimetres : float, optional
+        In one model unit, where that is known: then no gap above 0.001 mm is allowed.
+
+    Examples
+    --------
+    >>> cad_measures(20.0)["gap"], cad_measures(2000.0, 25.0)["gap"]
+    (0.0002, 4e-05)
+    """
+    gap = CAD_GAP_OF_LENGTH * length
+    if millimetres is not None:
+        gap = min(gap, CAD_GAP / millimetres)
+    return {
+        "gap": gap,
+        "angle_degrees": CAD_ANGLE,
+        "curvature_jump_relative": CAD_JUMP,
+        "rate_jump_relative": CAD_RATE,
+        "second_rate_jump_relative": CAD_RATE,
+    }
 
 
 def required_limits(contact: Contact, continuity: Continuity) -> list[tuple[str, float, float]]:

@@ -8,6 +8,7 @@ from typing import Literal
 import numpy as np
 
 from semispline.solver.arrays import FloatArray
+from semispline.solver.judge.bezier_pieces import in_pieces
 from semispline.solver.judge.parametric import ParametricSurface
 from semispline.solver.judge.sections import (
     angles,
@@ -87,7 +88,7 @@ def measure_turn(surface: ParametricSurface) -> Turn:
     >>> round(turn.degrees, 9), turn.section, turn.is_fold
     (90.0, 'v', False)
     """
-    return turn_on_samples(surface, 1)
+    return turn_on_samples(in_pieces(surface), 1)
 
 
 def turn_on_samples(surface: ParametricSurface, fineness: int) -> Turn:

@@ -109,11 +109,7 @@ def render(
         pyvista is not installed, or the file cannot be written.
     """
     check_picture(path, field)
-    if not surfaces:
-        raise OptionError("surfaces: found none, expected at least one")
-    for name, given in (("colors", colors), ("control_points", control_points)):
-        if given is not None and len(given) != len(surfaces):
-            raise OptionError(f"{name}: found {len(given)}, expected {len(surfaces)}, one for each surface")
+    _check_lists(surfaces, colors=colors, control_points=control_points)
     pyvista = pyvista_module(path)
     count = int(np.clip(np.sqrt(_TOTAL / len(surfaces)), _COARSEST, _FINEST))
     samples = [_Sampled(*sampled(surface, count)) for surface in surfaces]
@@ -136,19 +132,34 @@ def render(
             else:
                 _add_field(plotter, samples, field, view, colors)
             _add_outlines(plotter, pyvista, samples)
-            points = _all_points(samples)
-            # In parallel projection a shift towards the eye changes nothing but what hides what: no control point is
-            # hidden by a surface.
-            lift = 2 * float(np.ptp(points @ view.towards_eye)) * view.towards_eye
-            extent = _extent(samples)
-            for rows in polygons:
-                _add_polygons(plotter, pyvista, [row + lift for row in rows], extent)
-            corners = np.concatenate([points, *(row for rows in polygons for row in rows)])
-            _aim(plotter, corners, view, size, 0.84 if field in ("curvature", "gaussian") else 1.0)
+            points = [_all_points(samples), *_add_lifted(plotter, pyvista, samples, polygons, view)]
+            width = 0.84 if field in ("curvature", "gaussian") else 1.0
+            _aim(plotter, np.concatenate(points), view, size, width)
             plotter.enable_anti_aliasing("ssaa")
             plotter.screenshot(str(temporary))
         finally:
             plotter.close()
+
+
+def _check_lists(surfaces: Sequence[Surface], **lists: Sequence[object] | None) -> None:
+    """Refuse no surface, and lists that do not have one entry for each."""
+    if not surfaces:
+        raise OptionError("surfaces: found none, expected at least one")
+    for name, given in lists.items():
+        if given is not None and len(given) != len(surfaces):
+            raise OptionError(f"{name}: found {len(given)}, expected {len(surfaces)}, one for each surface")
+
+
+def _add_lifted(
+    plotter: Any, pyvista: Any, samples: Sequence[_Sampled], polygons: Sequence[list[FloatArray]], view: _View
+) -> list[FloatArray]:
+    """Add control polygons in front of all surfaces, and return their rows where they are."""
+    # In parallel projection a shift towards the eye changes nothing but what hides what: no control point is hidden by
+    # a surface.
+    lift = 2 * float(np.ptp(_all_points(samples) @ view.towards_eye)) * view.towards_eye
+    for rows in polygons:
+        _add_polygons(plotter, pyvista, [row + lift for row in rows], _extent(samples))
+    return [row for rows in polygons for row in rows]
 
 
 def check_picture(path: str | Path, field: str | None) -> None:

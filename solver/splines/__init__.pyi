@@ -16,6 +16,8 @@ from .evaluation import homogeneous_points as homogeneous_points
 from .evaluation import same_width as same_width
 from .isocurves import boundary_curve as boundary_curve
 from .isocurves import iso_curve as iso_curve
+from .jets import Jet as Jet
+from .jets import surface_jet as surface_jet
 from .knots import MERGE_TOLERANCE as MERGE_TOLERANCE
 from .knots import affine_knots as affine_knots
 from .knots import basis_matrix as basis_matrix
@@ -56,6 +58,7 @@ from .refinement import elevated_knots as elevated_knots
 from .refinement import elevation_matrix as elevation_matrix
 from .refinement import linear_product_matrices as linear_product_matrices
 from .refinement import refinement_matrix as refinement_matrix
+from .refinement import restriction_matrix as restriction_matrix
 from .revolution import revolve as revolve
 from .revolution import revolve_polynomial as revolve_polynomial
 from .revolution import revolve_smooth as revolve_smooth

@@ -30,6 +30,10 @@ TIE = 1e-10
 SAME_PARAMETER = 1e-6
 # Of a span: a longer step could leave the valley that the start lies in.
 LONGEST_STEP = 1 / 16
+# In sizes of the shape: from farther away rounding hides a thousandth of it.
+FARTHEST = 1e12
+# Below this part of the metric the distance does not bend; others as near are sought so far beside, in spans.
+FLAT, BESIDE = 1e-4, 1 / 32
 STEPS = 60
 HALVINGS = 40
 POLISHES = 3
@@ -47,19 +51,22 @@ class ClosestPoint:
     parameters : ndarray, shape (K, 2) or (K,)
         (u, v) on a surface, v on a curve.
     points : ndarray, shape (K, 3)
+    continuum : bool
+        Infinitely many are equally near, as for a point on the axis of a cylinder: those above are some of them.
     """
 
     distance: float
     parameters: FloatArray
     points: FloatArray
+    continuum: bool = False
 
 
 def closest_point(shape: BSplineCurve | Surface, point: ArrayLike) -> ClosestPoint:
     """Return the point of a curve or surface that is nearest to a point, with its parameters.
 
     The boundary counts: the line to the nearest point need not be normal to the surface. Where several points are
-    equally near, to 1e-10 of the size, each is returned, and so is a point of a seam with both its parameters. Where
-    infinitely many are, as for a point on the axis of a cylinder, these are some of them.
+    equally near, to 1e-10 of the size or to what distances round, each is returned, and so is a point of a seam with
+    both its parameters. Where infinitely many are, these are some of them, and `continuum` says so.
 
     Spans are halved, and parts that are proved to be farther away than a point that was found are left out, until
     parts of 1/64 of a span remain. From each lowest one of them Newton's method with bounds, Gauss-Newton where the
@@ -75,7 +82,8 @@ def closest_point(shape: BSplineCurve | Surface, point: ArrayLike) -> ClosestPoi
     Raises
     ------
     ControlPointError
-        A point of another shape, or not finite.
+        A point of another shape, not finite, or more than 1e12 sizes of the shape away, where all of it is equally
+        near.
 
     Source: Y. Ma, W. Hewitt, Point inversion and projection for NURBS curve and surface: control polygon approach,
     2003; D. Bertsekas, Projected Newton methods for optimization problems with simple constraints, 1982.
@@ -84,13 +92,24 @@ def closest_point(shape: BSplineCurve | Surface, point: ArrayLike) -> ClosestPoi
     --------
     >>> square = BSplineSurface(1, 1, [0, 0, 1, 1], [0, 0, 1, 1], [[[0, 0, 0], [0, 1, 0]], [[1, 0, 0], [1, 1, 0]]])
     >>> found = closest_point(square, [0.25, 2, 1])
-    >>> found.parameters, round(found.distance**2, 12)
+    >>> found.parameters, round(float(found.distance) ** 2, 12)
     (array([[0.25, 1.  ]]), 2.0)
     """
     require(shape, "shape", BSplineCurve, BSplineSurface, SemiStructuredSurface)
     target = space_points(point, 1, "point", ControlPointError)
-    patches = _bezier_patches(shape)
-    tie = TIE * float(np.linalg.norm(np.ptp(euclidean(patches.nets)[0].reshape(-1, 3), axis=0)))
+    every = _all_points(shape)
+    # To size 1, which rounds nothing: squares of what is huge or tiny would overflow or vanish.
+    scale = 2.0 ** np.ceil(np.log2(max(float(np.abs(every).max()), np.finfo(float).tiny)))
+    low, high = every.min(axis=0) / scale, every.max(axis=0) / scale
+    size, away = float(np.linalg.norm(high - low)), float(np.abs(target / scale - low).max())
+    if not away <= FARTHEST * (size or 1.0):
+        raise ControlPointError(
+            f"point: found {tuple(target.tolist())}, {away / (size or 1.0):.0e} sizes of the shape away, where all its "
+            f"points are equally near; expected at most {FARTHEST:.0e}"
+        )
+    patches = _bezier_patches(shape, scale)
+    tie = max(TIE * size, 4 * float(np.finfo(float).eps) * away)
+    target = target / scale
     patch, at = _starts(patches, target, tie)
     at, distances, points = _descended(patches.nets[patch], target, at)
     # 1 gives the end itself.
@@ -99,7 +118,10 @@ def closest_point(shape: BSplineCurve | Surface, point: ArrayLike) -> ClosestPoi
     chosen = _distinct(parameters, distances, width, tie)
     found = parameters[chosen]
     return ClosestPoint(
-        float(distances.min()), found[:, 0] if isinstance(shape, BSplineCurve) else found, points[chosen]
+        float(distances.min()) * scale,
+        found[:, 0] if isinstance(shape, BSplineCurve) else found,
+        points[chosen] * scale,
+        _is_continuum(patches.nets[patch[chosen]], target, at[chosen], tie, SAME_PARAMETER * size),
     )
 
 
@@ -120,7 +142,14 @@ class _Patches:
     high: FloatArray
 
 
-def _bezier_patches(shape: BSplineCurve | Surface) -> _Patches:
+def _all_points(shape: BSplineCurve | Surface) -> FloatArray:
+    """Return all control points, shape (n, 3)."""
+    if isinstance(shape, SemiStructuredSurface):
+        return np.concatenate([curve.control_points for curve in shape.control_curves])
+    return shape.control_points.reshape(-1, 3)
+
+
+def _bezier_patches(shape: BSplineCurve | Surface, scale: float) -> _Patches:
     degrees: tuple[int, ...]
     vectors: tuple[FloatArray, ...]
     if isinstance(shape, BSplineCurve):
@@ -129,6 +158,7 @@ def _bezier_patches(shape: BSplineCurve | Surface) -> _Patches:
         plain = shape.to_bspline() if isinstance(shape, SemiStructuredSurface) else shape
         degrees, vectors = (plain.degree_u, plain.degree_v), (plain.knots_u, plain.knots_v)
         net = plain.homogeneous
+    net = np.concatenate([net[..., :3] / scale, net[..., 3:]], axis=-1)
     for axis, (p, knots) in enumerate(zip(degrees, vectors, strict=True)):
         spans = breakpoints(knots)
         full = clamped(np.repeat(spans[1:-1], p), p, spans[0], spans[-1])
@@ -321,6 +351,27 @@ def _newton_steps(away: FloatArray, first: FloatArray, second: FloatArray, at: F
     # What a bound cuts off goes uphill (such a parameter is free, its slope points inward): the rest goes downhill.
     step = np.where(((at <= 0) & (step < 0)) | ((at >= 1) & (step > 0)), 0.0, step)
     return np.asarray(step / np.maximum(1.0, np.abs(step).max(axis=1, keepdims=True) / LONGEST_STEP))
+
+
+def _is_continuum(nets: FloatArray, target: FloatArray, at: FloatArray, tie: float, same: float) -> bool:
+    """Tell whether a nearest point has others beside it that are as near: Newton's steps do not lead back to it.
+
+    They do where it is alone, however flat the distance is, and from around a pole, which is one point.
+    """
+    points, first, second = _jet(nets, at, 2)
+    square = np.einsum("kid,kjd->kij", first, first)
+    bent = np.linalg.eigvalsh(square + np.einsum("kijd,kd->kij", second, points - target))[:, 0]
+    flat = bent <= FLAT * np.trace(square, axis1=1, axis2=2)
+    steps = np.array([step for step in product((-1, 0, 1), repeat=at.shape[1]) if any(step)]) * BESIDE
+    starts = np.clip((at[flat][:, None] + steps).reshape(-1, at.shape[1]), 0, 1)
+    if not len(starts):
+        return False
+    own = np.repeat(np.flatnonzero(flat), len(steps))
+    moved = np.linalg.norm(_jet(nets[own], starts, 0)[0] - points[own], axis=1)
+    _, distances, ends = _descended(nets[own], target, starts)
+    apart = np.linalg.norm(ends - points[own], axis=1)
+    near = distances <= np.linalg.norm(points[own] - target, axis=1) + tie
+    return bool((near & (apart > np.maximum(moved / 4, same))).any())
 
 
 def _distinct(parameters: FloatArray, distances: FloatArray, width: FloatArray, tie: float) -> list[int]:

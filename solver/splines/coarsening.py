@@ -1,9 +1,11 @@
-"""Matrices that undo a refinement or an elevation as well as it can be: least squares, with the ends fixed."""
+"""Matrices that undo a refinement or an elevation as well as it can be: least squares, with the ends fixed.
+
+SciPy waits inside the function that needs it, as in `knots`.
+"""
 
 from __future__ import annotations
 
 import numpy as np
-import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from semispline.solver.arrays import FloatArray, SparseMatrix
@@ -24,20 +26,22 @@ def coarsening_matrix(refining: SparseMatrix) -> SparseMatrix:
     array([[1., 0., 0.],
            [0., 0., 1.]])
     """
+    from scipy.sparse import csr_array, eye_array, vstack
+
     rows, n = refining.shape
     head, tail = _fixed_ends(refining)
     inner, fine = n - head - tail, rows - head - tail
-    start = sp.eye_array(head, rows, format="csr")
-    end = sp.eye_array(tail, rows, k=rows - tail, format="csr")
+    start = eye_array(head, rows, format="csr")
+    end = eye_array(tail, rows, k=rows - tail, format="csr")
     if not inner:
-        return sp.vstack([start, end], format="csr")
+        return vstack([start, end], format="csr")
     part = refining[head : rows - tail].toarray()
     inverse = np.linalg.pinv(part[:, head : n - tail])
     middle = np.zeros((inner, rows))
     middle[:, head : head + fine] = inverse
     middle[:, :head] = -inverse @ part[:, :head]
     middle[:, rows - tail :] = -inverse @ part[:, n - tail :]
-    return sp.vstack([start, sp.csr_array(middle), end], format="csr")
+    return vstack([start, csr_array(middle), end], format="csr")
 
 
 def coarser_points(refining: SparseMatrix, fine: FloatArray) -> FloatArray:

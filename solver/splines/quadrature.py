@@ -57,23 +57,10 @@ class Samples:
         return np.asarray(self.first + np.arange(self.basis.degree - order + 1)[:, None])
 
     def derivative(self, order: int) -> FloatArray:
-        """Return derivatives of the basis functions themselves, shape (degree + 1, G, S).
-
-        The basis of the derivative's degree is raised step by step:
-        N'_(i,p) = p (N_(i,p-1) / (t_(i+p) - t_i) - N_(i+1,p-1) / (t_(i+p+1) - t_(i+1))).
-        """
-        p, t = self.basis.degree, self.basis.knots
-        if order > p:
-            return np.zeros((p + 1, *self.weights.shape))
-        values = self.lower[order]
-        for degree in range(p - order + 1, p + 1):
-            # The p functions of the lower degree have indices first + (p + 1 - degree) .. in the full vector.
-            i = self.first + (p - degree + 1) + np.arange(degree)[:, None]
-            scaled = values * (degree / (t[i + degree] - t[i]))[:, None]
-            values = np.zeros((degree + 1, *self.weights.shape))
-            values[1:] += scaled
-            values[:-1] -= scaled
-        return values
+        """Return derivatives of the basis functions themselves, shape (degree + 1, G, S)."""
+        if order > self.basis.degree:
+            return np.zeros((self.basis.degree + 1, *self.weights.shape))
+        return raised_bases(self.basis, self.first, self.lower[order], order)
 
     def curves(self, points: FloatArray, order: int) -> FloatArray:
         """Return values from control points of the derivative, shape (C, degree - order + n): shape (C, G, S)."""
@@ -151,6 +138,23 @@ def local_bases(basis: Basis, x: FloatArray, first: IndexArray, orders: int) -> 
         values[:-1] += (right[:, None] - x) * scaled
         lower = [values, *lower[:orders]]
     return tuple(lower)
+
+
+def raised_bases(basis: Basis, first: IndexArray, values: FloatArray, order: int) -> FloatArray:
+    """Return derivatives of the basis functions themselves from the basis of the derivative, shape (degree + 1, G, S).
+
+    The basis of the derivative's degree is raised step by step:
+    N'_(i,p) = p (N_(i,p-1) / (t_(i+p) - t_i) - N_(i+1,p-1) / (t_(i+p+1) - t_(i+1))).
+    """
+    p, t = basis.degree, basis.knots
+    for degree in range(p - order + 1, p + 1):
+        # The p functions of the lower degree have indices first + (p + 1 - degree) .. in the full vector.
+        i = first + (p - degree + 1) + np.arange(degree)[:, None]
+        scaled = values * (degree / (t[i + degree] - t[i]))[:, None]
+        values = np.zeros((degree + 1, *values.shape[1:]))
+        values[1:] += scaled
+        values[:-1] -= scaled
+    return values
 
 
 def first_on_spans(basis: Basis, breaks: FloatArray) -> IndexArray:

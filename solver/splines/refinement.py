@@ -6,6 +6,8 @@ new basis function begins, so that every step is a convex combination: nothing i
 
 Sources: L. Ramshaw, Blossoming: a connect-the-dots approach to splines, 1987; E. Cohen, T. Lyche, R. Riesenfeld,
 Discrete B-splines and subdivision techniques, 1980 (the Oslo algorithm).
+
+SciPy waits inside the functions that need it, as in `knots`.
 """
 
 from __future__ import annotations
@@ -13,7 +15,6 @@ from __future__ import annotations
 from bisect import bisect_left
 
 import numpy as np
-import scipy.sparse as sp
 from numpy.typing import ArrayLike, NDArray
 
 from semispline.solver.arrays import FloatArray, SparseMatrix, exact_origin, finite_array
@@ -73,11 +74,11 @@ def _blossom_values(degree: int, knots: FloatArray, span: NDArray[np.intp], argu
 
 def _banded(values: FloatArray, first: NDArray[np.intp], n: int) -> SparseMatrix:
     """Return the sparse matrix with n columns whose row j has `values[j]` from column `first[j]` on."""
+    from scipy.sparse import csr_array
+
     width = values.shape[1]
     columns = first[:, None] + np.arange(width)
-    matrix = sp.csr_array(
-        (values.ravel(), columns.ravel(), np.arange(0, values.size + 1, width)), shape=(len(values), n)
-    )
+    matrix = csr_array((values.ravel(), columns.ravel(), np.arange(0, values.size + 1, width)), shape=(len(values), n))
     matrix.eliminate_zeros()
     return matrix
 
@@ -161,7 +162,9 @@ def elevation_matrix(degree: int, knots: FloatArray, new_degree: int) -> SparseM
         raise KnotError(
             f"degree: found {new_degree!r}, expected at least the present degree {degree}, as a whole number"
         )
-    matrix = sp.eye_array(len(knots) - degree - 1, format="csr")
+    from scipy.sparse import eye_array
+
+    matrix = eye_array(len(knots) - degree - 1, format="csr")
     for p in range(degree, new_degree):
         raised = elevated_knots(knots)
         n = len(raised) - p - 2

@@ -1,5 +1,7 @@
 """Blends of degree 5 from the rows of two sides, measured without the code that made the rows."""
 
+from functools import cache
+
 import numpy as np
 from scipy.interpolate import BSpline
 from scipy.optimize import brentq
@@ -20,11 +22,12 @@ def derivatives(across, sides, u, v, before=False):
         at = min(max(at, along.degree), len(knots) - along.degree - 2)
         local = knots[at - along.degree : at + along.degree + 2]
         points = rows[:, at - along.degree : at + 1]
+        curve = BSpline(local, points.transpose(1, 0, 2).reshape(along.degree + 1, -1), along.degree)
+        weights = [across(u, i, rows) for i in range(3)]
         for j in range(3):
-            curve = BSpline(local, points.transpose(1, 0, 2).reshape(along.degree + 1, -1), along.degree)
             values = curve(v, nu=j, extrapolate=True).reshape(len(rows), 4)
             for i in range(3 - j):
-                result[i, j] = result.get((i, j), 0) + across(u, i, rows) @ values
+                result[i, j] = result.get((i, j), 0) + weights[i] @ values
     return result
 
 
@@ -60,10 +63,14 @@ def difference(one, other):
     return angle, np.linalg.norm(k - c) / max(np.linalg.norm(k), np.linalg.norm(c))
 
 
+@cache
+def bernstein_polynomials(degree):
+    return BSpline(np.repeat([0.0, 1.0], degree + 1), np.eye(degree + 1), degree)
+
+
 def bernstein(degree, u, order, count):
     """Derivatives of the first `count` Bernstein polynomials."""
-    identity = BSpline(np.repeat([0.0, 1.0], degree + 1), np.eye(degree + 1), degree)
-    return identity(u, nu=order)[:count]
+    return bernstein_polynomials(degree)(u, nu=order)[:count]
 
 
 class Blend:

@@ -49,7 +49,7 @@ def test_bases_a_millionth_as_large_as_far_away(name, options, side):
     result = blend(a, b, **options)
     (warning,) = result.warnings
     assert warning.startswith(f"contact {side}: rounding alone may change curvature_jump_relative by 0.01")
-    assert "times the size of the blend away" in warning
+    assert "times the size of the surfaces away" in warning
     contact = result.contact_a if side == "a" else result.contact_b
     assert 1e-3 < contact.rounding["curvature_jump_relative"] <= 0.02
     # What is measured is what the stored surfaces do: the same numbers counted from one of them, which is exact.
@@ -91,7 +91,7 @@ def readme_pair(offset=0.0):
 @pytest.mark.parametrize("offset", [1e12, 1e14])
 @pytest.mark.parametrize("continuity", ["C0", "C1", "C2", "G1", "G2"])
 def test_far_away_nothing_is_promised(offset, continuity):
-    with pytest.raises(ContactError, match=r"rounding alone may change .* times the size of the blend away"):
+    with pytest.raises(ContactError, match=r"rounding alone may change .* times the size of the surfaces away"):
         blend(*readme_pair(offset), continuity=continuity)
 
 

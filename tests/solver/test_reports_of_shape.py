@@ -1,7 +1,9 @@
 """What --report and the terminal say of a blend's shape."""
 
 import json
+from contextlib import redirect_stdout
 from dataclasses import replace
+from io import StringIO
 
 import numpy as np
 import pytest
@@ -9,10 +11,10 @@ from typer.testing import CliRunner
 
 from helpers.cases import CASES
 from helpers.shapes import arc, extruded, line, revolved, sheets
-from semispline import Base, measure_shape
+from semispline import Base, blend, measure_shape, read_surface, transform
 from semispline.papers.cli import app
 from semispline.solver.io.json_text import to_text
-from semispline.solver.reports import meets_record, shape_record
+from semispline.solver.reports import meets_record, print_result, report_record, shape_record
 
 KEYS = {
     "turn_degrees",
@@ -94,3 +96,16 @@ def test_pipe_and_cap_on_the_command_line(tmp_path):
     assert report["meets"]["searched"] == ["itself", "a", "b"]
     assert "may be missed" in output
     assert "not known whether" not in output
+
+
+def test_the_error_of_quadrature_is_one_number_everywhere():
+    """In the unit of the energy, as its rounding is: in the result, in the report, on the terminal."""
+    big = [read_surface(CASES / f"{name}_rational.json") for name in ("pipe", "dome")]
+    big = [transform(surface, 100 * np.eye(3)) for surface in big]
+    result = blend(Base(big[0], "v1"), Base(big[1], "v0"), alpha="natural")
+    # A rule of half the nodes, beside the energy of a model of 1000: neither rounding nor a fraction.
+    assert 1e-9 * result.energy < result.quadrature_error < 1e-3 * result.energy
+    assert report_record(result)["quadrature_error"] == result.quadrature_error
+    with redirect_stdout(StringIO()) as printed:
+        print_result(result)
+    assert f", by quadrature, error {result.quadrature_error:.1e}\n" in printed.getvalue()

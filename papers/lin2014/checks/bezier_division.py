@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from fractions import Fraction
+from functools import cache
 from typing import Any
 
 import sympy as sp
@@ -81,23 +82,39 @@ def _division_case(part: str, formula: Formula) -> Case:
     return Case(label, bool(closed and is_one(term / wanted)))
 
 
+# Every mutant is compared with the same rows and values.
+@cache
+def _rows(part: str, m: int, n: int, k: int) -> tuple[tuple[Any, ...], ...]:
+    return expanded_rows(m, n, k, "bottom" if part == "bottom" else "top")
+
+
+@cache
+def _row_at(part: str, m: int, n: int, k: int, row: int, u: Any) -> Any:
+    return de_casteljau(_rows(part, m, n, k)[row], u)
+
+
+@cache
+def _value_across(part: str, m: int, n: int, k: int, u: Any) -> Any:
+    """Return P(u, x) where the second parameter of the sub-patch is the generator v."""
+    net, function = ring_patch(m, n, k)
+    u_, v = ring_parameters(m, n, k)
+    cut = de_casteljau(function, u_)
+    return patch_value(net, u, cut * v if part == "bottom" else cut + (1 - cut) * v)
+
+
 def division_cases(part: str) -> Any:
     """Return the check of (6) for the bottom or the top sub-patch, rows by substitution, not by the formula for Q."""
 
     def cases(formula: Formula | None) -> Iterator[Case]:
         yield _division_case(part, given(formula))
         for m, n, k in DEGREES:
-            net, function = ring_patch(m, n, k)
-            rows = expanded_rows(m, n, k, "bottom" if part == "bottom" else "top")
             u, v = ring_parameters(m, n, k)
-            cut = de_casteljau(function, u)
-            at = cut * v if part == "bottom" else cut + (1 - cut) * v
             meaning = Meaning(
                 {pr.u: u, pr.v: v, pr.n: n},
                 {
                     "B": bernstein,
-                    "Q": lambda j, s, u, rows=rows, n=n: de_casteljau(rows[_row(part, j, s, n)], u),
-                    "Y": lambda u, _, net=net, at=at: patch_value(net, u, at),
+                    "Q": lambda j, s, u, m=m, n=n, k=k: _row_at(part, m, n, k, _row(part, j, s, n), u),
+                    "Y": lambda u, _, m=m, n=n, k=k: _value_across(part, m, n, k, u),
                 },
             )
             yield difference_case(given(formula), f"degrees {m}, {n}, {k}", meaning, own=m == n == BICUBIC)
@@ -212,7 +229,7 @@ def count_cases(part: str) -> Any:
         else:
             yield Case("every m, n, k, row s", False, residual=sp.Symbol(f"undefined: {relation.lhs}"))
         for m, n, k in DEGREES:
-            rows = expanded_rows(m, n, k, "bottom" if part == "bottom" else "top")
+            rows = _rows(part, m, n, k)
             for r in range(n + 1):
                 numbers = {pr.s: r, pr.m: m, pr.n: n, pr.k: k}
                 counts = {"F": lambda j, s, rows=rows, n=n: len(rows[_row(part, j, s, n)])}

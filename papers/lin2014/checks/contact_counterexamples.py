@@ -56,7 +56,7 @@ def _counterexample_at(
     side: Side, row: int, formulas: Sequence[Formula], orders: tuple[int, int], fixed: dict[Any, Any]
 ) -> Counterexample | None:
     degree = orders[0] - 1
-    values = letter_values(side, *orders, rows_from_pieces(min(2, degree), degree, orders[1] - 1, side))
+    values = letter_values(side, *orders, rows_from_pieces(row, degree, orders[1] - 1, side))
     readings = [given(formula).relation.rhs.subs(values, simultaneous=True).subs(fixed) for formula in formulas]
     true = values[ROWS[side][row]].subs(fixed)
     found = _smallest_difference(readings, true, BASE_ROWS[side][:2])

@@ -152,9 +152,9 @@ def _row_case(
     difference = right - left
     if difference == 0:
         return Case(label, True, own, meets, sp.Integer(0))
-    expression = difference.as_expr()
     # In the paper's own setting the residual is shown, and should be readable.
-    shown = difference_form(expression, BASE_ROWS[side], flat=flat) if own else expression
+    over, under = difference.numer.as_expr(), difference.denom.as_expr()
+    shown = _by_differences(over, under, BASE_ROWS[side], flat=flat) if own else difference.as_expr()
     return Case(label, False, own, meets, shown)
 
 
@@ -252,10 +252,15 @@ def difference_form(expression: Any, rows: tuple[Any, ...], *, flat: bool = Fals
     Each coefficient is factored, so that equal things look the same and zero is literally 0. With `flat` the first two
     rows are the same, and the second one does not occur.
     """
+    numerator, denominator = sp.fraction(sp.together(expression))
+    return _by_differences(numerator, denominator, rows, flat=flat)
+
+
+def _by_differences(numerator: Any, denominator: Any, rows: tuple[Any, ...], *, flat: bool) -> Any:
     first, second, third = rows
     d1, d2 = sp.Symbol(f"({second}-{first})"), sp.Symbol(f"({third}-{second})")
-    moved = expression.subs({second: first + d1, third: first + d2 + (0 if flat else d1)}, simultaneous=True)
-    numerator, denominator = sp.fraction(sp.together(moved))
+    moved = {second: first + d1, third: first + d2 + (0 if flat else d1)}
+    numerator, denominator = (part.subs(moved, simultaneous=True) for part in (numerator, denominator))
     generators = (first, d1, d2, pr.alpha, pr.beta)
     polynomial = sp.Poly(numerator, *generators)
     return sum(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from fractions import Fraction
+from functools import cache
 from typing import Any
 
 from semispline.derivations.counts import domain_ends, functions_on, last_knot
@@ -34,17 +35,23 @@ def _cox_de_boor(i: int, order: int, knots: Sequence[int], x: Fraction) -> Fract
     return rising * _cox_de_boor(i, order - 1, knots, x) + falling * _cox_de_boor(i + 1, order - 1, knots, x)
 
 
+@cache
+def _full_spans(order: int, last: int) -> tuple[int, ...]:
+    """Return the spans of distinct knots on which the functions 0 .. last sum to 1; once, for all that is counted."""
+    knots = range(last + order + 1)
+    # One point in each span: there all functions sum to 1, or to less.
+    points = [Fraction(2 * c + 1, 2) for c in knots[:-1]]
+    sums = [sum(_cox_de_boor(i, order, knots, x) for i in range(last + 1)) for x in points]
+    return tuple(c for c, total in enumerate(sums) if total == 1)
+
+
 def domain_instances(count: Any, order: Any) -> Counting:
     """Count: the indices of the first and the last knot of the domain, where the basis functions sum to 1."""
 
     def instances() -> Iterator[tuple[str, dict[Any, Any], bool]]:
         for k in range(2, 6):
             for m in range(k - 1, k + 3):
-                knots = range(m + k + 1)
-                # One point in each span: there all functions sum to 1, or to less.
-                points = [Fraction(2 * c + 1, 2) for c in knots[:-1]]
-                sums = [sum(_cox_de_boor(i, k, knots, x) for i in range(m + 1)) for x in points]
-                spans = [c for c, total in enumerate(sums) if total == 1]
+                spans = _full_spans(k, m)
                 values = {pr.last: spans[0], pr.first: spans[-1] + 1, count: m, order: k}
                 yield f"order {k}, {m + 1} functions", values, k == CUBIC
 

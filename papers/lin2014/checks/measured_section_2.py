@@ -33,15 +33,15 @@ def _largest_change(wrong: Any, true: Any) -> float:
     worst = 0.0
     rows = [(wrong(net), true(net)) for net in _nets()]
     for u in (Fraction(r, 12) for r in range(13)):
+        across = [(_points_at(a, u), _points_at(b, u)) for a, b in rows]
         for w in (Fraction(r, 12) for r in range(13)):
-            distance = [float(_at(a, u, w) - _at(b, u, w)) for a, b in rows]
+            distance = [float(de_casteljau(a, w) - de_casteljau(b, w)) for a, b in across]
             worst = max(worst, float(np.linalg.norm(distance)))
     return worst
 
 
-def _at(rows: Any, u: Fraction, w: Fraction) -> Fraction:
-    points = [de_casteljau(row, u) if row else Fraction(0) for row in rows]
-    return de_casteljau(points, w)
+def _points_at(rows: Any, u: Fraction) -> list[Fraction]:
+    return [de_casteljau(row, u) if row else Fraction(0) for row in rows]
 
 
 def top_last_row() -> Consequence:

@@ -172,9 +172,10 @@ def _counterexample_at(
     misses = [sp.numer(sp.together((row - true).subs(heights).subs(fixed))) for row in rows]
     searched = [s for s in symbols if s not in fixed]
     evaluate = [sp.lambdify(searched, miss, "math") for miss in misses]
+    inside = [x for x in symbols if x in BLEND_H]
 
     def counts(at: dict[Any, Any]) -> bool:
-        h = [(fixed | at)[x] for x in symbols if x in BLEND_H]
+        h = [at[x] if x in at else fixed[x] for x in inside]
         # Inner knots of U differ and lie inside [0, 1]; a base without inner knots has one length for both spans, and
         # is not taken where the search is in the own setting of the paper.
         first, second = (at[x] for x in BASE_H)

@@ -26,15 +26,83 @@ def wedge(ratio, *, gap=1.0):
     return tuple(Base(BSplineSurface(3, 3, CUBIC, CUBIC, net), "u0") for net in (lower, upper))
 
 
+def facing(seed):
+    problem = shape_problem("facing", seed)
+    return problem.a, problem.b
+
+
 def tried(result):
     return [(c.degree_u, c.middle_curves, c.alpha_v) for c in result.candidates]
 
 
-def test_the_quintic_without_middle_curve_is_the_only_candidate_of_an_even_gap():
+def test_of_an_even_gap_the_quintic_is_tried_without_and_with_a_middle_curve():
     result = blend(*wedge(1.1))
-    assert tried(result) == [(5, 0, "constant")]
+    assert tried(result) == [(5, 0, "constant"), (5, 1, "constant")]
     assert result.candidates[0].verdict == "chosen"
     assert result.candidates[0].fairness == result.objective.value
+    assert tried(blend(*wedge(1.1), middle_curves=0)) == [(5, 0, "constant")]
+
+
+def test_a_middle_curve_that_is_fairer_by_a_twentieth_is_taken():
+    a, b = facing(103)
+    result = blend(a, b)
+    *without, one = (c for c in result.candidates if c.degree_u == 5)
+    assert (one.middle_curves, one.verdict) == (1, "chosen")
+    assert one.fairness == result.objective.value < 0.95 * min(c.fairness for c in without)
+    assert result.shape.turn.degrees < blend(a, b, middle_curves=0).shape.turn.degrees
+
+
+@pytest.mark.parametrize("options", [{"degree_u": 4}, {"degree_u": 3}, {"continuity": "G3"}, {"continuity": "G4"}])
+def test_other_degrees_are_tried_without_where_the_gap_is_even(options):
+    assert [c.middle_curves for c in blend(*wedge(1.1), **options).candidates] == [0]
+
+
+@pytest.mark.parametrize(
+    ("middle", "best", "pays"),
+    [
+        ({"value": 0.949}, {}, True),
+        ({"value": 0.951}, {}, False),
+        # What folds with it is not gone to, and what folds without it is left at any price.
+        ({"value": 0.1, "condoned": ("folds",)}, {}, False),
+        ({"value": 9.0}, {"condoned": ("folds",)}, True),
+        # Nor what ends at a bound, or does not settle, where the other does not.
+        ({"value": 0.1, "at_end": (True, False)}, {}, False),
+        ({"value": 0.1, "at_end": (True, False)}, {"at_end": (False, True)}, True),
+        ({"value": 0.1, "settled": False}, {}, False),
+        ({"value": 0.1, "settled": False}, {"settled": False}, True),
+        # Where a refusal stopped the other one it only has to be fairer.
+        ({"value": 0.999}, {"stopped_by": "loop"}, True),
+        ({"value": 1.001}, {"stopped_by": "loop"}, False),
+        ({"value": 0.951, "stopped_by": "loop"}, {"stopped_by": "loop"}, False),
+    ],
+)
+def test_what_a_middle_curve_has_to_gain(middle, best, pays):
+    problem = state_problem(*wedge(1.0)).problem
+
+    def layout(**fields):
+        fair = FairSolution(1.0, 1.0, (0.0, 0.0), **{"value": 1.0, "slope": 0.0, "tried": 1, "refused": {}} | fields)
+        return candidates.Layout(None, problem, Found(1.0, 1.0, "reduced", fair=fair))
+
+    assert candidates._pays_with_a_middle_curve(layout(**middle), layout(**best)) is pays
+
+
+def test_what_could_only_be_let_pass_is_not_searched_where_something_else_need_not_be(monkeypatch):
+    asked = []
+
+    def search(problem, options, known=None, most_condoned=2):
+        asked.append(most_condoned)
+        return shape_parameters.find_shape_parameters(problem, options, known, most_condoned)
+
+    monkeypatch.setattr(candidates, "find_shape_parameters", search)
+    problem = shape_problem("u-turn", 75)
+    result = blend(problem.a, problem.b)
+    # The first one folds, in a lower window it does not, so that the quartic may not.
+    assert asked == [2, 1, 0]
+    assert [c.verdict for c in result.candidates] == [
+        "every cell that was tried folds",
+        "chosen",
+        "no candidate is left: 64 fold",
+    ]
 
 
 @pytest.mark.parametrize(("ratio", "is_tried"), [(1.5 - 1e-6, False), (1.5 + 1e-6, True)])
@@ -54,14 +122,12 @@ def test_a_wide_wedge_takes_a_linear_alpha_and_says_what_it_costs():
 
 
 @pytest.mark.parametrize("ratio", [2 - 1e-6, 2 + 1e-6])
-def test_a_middle_curve_is_tried_where_linear_alpha_is_not_allowed_and_the_gap_varies(ratio):
+def test_with_other_degrees_a_middle_curve_is_tried_where_alpha_is_constant_and_the_gap_varies(ratio):
     pair = wedge(ratio)
     assert (gap_ratio(state_problem(*pair).problem) >= candidates.MIDDLE_RATIO) == (ratio > 2)
-    result = blend(*pair, alpha_v="constant")
-    assert tried(result) == [(5, 0, "constant")] + [(5, 1, "constant")] * (ratio > 2)
-    best = min(result.candidates, key=lambda c: c.fairness)
-    assert best.verdict == "chosen"
-    assert result.options.middle_curves == best.middle_curves
+    result = blend(*pair, alpha_v="constant", degree_u=4)
+    assert tried(result)[0] == (4, 0, "constant")
+    assert ((5, 1, "constant") in tried(result) or (4, 1, "constant") in tried(result)) == (ratio > 2)
     # Said to be without, it is without.
     assert tried(blend(*pair, alpha_v="constant", middle_curves=0)) == [(5, 0, "constant")]
 
@@ -75,18 +141,13 @@ def test_a_candidate_whose_folds_were_let_pass_is_not_called_less_fair():
     assert said == ["every cell that was tried folds", "fairness 5 is no less", "fairness 6 is more"]
 
 
-def facing(seed):
-    problem = shape_problem("facing", seed)
-    return problem.a, problem.b
-
-
 # Seed, fairness without p2 or with one of the two at most, and the least in a window that begins lower.
 @pytest.mark.parametrize(("seed", "was", "least"), [(57, 634, 492), (218, 386, 118), (234, 745, 566), (250, 142, 133)])
 def test_where_alpha_and_p2_are_traded_until_the_window_ends_p2_stays_in_a_lower_window(seed, was, least):
     a, b = facing(seed)
     # In the window itself it ends there.
     assert any(solve_fair(state_problem(a, b).problem).at_end)
-    result = blend(a, b)
+    result = blend(a, b, middle_curves=0)
     assert result.shape.fairness.value < least < was
     assert all(result.p2)
     assert not result.active_bounds
@@ -99,7 +160,7 @@ def test_where_alpha_and_p2_are_traded_until_the_window_ends_p2_stays_in_a_lower
 def test_p2_is_left_out_where_that_leaves_an_end_for_little_fairness():
     # A box is not widened, and here one p2 costs 7 %.
     a, b = facing(250)
-    result = blend(a, b, box=(1 / 4, 4))
+    result = blend(a, b, box=(1 / 4, 4), middle_curves=0)
     assert result.p2[0] != 0
     assert result.p2[1] == 0
     assert not result.active_bounds
@@ -112,7 +173,7 @@ def test_p2_is_left_out_where_that_leaves_an_end_for_little_fairness():
 def test_p2_stays_where_it_is_worth_more_than_an_end_that_is_not_met():
     # Without it fairness is 1.28 times as much.
     a, b = facing(4)
-    result = blend(a, b, box=(1 / 4, 4), degree_u=5)
+    result = blend(a, b, box=(1 / 4, 4), degree_u=5, middle_curves=0)
     assert all(result.p2)
     assert result.active_bounds == ("beta2 lower",)
     assert any("beta2 is at its lower bound" in text for text in result.warnings)
@@ -195,7 +256,7 @@ def test_what_is_known_is_a_start_where_every_cell_folds():
 
 def test_where_the_lower_end_stops_the_search_the_window_begins_lower():
     a, b = facing(96)
-    result = blend(a, b)
+    result = blend(a, b, middle_curves=0)
     window = state_problem(a, b).problem.bounds
     assert result.active_bounds == ()
     for found, (low, high) in zip((result.alpha2_bounds, result.beta2_bounds), window, strict=True):
@@ -205,7 +266,7 @@ def test_where_the_lower_end_stops_the_search_the_window_begins_lower():
     # A box that was asked for stays.
     natural = state_problem(a, b).problem.natural
     arc = state_problem(a, b).problem.exits.arc
-    boxed = blend(a, b, box=(1 / 4, 4))
+    boxed = blend(a, b, box=(1 / 4, 4), middle_curves=0)
     assert boxed.alpha2_bounds == pytest.approx((natural[0] * arc / 4, natural[0] * arc * 4))
     assert "alpha2 lower" in boxed.active_bounds
 
@@ -283,8 +344,8 @@ def test_a_middle_curve_is_tried_where_a_refusal_stopped_a_constant_alpha():
 def test_lower_windows_start_from_what_is_known(monkeypatch):
     asked = []
 
-    def search(problem, known=None):
-        asked.append((problem, known, solve_fair(problem, known)))
+    def search(problem, known, most_condoned):
+        asked.append((problem, known, solve_fair(problem, known, most_condoned)))
         return asked[-1][-1]
 
     monkeypatch.setattr(shape_parameters, "solve_fair", search)

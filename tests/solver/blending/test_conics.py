@@ -9,16 +9,20 @@ from hypothesis import strategies as st
 
 from helpers.circles import arcs, cylinder
 from helpers.conics import occ_net, standard_arcs
+from helpers.knot_lines import least_continuity
 from helpers.same_surface import departure
 from semispline import Base
 from semispline.derivations.circles import circle_points
 from semispline.solver.blending.conics import _boost, cured_conic, recognised_conic, same_arcs
-from semispline.solver.blending.knot_lines import knot_lines, least_continuity
+from semispline.solver.blending.knot_lines import knot_lines
 from semispline.solver.blending.matching import matched_edges
 from semispline.solver.splines import Basis, clamped, elevation_matrix, refinement_matrix
 from semispline.solver.splines.refinement import elevated_knots
 
 TURN = 2 * np.pi
+# Some thousand roundings of coordinates of a few units: the order in which a kernel sums products shows in the
+# fourteenth digit. Another circle, or another parametrisation, is off by 1e-2 and more.
+ROUNDING = 1e-12
 CIRCLES = {
     "9 points": np.linspace(0, TURN, 5),
     "7 points": np.linspace(0, TURN, 4),
@@ -57,10 +61,9 @@ def test_a_circle_of_any_arcs_is_the_eleven_points(name):
     x, y, w = np.array(circle_points(3), dtype=float).T
     expected = np.exp(1j * start) * (x + 1j * sense * y)
     new = new[0] / new[0, 0, 3]
-    # Some hundred roundings of 5: singular values, eigenvectors and two systems of equations.
-    assert new[:, 0] == pytest.approx(5 * expected.real, abs=1e-12)
-    assert new[:, 1] == pytest.approx(5 * expected.imag, abs=1e-12)
-    assert new[:, 3] == pytest.approx(w, abs=1e-12)
+    assert new[:, 0] == pytest.approx(5 * expected.real, abs=ROUNDING)
+    assert new[:, 1] == pytest.approx(5 * expected.imag, abs=ROUNDING)
+    assert new[:, 3] == pytest.approx(w, abs=ROUNDING)
     middle = knots[-1] / 2
     assert along.knots.tolist() == [0.0] * 7 + [middle] * 4 + [knots[-1]] * 7
 
@@ -102,12 +105,12 @@ def test_any_rim_on_a_conic_is_cured(rim, order):
     smooth = max(order, 2)
     assert basis.degree == 2 * (smooth + 1)
     assert least_continuity(new, basis, closed=full) >= smooth
-    assert departure((rows, along), (new, basis)) < 1e-12
+    assert departure((rows, along), (new, basis)) < ROUNDING
     size = np.abs(new).max()
     # Both ends stay.
     for end in (0, -1):
         at = new[0, end, :3] / new[0, end, 3] - rows[0, end, :3] / rows[0, end, 3]
-        assert np.abs(at).max() < 1e-12 * size
+        assert np.abs(at).max() < ROUNDING * size
     if full:
         assert np.array_equal(new[:, 0], new[:, -1])
 
@@ -139,7 +142,7 @@ def test_elementary_surfaces_of_a_kernel(name, u_range):
     new, basis = cured_conic(rows, along, 2)
     assert (basis.degree, basis.size) == (6, 7 if u_range[1] == np.pi else 11)
     assert least_continuity(new, basis, closed=full) >= 2
-    assert departure((rows, along), (new, basis)) < 1e-12
+    assert departure((rows, along), (new, basis)) < ROUNDING
     weights = new[0, :, 3]
     assert weights.min() / weights.max() > (0.85 if full else 0.89)
 
@@ -152,7 +155,7 @@ def test_the_angle_is_the_euclidean_one_on_circles():
     new, _ = cured_conic(rows, basis_of(knots), 2)
     weights = new[:, :, 3] / new[:, :1, 3]
     exact = np.array([float(w) for _, _, w in circle_points(3)])
-    assert weights == pytest.approx(np.tile(exact, (3, 1)), abs=1e-12)
+    assert weights == pytest.approx(np.tile(exact, (3, 1)), abs=ROUNDING)
 
 
 @pytest.mark.parametrize("kind", ["parabola", "hyperbola"])
@@ -168,7 +171,38 @@ def test_open_conics_that_are_no_ellipse(kind):
     one = images(points[:3], frames)
     cured = cured_conic(one, basis_of(knots[[0, 0, 0, 3, 3, 3]]), 2)
     assert cured is not None
-    assert departure((one, basis_of(np.array([0, 0, 0, 1, 1, 1.0]))), cured) < 1e-12
+    assert departure((one, basis_of(np.array([0, 0, 0, 1, 1, 1.0]))), cured) < ROUNDING
+
+
+def framed(x, y, weight=(0.0, 0.0, 1.0)):
+    """Images of (cos, sin, 1) with given radii and weight, far from the origin."""
+    frame = np.zeros((1, 3, 4))
+    frame[0, 0, :3], frame[0, 1, :3], frame[0, :, 3] = x, y, weight
+    frame[0, :, :3] += np.multiply.outer(weight, [30.0, -20.0, 10.0])
+    return frame
+
+
+@pytest.mark.parametrize(
+    ("frame", "kind"),
+    [
+        (framed([3, 0, 4], [0, 5, 0]), "circle"),
+        (framed([3, 0, 4], [0, 5 * (1 + 1e-10), 0]), "circle"),
+        (framed([3, 0, 4], [0, 5 * (1 + 1e-6), 0]), "ellipse"),
+        (framed([3, 0, 4], [3e-6, 5, 4e-6]), "ellipse"),
+        (framed([1, 0, 0], [0, 2, 0]), "ellipse"),
+        # A circle seen from aside, the line at infinity of its plane left alone, is an ellipse: x' = x / (1 + x / 2).
+        (framed([1, 0, 0], [0, 1, 0], (0.5, 0, 1)), "ellipse"),
+        # And with radii in that proportion a circle again: of radius 1 / sqrt(1 - 1/4).
+        (framed([1, 0, 0], [0, np.sqrt(4 / 3), 0], (0.5, 0, 1)), "circle"),
+        (framed([1, 0, 0], [0, 1, 0], (1, 0, 1)), "parabola"),
+        (framed([1, 0, 0], [0, 1, 0], (0, 1.5, 1)), "hyperbola"),
+    ],
+)
+def test_a_conic_is_named_by_what_it_is(frame, kind):
+    # Where the weight is positive, in two arcs that a factor makes uneven.
+    knots, points = standard_arcs([0.3, 0.9, 2.0], [1, 2, 0.5])
+    conic = recognised_conic(images(points, frame), basis_of(knots))
+    assert conic.kind == kind
 
 
 def nine_points():
@@ -312,7 +346,7 @@ def test_derivatives_at_knot_lines():
         assert line.continuity == 0
         # One factor for all rows: (R_v)' - (R_v) = c R, c = 4 (cos - 1) for quarters.
         jump = line.after[1] - line.before[1]
-        assert jump == pytest.approx(-4 * (1 - np.cos(np.pi / 4)) * line.after[0], abs=1e-12)
+        assert jump == pytest.approx(-4 * (1 - np.cos(np.pi / 4)) * line.after[0], abs=ROUNDING)
 
 
 def test_where_a_rim_starts_on_another_does_not_depend_on_its_domain():

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from helpers.conics import standard_arcs
+from helpers.knot_lines import least_continuity
 from semispline.solver.blending import cures
 from semispline.solver.blending.cures import cured_rows
-from semispline.solver.blending.knot_lines import least_continuity
 from semispline.solver.splines import Basis, clamped
 
 SPANS = (1.0, 1.0)

@@ -5,10 +5,11 @@ import pytest
 
 from helpers.cases import CASES
 from helpers.conics import standard_arcs
+from helpers.knot_lines import least_continuity
 from helpers.same_surface import departure
 from semispline import read_surface
 from semispline.solver.blending.jumps import jumps, smoothed
-from semispline.solver.blending.knot_lines import KnotLine, least_continuity
+from semispline.solver.blending.knot_lines import KnotLine
 from semispline.solver.splines import Basis, basis_matrix, clamped, refinement_matrix
 from semispline.solver.splines.products import multiply
 

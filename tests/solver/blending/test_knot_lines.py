@@ -22,7 +22,7 @@ from semispline.solver.blending.layout import (
     middle_basis,
     middle_degree,
 )
-from semispline.solver.blending.problem import BlendProblem, _check_bends_continuously, second_weight
+from semispline.solver.blending.problem import BlendProblem, _check_bends_continuously
 from semispline.solver.blending.representative import (
     _is_closed,
     _jump_alike,
@@ -34,6 +34,7 @@ from semispline.solver.blending.rounding import EnergyRounding, _weight_spread
 from semispline.solver.blending.smooth_rows import smooth_rows
 from semispline.solver.blending.warnings import strained_by
 from semispline.solver.blending.weights import normalised_rows, rows_from_derivatives
+from semispline.solver.blending.windows import second_weight
 from semispline.solver.errors import OptionError
 from semispline.solver.options import BlendOptions
 from semispline.solver.splines import Basis
@@ -78,11 +79,10 @@ def test_ends_that_are_apart_share_nothing():
 
 
 def sides(**change):
-    """Two sides with one shared jump each, over a domain of length 2, the second one's changed."""
+    """A side over a domain of length 2, and what both sides have: one shared jump each, the second one's changed."""
     one = {"kind": "shared", "v": 0.5, "speed": 4.0, "slope": 3.0}
-    found = [SimpleNamespace(cure="spans", found=(SimpleNamespace(**jump),)) for jump in (one, one | change)]
-    side = SimpleNamespace(along=Basis(1, np.array([0, 0, 2.0, 2])))
-    return side, side, *found
+    found = [SimpleNamespace(conic=None, found=(SimpleNamespace(**jump),)) for jump in (one, one | change)]
+    return SimpleNamespace(along=Basis(1, np.array([0, 0, 2.0, 2]))), *found
 
 
 @pytest.mark.parametrize("sign", [1, -1])
@@ -311,7 +311,7 @@ def test_a_bulge_scales_alpha_and_twice_p2(bulges, a, b, p2):
 
 @pytest.mark.parametrize("free", [(True, False), (False, True), (True, True), (False, False)])
 def test_one_free_shape_parameter_is_searched(monkeypatch, free):
-    monkeypatch.setattr(shape_parameters, "solve_fair", lambda problem, known: "solution")
+    monkeypatch.setattr(shape_parameters, "solve_fair", lambda *_: "solution")
     monkeypatch.setattr(shape_parameters, "found_fair", lambda solution, method: "found")
     second = SimpleNamespace(at=lambda a: 0.0)
     problem = SimpleNamespace(free=free, given=(1.0, 1.0), p2=(second, second))
@@ -360,22 +360,22 @@ def test_a_place_without_a_value_says_why(refused, value, why):
 
 
 @pytest.mark.parametrize(
-    ("alpha_v", "seam", "constant", "wants"),
+    ("change", "wants"),
     [
-        ("constant", -1, True, True),
-        ("constant", 0, True, False),
-        ("constant", 1, True, False),
-        ("constant", -1, False, False),
-        ("linear", -1, True, False),
+        ({}, True),
+        ({"stopped_by": "fold", "degree_u": 7}, True),
+        ({"stopped_by": "fold", "u_turn": True}, True),
+        ({"seam_order": 0}, False),
+        ({"seam_order": 1}, False),
+        ({"has_constant_weights": False}, False),
+        ({"alpha_v": "linear"}, False),
     ],
 )
-def test_open_pairs_of_constant_alpha_and_weights_may_want_a_middle_curve(alpha_v, seam, constant, wants):
-    layout = SimpleNamespace(
-        options=SimpleNamespace(alpha_v=alpha_v),
-        problem=SimpleNamespace(seam_order=seam, has_constant_weights=constant),
-        found=SimpleNamespace(stopped_by="fold"),
-    )
-    assert _may_want_a_middle_curve(layout) is wants
+def test_open_pairs_of_constant_alpha_and_weights_may_want_a_middle_curve(change, wants):
+    one = {"alpha_v": "constant", "degree_u": 5, "seam_order": -1, "has_constant_weights": True, "u_turn": False}
+    said = SimpleNamespace(**{"stopped_by": ""} | one | change)
+    said.exits = said
+    assert _may_want_a_middle_curve(SimpleNamespace(options=said, problem=said, found=said)) is wants
 
 
 @pytest.mark.parametrize(

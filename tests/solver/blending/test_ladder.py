@@ -7,8 +7,8 @@ import pytest
 from scipy.interpolate import BPoly
 
 from helpers.bases import random_knots
+from helpers.knot_lines import least_continuity
 from semispline.solver.blending import ladder
-from semispline.solver.blending.knot_lines import least_continuity
 from semispline.solver.blending.ladder import Window, power_jets, tamed, weight_range
 from semispline.solver.blending.weights import normalised_rows
 from semispline.solver.generated import contact_numpy, rows_numpy

@@ -6,7 +6,7 @@ import pytest
 
 from semispline import Base, BSplineSurface
 from semispline.solver.blending import linear_problem
-from semispline.solver.blending.fair_search import FairSolution
+from semispline.solver.blending.fair_search import AllRefusedError, FairSolution
 from semispline.solver.blending.linear_problem import try_linear_alpha
 from semispline.solver.blending.pipeline import state_problem
 
@@ -39,11 +39,9 @@ def stopped(value):
         # Nothing of nothing is all of it.
         (solution(0.0), solution(0.0), False, "fairness is 1 of"),
         # What is refused less often comes first, however fair.
-        (solution(1.0), solution(0.1, "folds"), False, "every cell that was tried is refused .folds."),
         (solution(1.0, "folds"), solution(9.0), True, "fairness is 9 of"),
         (solution(1.0, "folds"), solution(0.71, "folds"), False, "fairness is 0.71 of"),
         (solution(1.0, "folds"), solution(0.69, "folds"), True, "fairness is 0.69 of"),
-        (solution(1.0, "folds"), solution(0.1, "folds", "loops"), False, "refused .folds and loops."),
         # One that goes on where a constant one is stopped only has to be fairer.
         (stopped(1.0), solution(0.99), True, "fairness is 0.99 of"),
         (stopped(1.0), solution(1.01), False, "fairness is 1.01 of"),
@@ -53,18 +51,29 @@ def stopped(value):
 )
 def test_what_is_taken(monkeypatch, constant, linear, taken, said):
     asked = []
-    monkeypatch.setattr(linear_problem, "solve_fair", lambda problem, known: asked.append((problem, known)) or linear)
+    monkeypatch.setattr(linear_problem, "solve_fair", lambda *words: asked.append(words) or linear)
     trial = try_linear_alpha(strips(), constant)
     assert trial.taken is taken
     assert trial.solution is linear
-    assert asked == [(trial.problem, constant)]
+    # It may let pass no more than a constant one had to.
+    assert asked == [(trial.problem, constant, len(constant.condoned))]
     assert re.search(said, trial.verdict)
-    # Where it is asked for it is taken, unless every cell that was tried is refused.
-    assert try_linear_alpha(strips(), constant, always=True).taken is ("refused" not in said)
+    assert try_linear_alpha(strips(), constant, always=True).taken
+
+
+def test_what_is_refused_is_not_taken_even_where_it_is_asked_for(monkeypatch):
+    def refused(*_):
+        raise AllRefusedError({"folds": 7, "loops": 0})
+
+    monkeypatch.setattr(linear_problem, "solve_fair", refused)
+    for always in (False, True):
+        trial = try_linear_alpha(strips(), solution(1.0), always=always)
+        assert (trial.taken, trial.solution, trial.verdict) == (False, None, "no candidate is left: 7 fold")
+        assert trial.problem is not None
 
 
 def test_what_is_even_is_not_tried_unless_asked(monkeypatch):
-    monkeypatch.setattr(linear_problem, "solve_fair", lambda problem, known: solution(0.1))
+    monkeypatch.setattr(linear_problem, "solve_fair", lambda *_: solution(0.1))
     assert try_linear_alpha(strips(1.4), solution(1.0)).problem is None
     assert try_linear_alpha(strips(1.4), solution(1.0), always=True).taken
     assert try_linear_alpha(strips(1.6), solution(1.0)).taken

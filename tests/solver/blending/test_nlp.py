@@ -13,6 +13,7 @@ from scipy.optimize import minimize
 
 from helpers.bases import FACING, facing_pair, moved, patch, tube
 from helpers.papers_set import blend, make_problem, state_problem
+from helpers.sweeps import first_ones
 from semispline import Base, BSplineSurface, ComputationError
 from semispline.derivations.energy import Basis as ExactBasis
 from semispline.derivations.energy import ExactSurface
@@ -282,7 +283,7 @@ def test_closed_rows_have_a_condition_for_each_derivative_at_the_seam(degree):
 
 
 @pytest.mark.parametrize("pair", [("G2", "G2"), ("G1", "C1"), ("G2", "G0")])
-@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize("seed", first_ones(3, range(8)))
 def test_active_bounds_are_met_and_nothing_is_warned_of(seed, pair):
     # A box above where the energy is least: both methods must end on its lower bound, and say so.
     rng = np.random.default_rng(seed)

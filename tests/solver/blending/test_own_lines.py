@@ -8,8 +8,9 @@ from scipy.interpolate import BSpline
 
 from helpers.array_blends import SPANS as BLEND_SPANS
 from helpers.array_blends import Blend
+from helpers.knot_lines import least_continuity
 from semispline.solver.blending.jumps import jumps
-from semispline.solver.blending.knot_lines import knot_lines, least_continuity
+from semispline.solver.blending.knot_lines import knot_lines
 from semispline.solver.blending.own_lines import closed_lines, line_series
 from semispline.solver.blending.weights import end_derivatives, normalised_rows
 from semispline.solver.splines import Basis, basis_matrix, clamped, elevation_matrix, refinement_matrix

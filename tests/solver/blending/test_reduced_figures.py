@@ -10,6 +10,7 @@ from semispline.solver.blending import reduced
 from semispline.solver.blending.shape_parameters import Found
 from semispline.solver.blending.sides import make_side
 from semispline.solver.blending.warnings import remedy
+from semispline.solver.judge import rounding_causes
 
 LINE = [0.0, 0.0, 1.0, 1.0]
 
@@ -82,7 +83,8 @@ def test_equal_weights_are_none(weights, columns):
 def test_what_is_said_of_derivatives_that_round(order, said):
     net = np.array([[[x, y, 0.0] for y in (0, 1)] for x in (0, 1)])
     surface = BSplineSurface(1, 1, LINE, LINE, net)
-    text = remedy(Base(surface, "u0"), surface, [], None, *([] if order is None else [order]))
+    base = Base(surface, "u0")
+    text = remedy(base, rounding_causes(base, base, 2), [], None, *([] if order is None else [order]))
     assert said in text
 
 

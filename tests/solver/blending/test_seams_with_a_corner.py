@@ -66,6 +66,7 @@ def test_alpha_is_one_number_along_them(corners):
 @pytest.mark.parametrize(("order", "is_refused"), [(-1, False), (0, True), (2, True)])
 def test_a_linear_alpha_is_refused_where_the_seam_is_closed(monkeypatch, order, is_refused):
     monkeypatch.setattr(candidates, "try_linear_alpha", lambda *_, **__: LinearTrial(None, None, False, "not tried"))
+    monkeypatch.setattr(candidates, "replace", lambda options, **_: options)
     constant = SimpleNamespace(
         found=SimpleNamespace(fair=object()),
         problem=SimpleNamespace(seam_order=order, has_constant_weights=True),

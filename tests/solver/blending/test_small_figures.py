@@ -6,9 +6,10 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from semispline import Base, BSplineSurface, EdgeError, OptionError, blend
+from semispline import Base, BSplineSurface, ComputationError, ContactError, EdgeError, InputError, OptionError, blend
 from semispline.solver.blending import fair_search, pipeline
 from semispline.solver.blending.fairness_grid import across
+from semispline.solver.blending.fairness_table import FOLDS, LOOPS
 from semispline.solver.blending.layout import blend_u_basis
 from semispline.solver.blending.pipeline import state_problem
 from semispline.solver.blending.projected import Point
@@ -52,14 +53,16 @@ def test_u_turns_are_scanned_in_more_cells_and_places(monkeypatch, edges, cells,
     assert asked.value.args == (cells, nodes, 0.0)
 
 
-@pytest.mark.parametrize(("less", "chosen"), [(0.0, 0), (0.0009, 0), (0.0011, 1), (-1.0, 0), (1.0, 1)])
+@pytest.mark.parametrize(("less", "chosen"), [(0.0, 0), (0.0009, 0), (0.0011, 1), (-1.0, 0), (1.0, 1), (np.inf, 0)])
 def test_blends_that_turn_alike_to_a_thousandth_of_a_degree_turn_equally(monkeypatch, less, chosen):
-    results = [
-        SimpleNamespace(shape=SimpleNamespace(turn=SimpleNamespace(degrees=x)), warnings=()) for x in (30, 30 - less)
-    ]
-    monkeypatch.setattr(pipeline, "blend", lambda a, b, options: results[("no", "yes").index(options.flip)])
-    options = pipeline.named_options(None, {})
-    assert pipeline._less_turning(*strips(), ("no", "yes"), options) is results[chosen]
+    def turn(degrees):
+        if degrees == -np.inf:
+            raise InputError("no tangent plane")
+        return SimpleNamespace(degrees=degrees)
+
+    monkeypatch.setattr(pipeline, "measure_turn", turn)
+    solved = [SimpleNamespace(surface=degrees) for degrees in (30, 30 - less)]
+    assert pipeline._least_turning(solved) is solved[chosen]
 
 
 @pytest.mark.parametrize("continuity", [("G0", "G1"), ("G1", "C0"), ("G1", "C1"), ("C1", "G1"), ("C0", "G0")])
@@ -97,13 +100,24 @@ def test_steps_are_at_most_a_third_of_alpha_and_twice_the_size_of_p2(monkeypatch
     asked = []
     monkeypatch.setattr(fair_search, "descend", lambda *words: asked.append(words))
     unknowns = SimpleNamespace(logarithmic=np.array([True, False]), low=np.zeros(2), high=np.ones(2))
-    grid = SimpleNamespace(unknowns=unknowns)
+    grid = SimpleNamespace(unknowns=unknowns, table=SimpleNamespace(refusable=(FOLDS, LOOPS)))
     fair_search._descended(grid, "start", 0.5)
-    ((function, start, low, high, longest, tolerance),) = asked
+    ((function, start, low, high, longest, tolerance, most),) = asked
+    assert most == 60
     assert (function, start, tolerance) == (grid, "start", 0.5)
     assert longest.tolist() == [0.35, 2.0]
     assert low.tolist() == [0, 0]
     assert high.tolist() == [1, 1]
+
+
+def test_where_folds_are_let_pass_there_are_at_most_12_steps(monkeypatch):
+    asked = []
+    monkeypatch.setattr(fair_search, "descend", lambda *words: asked.append(words[-1]))
+    unknowns = SimpleNamespace(logarithmic=np.array([True]), low=np.zeros(1), high=np.ones(1))
+    for refusable in ((LOOPS,), ()):
+        grid = SimpleNamespace(unknowns=unknowns, table=SimpleNamespace(refusable=refusable))
+        fair_search._descended(grid, "start", 0.5)
+    assert asked == [12, 12]
 
 
 @pytest.mark.parametrize(
@@ -148,7 +162,7 @@ class Large:
 
     @property
     def table(self):
-        return SimpleNamespace(size=self.size)
+        return SimpleNamespace(size=self.size, refusable=(FOLDS, LOOPS))
 
     unknowns = SimpleNamespace(logarithmic=np.array([True]), low=np.array([0.0]), high=np.array([0.0]))
 
@@ -228,14 +242,61 @@ def test_a_degree_that_does_not_fit_is_told_what_would(orders, least, most):
     assert blend_u_basis(most, 0, None, orders).degree == most
 
 
-def test_where_two_directions_tie_the_less_turning_one_is_taken(monkeypatch):
-    less_turning = SimpleNamespace(warnings=(), flipped=True)
-    monkeypatch.setattr(pipeline, "_less_turning", lambda *_: less_turning)
-    assert pipeline.blend(*strips()) is not less_turning
-    assert not state_problem(*strips()).matched.flipped
+def tied(monkeypatch, judged):
+    """Let both directions be tried, and the twisted one turn less; `judged` takes the place of what is checked."""
     monkeypatch.setattr(pipeline, "_tied", lambda a, b, flip: ("no", "yes"))
-    assert pipeline.blend(*strips()) is less_turning
+    monkeypatch.setattr(pipeline, "_least_turning", lambda solved: solved[-1])
+    monkeypatch.setattr(pipeline, "_judged", judged)
+
+
+def test_where_two_directions_tie_only_the_less_turning_one_is_judged(monkeypatch):
+    assert not blend(*strips()).flipped
+    assert not state_problem(*strips()).matched.flipped
+    judge, directions = pipeline._judged, []
+
+    def judged(a, b, solved, seconds):
+        directions.append(solved.flip)
+        return judge(a, b, solved, seconds)
+
+    tied(monkeypatch, judged)
+    assert blend(*strips()).flipped
+    assert directions == ["yes"]
     assert state_problem(*strips()).matched.flipped
+
+
+def test_the_direction_that_is_refused_makes_room_for_the_other(monkeypatch):
+    judge = pipeline._judged
+
+    def judged(a, b, solved, seconds, refused=("yes",)):
+        if solved.flip in refused:
+            raise ContactError(solved.flip)
+        return judge(a, b, solved, seconds)
+
+    tied(monkeypatch, judged)
+    assert not blend(*strips()).flipped
+    monkeypatch.setattr(pipeline, "_judged", lambda *arguments: judged(*arguments, ("no", "yes")))
+    with pytest.raises(ContactError, match=r"^no$"):
+        blend(*strips())
+
+
+def test_seconds_are_those_of_all_directions_that_were_tried(monkeypatch):
+    """By a clock that only solving moves: by a second for each direction."""
+    ticks, solve = [0.0], pipeline._solved
+
+    def solved(*arguments):
+        ticks[0] += 1.0
+        if arguments[-1] == refused:
+            raise ComputationError("refused")
+        return solve(*arguments)
+
+    refused = "none"
+    monkeypatch.setattr(pipeline, "_solved", solved)
+    monkeypatch.setattr(pipeline.time, "perf_counter", lambda: ticks[0])
+    assert blend(*strips(), flip="no").seconds == 1.0
+    tied(monkeypatch, pipeline._judged)
+    assert blend(*strips()).seconds == 2.0
+    refused = "yes"
+    assert blend(*strips()).seconds == 2.0
 
 
 @pytest.mark.parametrize("continuity", ["C0", "G0"])

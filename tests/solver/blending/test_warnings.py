@@ -14,16 +14,17 @@ from semispline.papers.reproduction.families.suite import shape_problem
 from semispline.solver.blending.fair_search import FairSolution
 from semispline.solver.blending.shape_parameters import Found
 from semispline.solver.blending.warnings import contact_warnings, remedy, stopped_warning, strained_by
-from semispline.solver.judge import NoNormal
+from semispline.solver.judge import NoNormal, RoundingCauses, rounding_causes
 from semispline.solver.reports import print_result
 from semispline.solver.splines import greville
-from semispline.solver.splines.operations import all_control_points
 
 LINE = [0, 0, 1, 1]
 FLOOR = Base(BSplineSurface(1, 1, LINE, LINE, [[[0, 0, 0], [0, 1, 0]], [[1, 0, 0], [1, 1, 0]]]), "u1")
 WALL = Base(BSplineSurface(1, 1, LINE, LINE, [[[2, 0, 1], [2, 1, 1]], [[2, 0, 2], [2, 1, 2]]]), "u0")
 # By hand, as the energy in test_rounding_of_close_knots: a quarter of the sum of M^-1 c, over c' M^-1 c.
 BEST = 64 / 39
+# Near the origin, without weights.
+NO_CAUSE = RoundingCauses(1.0, 1.0, (1.0, 1.0), 1.0)
 # Natural size: a gap of sqrt(2) over a speed of 1.
 NATURAL = np.sqrt(2)
 
@@ -69,14 +70,14 @@ def test_rounding_beside_the_edge_names_the_knots(continuity):
         blend(base, WALL, continuity=continuity)
     assert "shape parameter" not in str(error.value)
     other = Base(FLOOR.surface, "u1")
-    said = [remedy(one, blend(FLOOR, WALL).surface, [], shape) for one in (base, other) for shape in (None, 1e-8)]
+    said = [remedy(one, NO_CAUSE, [], shape) for one in (base, other) for shape in (None, 1e-8)]
     assert ["beside the edge" in text for text in said] == [True, True, False, False]
     assert ["shape parameter" in text for text in said] == [False, False, False, True]
 
 
 def test_a_base_without_a_normal_is_named():
     bare = NoNormal("a", 0.0, (1.0, 0.0, 0.0), "the derivative along the edge vanishes", 1e-9)
-    said = remedy(FLOOR, blend(FLOOR, WALL).surface, [bare], 1.0)
+    said = remedy(FLOOR, NO_CAUSE, [bare], 1.0)
     assert "the base has no proper normal at parameter 0" in said
     assert "shape parameter" not in said
 
@@ -87,29 +88,87 @@ def test_a_span_is_narrow_below_a_thousandth_of_the_base(width, named, edge):
     domain = 400.0
     surface = flat_with(domain * np.array([0, 0, 0, 0, 1 - width, 1, 1, 1, 1])).surface
     base = Base(turned(turned(surface, "u1", False), edge, False), edge)
-    assert remedy(FLOOR, blend(FLOOR, WALL).surface, [], 1.0, 3).startswith("derivatives of order 3 round: ask for G2")
-    said = remedy(base, blend(FLOOR, WALL).surface, [], None)
+    assert remedy(FLOOR, NO_CAUSE, [], 1.0, 3).startswith("derivatives of order 3 round: ask for G2")
+    said = remedy(base, NO_CAUSE, [], None)
     assert (f"knots_{edge[0]} of the base leave a span of {width * domain:.1e} beside the edge" in said) is named
     # Nobody asks for what is narrow elsewhere.
     other = Base(base.surface, edge[0] + {"0": "1", "1": "0"}[edge[1]])
-    assert "beside the edge" not in remedy(other, blend(FLOOR, WALL).surface, [], None)
+    assert "beside the edge" not in remedy(other, NO_CAUSE, [], None)
 
 
-@pytest.mark.parametrize(("times", "far"), [(0.9, False), (1.1, True)])
+def moved(base, distance, weights=None):
+    surface = base.surface
+    points = surface.control_points + np.array([0.0, distance, 0.0])
+    return Base(BSplineSurface(1, 1, LINE, LINE, points, weights), base.edge)
+
+
+# One rounding of what is stored against eight of what is worked with: fifty times as much at some 800 sizes.
+@pytest.mark.parametrize(("distance", "far"), [(400, False), (2000, True)])
 @pytest.mark.parametrize("side", [1.0, -1.0])
-def test_a_thousand_sizes_from_the_origin_is_far(times, side, far):
-    surface = blend(FLOOR, WALL).surface
-    size = float(np.ptp(all_control_points(surface), axis=0).max())
-    distance = times * 1e3 * size
-    away = replace(
-        surface,
-        control_curves=[
-            replace(c, control_points=c.control_points + np.array([0.0, side * distance, 0.0]))
-            for c in surface.control_curves
-        ],
-    )
-    said = remedy(FLOOR, away, [], None)
-    assert ("1e+03 times the size of the blend away: work in coordinates nearer to it" in said) is far
+def test_far_from_the_origin_is_where_rounding_is_that_of_the_distance(distance, side, far):
+    causes = rounding_causes(moved(FLOOR, side * distance), moved(WALL, side * distance), 2)
+    said = remedy(FLOOR, causes, [], None)
+    assert ("times the size of the surfaces away: work in coordinates nearer to it" in said) is far
+
+
+@pytest.mark.parametrize(
+    ("least", "distance", "said"),
+    [
+        (1.0, 0, []),
+        (0.9, 0, []),
+        (1e-6, 0, ["weights"]),
+        (1.0, 1e6, ["origin"]),
+        (1e-6, 1e4, ["weights", "origin"]),
+        (1e-2, 1e9, ["origin", "weights"]),
+    ],
+)
+def test_the_worse_cause_of_rounding_is_named_first_and_no_other_one_is(least, distance, said):
+    weights = None if least == 1.0 else np.array([[1.0, least], [1.0, 1.0]])
+    a, b = moved(FLOOR, distance, weights), moved(WALL, distance)
+    causes = rounding_causes(a, b, 2)
+    assert causes.weight_ratios == (pytest.approx(1 / least), 1.0)
+    text = causes.words(("the base", "the blend"))
+    assert re.findall("weights|origin", text) == said
+    if "weights" in said:
+        assert f"weights of the base that act together differ by a factor of {1 / least:.2g}" in text
+    # The other side of the contact is named where it is much the worse.
+    other = rounding_causes(b, a, 2).words(("the base", "the blend"))
+    assert ("weights of the blend" in other) is ("weights" in said)
+
+
+@pytest.mark.parametrize(("knots", "named"), [(1.0, "weights"), (1e-2, "weights"), (1e-7, "knots_u")])
+def test_of_weights_and_narrow_spans_the_worse_is_named(knots, named):
+    """A span of 1e-7 beside one of 1, to the second power, against weights of ratio 1000."""
+    base = flat_with([0, 0, 0, 0, 1 - knots / 2, 1, 1, 1, 1])
+    causes = RoundingCauses(1.0, 1.0, (1e3, 1.0), 1e6)
+    assert named in remedy(base, causes, [], None)
+
+
+def test_what_strains_is_said_beside_what_rounds():
+    causes = RoundingCauses(1.0, 1.0, (1e3, 1.0), 1e6)
+    assert remedy(FLOOR, causes, [], None, 2, "p2 is large").endswith("; p2 is large")
+    assert remedy(FLOOR, NO_CAUSE, [], None, 2, "p2 is large") == "p2 is large"
+
+
+@pytest.mark.parametrize(("far", "continuity"), [(0.0, "G3"), (1e6, "G2")])
+def test_a_refusal_of_uneven_weights_names_them(far, continuity):
+    """It named a missing normal; near the origin many digits show that the surfaces do meet."""
+    knots = [0, 0, 0, 0, 1, 1, 1, 1]
+    x, y = np.meshgrid(np.arange(4.0), np.arange(4.0), indexing="ij")
+    net = np.stack([x + far, y, 0.1 * np.sin(3 * x + 5 * y)], axis=-1)
+    weights = np.ones((4, 4))
+    weights[2:, 1] = 1e-6
+    a = Base(BSplineSurface(3, 3, knots, knots, net, weights), "u1")
+    b = Base(BSplineSurface(3, 3, knots, knots, net + np.array([6.0, 0, 0])), "u0")
+    if not far:
+        assert any(
+            "no proper normal" in text
+            for text in blend_by_default(a, b, continuity=continuity, alpha="natural").warnings
+        )
+        return
+    words = r"weights of the base that act together differ by a factor of 1e\+06.*the origin is 2e\+05 times the size"
+    with pytest.raises(ContactError, match=words):
+        blend_by_default(a, b, continuity=continuity, alpha="natural")
 
 
 @pytest.mark.parametrize(("places", "named"), [(4, 4), (5, 5), (7, 5)])

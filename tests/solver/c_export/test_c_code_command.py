@@ -62,6 +62,16 @@ def test_surfaces_may_lie_in_files_of_their_own(tmp_path):
     assert (tmp_path / "one" / "blend.c").read_text() == (tmp_path / "two" / "blend.c").read_text()
 
 
+@pytest.mark.parametrize("weights", [[[3, 3], [3, 3]], [[1, 1], [1, 1]]])
+def test_weights_that_are_all_equal_are_none(tmp_path, weights):
+    weighted = BSplineSurface(1, 1, K, K, FLOOR.control_points, weights)
+    for name, a in (("one", FLOOR), ("two", weighted)):
+        problem = stored(tmp_path, a=a)
+        done = generate("--c", tmp_path / name, "--problem", problem)
+        assert done.exit_code == 0, done.stderr
+    assert (tmp_path / "one" / "blend.c").read_text() == (tmp_path / "two" / "blend.c").read_text()
+
+
 def test_other_files_of_the_folder_stay(tmp_path):
     (tmp_path / "out").mkdir()
     (tmp_path / "out" / "main.c").write_text("mine")

@@ -272,19 +272,22 @@ def offset_extrusion():
     return Geom_OffsetSurface(half, 0.1), off
 
 
+@pytest.mark.usefixtures("read_here")
 def test_what_the_kernel_approximates_says_how_well(tmp_path):
     geometry, off = offset_extrusion()
     path = tmp_path / "offset.brep"
     entry = describe(0, written(path, faced(geometry, 0.0, math.pi, 0.0, 2.0)))
     assert (entry.kind, entry.rational, entry.problem) == ("offset", False, None)
-    words = rf"offset.brep \(offset\) has no exact B-spline form: .* up to {entry.deviation:.3g} model units off"
+    words = (
+        rf"offset.brep \(offset\) has no exact B-spline form: .* about {entry.deviation:.3g} model units off at worst"
+    )
     with pytest.warns(UserWarning, match=words):
         surface = read_surface(path)
     (u0, u1), _ = surface.domain
-    true = off(surface.evaluate_grid(np.linspace(u0, u1, 301), [1.0])).max()
-    # Size 6; and the measured one is the largest of other samples.
+    true = off(surface.evaluate_grid(np.linspace(u0, u1, 3001), [1.0])).max()
+    # Size 6. The chords that it is compared with sag by 1e-10 to 5e-10; the largest of the first samples is 7 % lower.
     assert 1e-11 < true < 6e-7
-    assert entry.deviation == pytest.approx(true, rel=0.2)
+    assert entry.deviation == pytest.approx(true, rel=0.02)
 
 
 def test_a_surface_that_is_rough_itself_is_approximated_too(tmp_path):
@@ -309,13 +312,14 @@ def test_a_revolved_offset_curve_is_approximated(tmp_path):
     assert 0 < face.deviation() < 1e-5
 
 
+@pytest.mark.usefixtures("read_here")
 def test_the_words_reach_list_convert_and_blend(tmp_path):
     geometry, _ = offset_extrusion()
     path = tmp_path / "offset.brep"
     BRepTools.Write_s(faced(geometry, 0.0, math.pi, 0.0, 2.0), str(path))
     floor = tmp_path / "floor.json"
     write_surface(floor, plane([0, 5, 0], [0, 2, 0], [1, 0, 0]))
-    words = "no exact B-spline form: the surface taken for it is up to"
+    words = "no exact B-spline form: the surface taken for it is about"
     runner = CliRunner()
     told = runner.invoke(app, ["list", str(path)])
     assert words in told.stdout
@@ -330,6 +334,7 @@ def test_the_words_reach_list_convert_and_blend(tmp_path):
     assert not (tmp_path / "b.json").exists()
 
 
+@pytest.mark.usefixtures("read_here")
 def test_every_rational_face_of_real_files_is_read(shared):
     found = [
         entry

@@ -296,6 +296,7 @@ def pair(tmp_path):
 WORDS = "lies outside of the face, up to 12 mm from the face's own boundary"
 
 
+@pytest.mark.usefixtures("read_here")
 def test_check_warns_and_answers_for_the_natural_edge(pair):
     files = pair / "cut.step", pair / "next.json"
     done = run("check", *files, "--edge-a", "u1", "--edge-b", "u0", "--require", "G2", "--json", pair / "c.json")
@@ -309,6 +310,7 @@ def test_check_warns_and_answers_for_the_natural_edge(pair):
     assert json.loads(done.stdout)["warnings"] == []
 
 
+@pytest.mark.usefixtures("read_here")
 def test_blend_warns_and_strict_refuses(pair):
     call = ("blend", pair / "far.json", pair / "cut.step", "--edge-a", "u0", "--edge-b", "u1", "-o", pair / "out.json")
     call = (*call, "--report", pair / "report.json")
@@ -326,6 +328,7 @@ def test_blend_warns_and_strict_refuses(pair):
     assert sorted(p.name for p in pair.iterdir()) == ["cut.step", "far.json", "next.json"]
 
 
+@pytest.mark.usefixtures("read_here")
 def test_c_of_a_stored_problem_warns_and_strict_refuses(pair):
     problem = StoredProblem("far.json", "u0", "cut.step#0", "u1", BlendOptions(continuity="C1"))
     write_problem(pair / "problem.json", problem)

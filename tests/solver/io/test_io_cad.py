@@ -149,6 +149,7 @@ def test_the_unit_is_read_off_the_header(tmp_path, suffix, declared, instead, un
     assert_same(model.faces[0].surface(), patch())
 
 
+@pytest.mark.usefixtures("read_here")
 def test_surfaces_in_different_units_come_in_that_of_the_first(tmp_path):
     write_surface(tmp_path / "a.3dm", patch(), "in")
     write_surface(tmp_path / "b.3dm", patch(), "mm")

@@ -198,6 +198,7 @@ def bounds():
     return whole
 
 
+@pytest.mark.usefixtures("read_here")
 def test_a_brep_file_without_faces_says_what_it_holds(tmp_path):
     path = tmp_path / "x.brep"
     BRepTools.Write_s(bounds(), str(path))
@@ -206,6 +207,7 @@ def test_a_brep_file_without_faces_says_what_it_holds(tmp_path):
     assert done.stdout.startswith("no surfaces: 1 wire, 1 edge, 1 vertex; ")
 
 
+@pytest.mark.usefixtures("read_here")
 @pytest.mark.parametrize("suffix", [".step", ".igs"])
 def test_edges_of_other_formats(tmp_path, suffix):
     path, edge = tmp_path / f"x{suffix}", BRepBuilderAPI_MakeEdge(gp_Pnt(0, 0, 0), gp_Pnt(1, 0, 0)).Edge()

@@ -119,6 +119,7 @@ def test_3dm_has_points_times_weights_bit_for_bit(tmp_path):
     np.testing.assert_allclose([(p.X, p.Y, p.Z) for p in points], expected, rtol=0, atol=1e-14)
 
 
+@pytest.mark.usefixtures("read_here")
 @pytest.mark.parametrize("suffix", EXACT)
 def test_rational_rows_are_written_as_the_same_surface(tmp_path, suffix):
     path, surface = tmp_path / f"s{suffix}", rational_rows()
@@ -223,6 +224,7 @@ def test_meshes_of_rational_rows_lie_on_the_surface(tmp_path, suffix):
     np.testing.assert_allclose(np.hypot(mesh.points[:, 0], mesh.points[:, 1]), radius, rtol=2e-6)
 
 
+@pytest.mark.usefixtures("read_here")
 def test_pictures_conversion_and_measuring_take_rational_rows(tmp_path):
     source = tmp_path / "tube.json"
     write_surface(source, nine_points().to_semistructured())

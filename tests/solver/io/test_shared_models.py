@@ -26,6 +26,7 @@ MODELS = [
 QUICK = ("build123d_M6-1x12-countersunk-screw.step", "demos_as1_pe_203.stp", "occt_shell1.brep", "v4_SolidHandle.3dm")
 
 
+@pytest.mark.usefixtures("read_here")
 @pytest.mark.parametrize(
     ("name", "faces", "rational", "trimmed"),
     [pytest.param(*model, marks=[] if model[0] in QUICK else pytest.mark.slow) for model in MODELS],
@@ -35,6 +36,7 @@ def test_faces_of_a_model(shared, name, faces, rational, trimmed):
     assert (len(found), sum(e.rational for e in found), sum(e.trimmed for e in found)) == (faces, rational, trimmed)
 
 
+@pytest.mark.usefixtures("read_here")
 def test_two_faces_of_a_model_are_joined(shared):
     model = shared / "data" / "v4_SaltAndPepper.3dm"
     result = blend(Base(read_surface(f"{model}#0"), "u1"), Base(read_surface(f"{model}#54"), "u0"), continuity="G2")

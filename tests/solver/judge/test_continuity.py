@@ -8,7 +8,7 @@ import pytest
 from helpers.bases import facing_pair, moved
 from helpers.occ import analyse, edge_point
 from semispline import Base, BSplineSurface, EdgeError, map_domain, measure_contact
-from semispline.solver.judge import continuity
+from semispline.solver.judge import edge_samples
 from semispline.solver.judge.edge_normals import check_regular_edge
 from semispline.solver.splines.knots import uniform_knots
 from semispline.solver.splines.operations import reverse_u, reverse_v, split_u, swap_directions
@@ -132,7 +132,7 @@ def halves(spans, moved_point=(0, 0), by=0.0):
 @pytest.mark.parametrize("place", ["first", "last"])
 def test_a_fault_in_one_span_of_thousands_is_found_and_placed(row, name, place):
     # Five parts of samples and a little more: the last part is a small one, and the fault is at its very end.
-    spans = 5 * continuity._AT_ONCE // 7 + 3
+    spans = 5 * edge_samples._AT_ONCE // 7 + 3
     sound = measure_contact(*halves(spans))
     faulty = measure_contact(*halves(spans, (row, 0 if place == "first" else -1), 1e-3))
     measure = {"gap": "gap", "angle": "angle_degrees", "curvature": "curvature_jump"}[name]
@@ -151,7 +151,7 @@ def test_measured_in_parts_as_measured_at_once(monkeypatch, at_once, edges):
     a, b = (Base(side.surface, edge) for side, edge in zip(halves(40, (1, 17), 0.2), edges, strict=True))
     found = []
     for size in (10**9, at_once):
-        monkeypatch.setattr(continuity, "_AT_ONCE", size)
+        monkeypatch.setattr(edge_samples, "_AT_ONCE", size)
         contact = asdict(measure_contact(a, b, flip="no", order=4))
         places = [contact.pop(f"{name}_at") for name in ("gap", "angle", "curvature", "rate", "second_rate")]
         rounding = contact.pop("rounding") | {f"{name} allowed": x for name, x in contact.pop("allowed").items()}
@@ -167,7 +167,7 @@ def test_measured_in_parts_as_measured_at_once(monkeypatch, at_once, edges):
 
 def test_a_part_without_a_normal_is_not_forgotten():
     # A control point of the second row moved onto the edge: the cross derivative vanishes at that end only.
-    a, b = halves(3 * continuity._AT_ONCE // 7)
+    a, b = halves(3 * edge_samples._AT_ONCE // 7)
     points = b.surface.control_points.copy()
     points[1, -1] = points[0, -1]
     cusp = BSplineSurface(3, 3, b.surface.knots_u, b.surface.knots_v, points)
@@ -199,13 +199,13 @@ def test_close_knots_along_a_contact_in_common_make_no_angle(width):
 def test_how_far_derivatives_along_both_sides_are_apart(monkeypatch, backwards):
     """Edge a is y = t and b is y = t + t (1 - t) / 10, run through three times as slowly: in the parameter of each."""
     seen = []
-    noises = continuity.section_noises
+    noises = edge_samples.section_noises
 
     def watched(*words):
         seen.append(words[-1])
         return noises(*words)
 
-    monkeypatch.setattr(continuity, "section_noises", watched)
+    monkeypatch.setattr(edge_samples, "section_noises", watched)
     a = BSplineSurface(1, 1, BEZIER_1, BEZIER_1, [[[x, 0, 0], [x, 1, 0]] for x in (0, 1)])
     b = BSplineSurface(1, 2, BEZIER_1, BEZIER_2, [[[x, y, 0] for y in (0, 0.55, 1)] for x in (1, 2)])
     b = map_domain(b, (0, 1), (5, 8))

@@ -156,7 +156,7 @@ def test_a_narrow_span_of_the_other_parametrisation_is_sampled():
 
 
 def test_affine_edges_ask_for_no_feet(monkeypatch):
-    monkeypatch.setattr("semispline.solver.judge.continuity.foot_pairs", lambda *_: pytest.fail("searched for feet"))
+    monkeypatch.setattr("semispline.solver.judge.edge_samples.foot_pairs", lambda *_: pytest.fail("searched for feet"))
     a = bent_strip(np.random.default_rng(1), 0.0)
     assert measure_contact(Base(a, "u0"), Base(a, "u0")).corresponds == "affine"
 

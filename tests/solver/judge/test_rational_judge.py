@@ -27,6 +27,7 @@ from semispline.solver.judge import (
 from semispline.solver.judge.bezier_pieces import bernstein_by_degree, in_pieces
 from semispline.solver.judge.de_boor import edge_curves
 from semispline.solver.judge.limits import shortfalls
+from semispline.solver.judge.precise import precise_derivatives
 from semispline.solver.judge.regularity import _numerator, area_bound
 from semispline.solver.judge.rounding import derivative_noises
 from semispline.solver.splines.operations import reverse_v, swap_directions
@@ -81,6 +82,36 @@ def exact_derivatives(surface, u, v):
         for a, b in ORDERS:
             found.setdefault((a, b), []).append(float(series[a, b] * factorial(a) * factorial(b)))
     return {order: np.array(value) for order, value in found.items()}
+
+
+@pytest.mark.parametrize("edge", ["u0", "u1", "v0", "v1"])
+@pytest.mark.parametrize("seed", [0, 1])
+def test_precise_derivatives_are_the_exact_ones_rounded(edge, seed):
+    """Against division of series in fractions; doubles are rounded twice at most, from 60 digits."""
+    surface, along = mixed_rows(np.random.default_rng(seed)), Fraction(3, 16)
+    end = Fraction(int(edge[1]))
+    found = precise_derivatives(Base(surface, edge), np.zeros(3), np.array([float(along)]), 4)
+    exact = exact_derivatives(surface, *((end, along) if edge[0] == "u" else (along, end)))
+    for across in range(5):
+        for order in range(5 - across):
+            key = (across, order) if edge[0] == "u" else (order, across)
+            expected = np.array([float(x) for x in exact[key]])
+            np.testing.assert_allclose(found[across, order][0], expected, rtol=2 * np.finfo(float).eps, atol=0)
+
+
+def test_precise_derivatives_count_knots_and_an_origin():
+    """A wavy surface with inner knots: as the floating referee has it, to its own rounding."""
+    rng = np.random.default_rng(3)
+    knots = np.array([0, 0, 0, 0, 0.3, 0.3, 0.7, 1, 1, 1, 1])
+    net, weights = rng.normal(size=(7, 7, 3)), rng.uniform(0.5, 2, (7, 7))
+    surface, origin = BSplineSurface(3, 3, knots, knots, net, weights), np.array([1.0, -2.0, 0.5])
+    s = np.array([0.0, 0.1, 0.3, 0.65, 1.0])
+    for edge in ("u0", "u1", "v0", "v1"):
+        precise = precise_derivatives(Base(surface, edge), origin, s, 3)
+        floating = edge_curves(surface, edge, 3, origin).points(s, 3)
+        noises = derivative_noises(Base(surface, edge), origin, 3)
+        for key, values in precise.items():
+            assert np.abs(values - floating[key]).max() <= noises[key]
 
 
 @pytest.mark.parametrize("seed", range(4))

@@ -193,3 +193,78 @@ def test_rational_rows_count():
     rows = [BSplineCurve(2, [0, 0, 0, 1, 1, 1], [[1, 0, z], [1, 1, z], [0, 1, z]], [1, 1, 2]) for z in (0, 1)]
     quarter = SemiStructuredSurface(1, [0, 0, 1, 1], rows)
     assert abs(closest_point(quarter, [2, 2, 0.5]).distance - (np.sqrt(8) - 1)) <= 1e-15
+
+
+def far_sheet():
+    """Off the origin; nearest to points far away to the right and above in its corner u = v = 1."""
+    return BSplineSurface(1, 1, [0, 0, 1, 1], [0, 0, 1, 1], [[[3, 0, 0], [3, 1, 0]], [[4, 0, 0], [4, 1, 0.5]]])
+
+
+@pytest.mark.parametrize("far", [1e3, 1e9, 0.9e12])
+def test_points_far_away_have_a_nearest_point(far):
+    found = closest_point(far_sheet(), np.array([far, far, far]))
+    assert found.parameters.tolist()[-1] == [1, 1]
+    assert found.distance == pytest.approx(np.sqrt(3) * far, rel=1e-2 if far < 1e4 else 1e-8)
+
+
+@pytest.mark.parametrize("far", [1e13, 1e100, 1e200, 1e308])
+@pytest.mark.parametrize("shape", [far_sheet(), BSplineCurve(1, [0, 0, 1, 1], [[0, 0, 0], [1, 0, 0]])])
+def test_points_of_which_rounding_hides_the_nearest_are_refused(far, shape):
+    """Infinity was the answer."""
+    with pytest.raises(ControlPointError, match="sizes of the shape away, where all its points are equally near"):
+        closest_point(shape, [far, 0, 0])
+
+
+@pytest.mark.parametrize("scale", [2.0**600, 2.0**-600])
+def test_huge_and_tiny_shapes_are_measured_as_others(scale):
+    """Squares of these coordinates overflow, or vanish."""
+    plain, target = wavy(3, True), np.array([0.3, 0.6, 0.8])
+    other = BSplineSurface(3, 3, plain.knots_u, plain.knots_v, plain.control_points * scale, plain.weights)
+    one, two = closest_point(plain, target), closest_point(other, target * scale)
+    assert one.distance * scale == two.distance
+    assert np.array_equal(one.parameters, two.parameters)
+    assert np.array_equal(one.points * scale, two.points)
+
+
+def test_a_shape_that_is_one_point_has_no_size_to_be_far_from():
+    dot = BSplineCurve(1, [0, 0, 1, 1], [[1, 0, 0], [1, 0, 0]])
+    found = closest_point(dot, [4, 4, 0])
+    assert (found.distance, found.continuum) == (5.0, False)
+
+
+FLAT = BSplineSurface(1, 1, [0, 0, 1, 1], [0, 0, 1, 1], [[[0, 0, 0], [0, 1, 0]], [[1, 0, 0], [1, 1, 0]]])
+# z = x^2: around (0, 0, 0.5) a circle touches it at (0, 0, 0) to fourth order.
+PARABOLA = BSplineCurve(2, [0, 0, 0, 1, 1, 1], [[-1, 0, 1], [0, 0, -1], [1, 0, 1]])
+
+
+@pytest.mark.parametrize(
+    ("shape", "target", "continuum"),
+    [
+        (cylinder(2.0, 3.0), (0, 0, 1), True),
+        (cylinder(2.0, 3.0), (0, 0, 9), True),
+        (cylinder(2.0, 3.0), (0.01, 0, 1), False),
+        (cylinder(2.0, 3.0), (5, 1, 1), False),
+        (sphere(2.0), (0, 0, 0), True),
+        (sphere(2.0), (0, 0, 0.5), False),
+        (sphere(2.0), (0, 0, 7), False),
+        (sphere(2.0), (0, 0, 2), False),
+        (torus(5.0, 2.0), (0, 0, 0), True),
+        (torus(5.0, 2.0), (5, 0, 0), True),
+        (torus(5.0, 2.0), (9, 0, 1), False),
+        (circle(2.0), (0, 0, 4), True),
+        (circle(2.0), (0, 1, 4), False),
+        (FLAT, (0.3, 0.4, 2), False),
+        (FLAT, (5, 5, 2), False),
+        (PARABOLA, (0, 0, 0.5), False),
+        (PARABOLA, (0, 0, 0.7), False),
+    ],
+)
+def test_where_infinitely_many_points_are_nearest_it_is_said(shape, target, continuum):
+    """Beside an axis by a hundredth one is nearest; at a pole and where curvature touches it is one point."""
+    assert closest_point(shape, target).continuum is continuum
+
+
+def test_two_points_that_are_equally_near_are_no_continuum():
+    found = closest_point(PARABOLA, [0, 0, 3])
+    assert len(found.parameters) == 2
+    assert not found.continuum

@@ -1,0 +1,125 @@
+"""What the process of its own does that reads edges of a face as curves: it hands over plain arrays."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+# Loaded before the limits of the process count.
+import OCP  # noqa: F401
+from scipy.interpolate import make_interp_spline
+
+from semispline.solver.arrays import FloatArray
+from semispline.solver.errors import FileError, InputError
+from semispline.solver.io import read_occ
+from semispline.solver.splines import BSplineCurve, BSplineSurface
+from semispline.solver.topology.face_curves import parameters_on, spread
+from semispline.solver.topology.face_jets import Face
+from semispline.solver.topology.occ_edges import wires
+
+# Kinds whose parameters are the file's own.
+_OWN_PARAMETERS = ("B-spline", "Bezier")
+# A pcurve is taken over to other parameters through so many points.
+_PLACES, _DEGREE = 400, 5
+# Arguments of `BSplineCurve`.
+Content = tuple[int, FloatArray, FloatArray, FloatArray | None]
+
+
+def work(path: str, face: str, *numbers: str) -> tuple[str | None, Any, list[Any]]:
+    """Return the unit, arguments of the surface or the error, and for each edge its curves or what is wrong with it."""
+    model = read_occ(path)
+    if not 0 <= int(face) < len(model.faces):
+        return model.unit, FileError(f"{path}#{face}: the file has {len(model.faces)} faces, counted from 0"), []
+    try:
+        return model.unit, *face_curves(model.faces[int(face)], [int(x) for x in numbers])
+    except InputError as error:
+        return model.unit, error, []
+
+
+def face_curves(item: Any, numbers: list[int]) -> tuple[tuple[Any, ...], list[Any]]:
+    """Return arguments of the surface of an `OccFace`, and of each of its edges what `edge_curve` returns.
+
+    Raises
+    ------
+    FileError
+        The surface cannot be read out.
+    """
+    surface = item.surface()
+    edges = [edge for wire, _ in wires(item.face) for edge in wire]
+    found: list[Any] = []
+    for number in numbers:
+        if not 0 <= number < len(edges):
+            found.append(f"the face has {len(edges)} edges, e0 to e{len(edges) - 1}")
+            continue
+        try:
+            found.append(edge_curve(edges[number], item.face, surface if item.kind not in _OWN_PARAMETERS else None))
+        except Exception as error:
+            # Each failure of the kernel has a class of its own.
+            found.append(f"Open CASCADE cannot convert it ({str(error).strip() or type(error).__name__})")
+    content = (
+        surface.degree_u, surface.degree_v, surface.knots_u, surface.knots_v, surface.control_points, surface.weights
+    )  # fmt: skip
+    return content, found
+
+
+def edge_curve(
+    edge: Any, face: Any, converted: BSplineSurface | None
+) -> tuple[Content | None, Content | None, str, float] | str:
+    """Return the edge in space, its pcurve, the side of the face, the tolerance; or what is wrong with it.
+
+    Where the surface is a converted one, with other parameters than the file's, the pcurve is taken over.
+    """
+    from OCP.BRep import BRep_Tool
+    from OCP.BRepAdaptor import BRepAdaptor_Curve, BRepAdaptor_Curve2d
+    from OCP.Geom import Geom_TrimmedCurve
+    from OCP.Geom2d import Geom2d_TrimmedCurve
+    from OCP.Geom2dConvert import Geom2dConvert
+    from OCP.GeomConvert import GeomConvert
+    from OCP.TopAbs import TopAbs_Orientation
+
+    if BRep_Tool.Degenerated_s(edge):
+        return "it is a point; choose another edge"
+    geometry = BRep_Tool.Curve_s(edge, 0.0, 0.0)
+    in_space: Content | None = None
+    if geometry is not None:
+        adaptor = BRepAdaptor_Curve(edge)
+        cut = Geom_TrimmedCurve(geometry, adaptor.FirstParameter(), adaptor.LastParameter())
+        in_space = _content(GeomConvert.CurveToBSplineCurve_s(cut), lambda p: (p.X(), p.Y(), p.Z()))
+    flat = BRep_Tool.CurveOnSurface_s(edge, face, 0.0, 0.0)
+    pcurve: Content | None = None
+    if flat is not None:
+        plane = BRepAdaptor_Curve2d(edge, face)
+        flat = Geom2d_TrimmedCurve(flat, plane.FirstParameter(), plane.LastParameter())
+        pcurve = _content(Geom2dConvert.CurveToBSplineCurve_s(flat), lambda p: (p.X(), p.Y()))
+        if converted is not None:
+            pcurve = _taken_over(pcurve, face, converted)
+    elif in_space is None:
+        return "it has no curve, neither in space nor in the parameters of the face"
+    turned = TopAbs_Orientation.TopAbs_REVERSED
+    # The face lies left of an edge that runs forward in a face taken forward, and each reversal swaps the sides.
+    keep = "left" if (edge.Orientation() == turned) == (face.Orientation() == turned) else "right"
+    return in_space, pcurve, keep, BRep_Tool.Tolerance_s(edge)
+
+
+def _taken_over(pcurve: Content, face: Any, converted: BSplineSurface) -> Content:
+    """Return a curve in the parameters of a converted surface, through the feet of many of its points."""
+    from OCP.BRepAdaptor import BRepAdaptor_Surface
+
+    curve, surface = BSplineCurve(*pcurve), BRepAdaptor_Surface(face, False)
+    x = spread(np.unique(curve.knots), _PLACES)
+    points = [surface.Value(float(s), float(t)) for s, t, _ in curve.evaluate(x)]
+    at = parameters_on(Face(converted), np.array([(p.X(), p.Y(), p.Z()) for p in points]))
+    through = make_interp_spline(x, at, _DEGREE)
+    return _DEGREE, through.t, through.c, None
+
+
+def _content(spline: Any, coordinates: Any) -> Content:
+    if spline.IsPeriodic():
+        spline.SetNotPeriodic()
+    indices = range(1, spline.NbKnots() + 1)
+    knots = np.repeat([spline.Knot(i) for i in indices], [spline.Multiplicity(i) for i in indices])
+    n = spline.NbPoles()
+    points = np.array([coordinates(spline.Pole(i + 1)) for i in range(n)])
+    weights = np.array([spline.Weight(i + 1) for i in range(n)]) if spline.IsRational() else None
+    return spline.Degree(), knots, points, weights

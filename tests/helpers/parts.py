@@ -1,0 +1,83 @@
+"""Parts made by Open CASCADE for tests of edges and places, and their tables without a file."""
+
+from pathlib import Path
+
+import numpy as np
+from OCP.BRep import BRep_Builder
+from OCP.BRepAdaptor import BRepAdaptor_Curve
+from OCP.BRepBuilderAPI import BRepBuilderAPI_Copy, BRepBuilderAPI_Transform
+from OCP.BRepFilletAPI import BRepFilletAPI_MakeFillet
+from OCP.BRepPrimAPI import BRepPrimAPI_MakeBox
+from OCP.BRepTools import BRepTools
+from OCP.collections import IndexedMap_TopoDS_Shape_TopTools_ShapeMapHasher
+from OCP.gp import gp_Pnt, gp_Vec
+from OCP.TopAbs import TopAbs_ShapeEnum
+from OCP.TopExp import TopExp
+from OCP.TopoDS import TopoDS, TopoDS_Compound
+
+from semispline.solver.io.occ import OccFace, _faces
+from semispline.solver.topology.half_edges import EdgeGraph
+from semispline.solver.topology.occ_edges import edge_tables
+
+
+def graph_of(shape, path="part.brep"):
+    """The edges of a shape that stands in memory."""
+    faces = [OccFace(face, f"{path}#{n}") for n, face in enumerate(_faces(shape))]
+    return EdgeGraph(path, None, *edge_tables(faces), {})
+
+
+def written(shape, path: Path):
+    BRepTools.Write_s(shape, str(path))
+    return path
+
+
+def compound(faces):
+    shape, builder = TopoDS_Compound(), BRep_Builder()
+    builder.MakeCompound(shape)
+    for face in faces:
+        builder.Add(shape, face)
+    return shape
+
+
+def without(shape, number):
+    """The other faces, which still share their edges."""
+    return compound(face for n, face in enumerate(_faces(shape)) if n != number)
+
+
+def unsewn(shape):
+    """Each face with edges of its own."""
+    return compound(BRepBuilderAPI_Copy(face).Shape() for face in _faces(shape))
+
+
+def reordered(shape, order):
+    faces = list(_faces(shape))
+    return compound(faces[n] for n in order)
+
+
+def moved(shape, trsf):
+    return BRepBuilderAPI_Transform(shape, trsf, True).Shape()
+
+
+def fillet(shape, radius, wanted):
+    """Round the edges whose middle point and direction `wanted` accepts."""
+    maker = BRepFilletAPI_MakeFillet(shape)
+    for edge in edges_of_shape(shape):
+        curve, point, along = BRepAdaptor_Curve(edge), gp_Pnt(), gp_Vec()
+        curve.D1((curve.FirstParameter() + curve.LastParameter()) / 2, point, along)
+        if wanted(np.array([point.X(), point.Y(), point.Z()]), np.array([along.X(), along.Y(), along.Z()])):
+            maker.Add(radius, edge)
+    maker.Build()
+    return maker.Shape()
+
+
+def rounded_box(upright=3.0, top=1.5):
+    """A box of 40 x 30 x 20 with its upright edges rounded, then those round its top."""
+    box = BRepPrimAPI_MakeBox(40.0, 30.0, 20.0).Shape()
+    box = fillet(box, upright, lambda _, along: abs(along[2]) > 0.5)
+    return fillet(box, top, lambda point, _: point[2] > 19.99)
+
+
+def edges_of_shape(shape):
+    found = IndexedMap_TopoDS_Shape_TopTools_ShapeMapHasher()
+    TopExp.MapShapes_s(shape, TopAbs_ShapeEnum.TopAbs_EDGE, found)
+    return [TopoDS.Edge(found.FindKey(i + 1)) for i in range(found.Extent())]

@@ -1,0 +1,143 @@
+"""What is said of places: repeats, scores, commands, words, JSON."""
+
+import json
+import shlex
+from math import prod
+
+import pytest
+from OCP.BRepPrimAPI import BRepPrimAPI_MakeBox, BRepPrimAPI_MakeSphere
+from OCP.gp import gp_Trsf, gp_Vec
+from typer.testing import CliRunner
+
+from helpers.parts import compound, graph_of, moved, rounded_box, without, written
+from helpers.random_parts import known_part
+from semispline import FileError, find_places
+from semispline.solver.cli import app
+from semispline.solver.topology.listing import place_lines, places_record
+from semispline.solver.topology.place import KINDS
+from semispline.solver.topology.places import places_of
+
+
+def test_places_of_a_box_with_rounds():
+    places = places_of(graph_of(rounded_box()))
+    assert [(x.kind, len(x.faces), 1 + len(x.repeats)) for x in places.found] == [
+        ("fillet", 1, 2),
+        ("fillet", 1, 2),
+        ("fillet", 1, 4),
+        ("fillet", 1, 4),
+        ("chain", 8, 1),
+        ("sharp edge", 0, 2),
+        ("sharp edge", 0, 2),
+        ("sharp edge", 0, 4),
+    ]
+    assert places.faces == 18
+    assert (places.refused, places.counts, places.unwalked) == ({}, {}, ())
+    (chain,) = places.of_kind("chain")
+    assert len(chain.commands) == 8
+    assert chain.measures["length"] == pytest.approx(2 * (34 + 24) + 2 * 3.1416 * (3 + 1.5) / 2, rel=0.01)
+
+
+def test_a_part_twice_gives_its_places_once():
+    shift = gp_Trsf()
+    shift.SetTranslation(gp_Vec(100, 0, 0))
+    one, two = rounded_box(), moved(rounded_box(), shift)
+    single, double = places_of(graph_of(one)), places_of(graph_of(compound([one, two])))
+    assert len(double.found) == len(single.found)
+    assert [1 + len(x.repeats) for x in double.found] == [2 * (1 + len(x.repeats)) for x in single.found]
+
+
+@pytest.mark.parametrize("make", [rounded_box, lambda: known_part(3).shape, lambda: without(rounded_box(), 2)])
+def test_scores_are_products_and_the_best_comes_first(make):
+    places = places_of(graph_of(make()))
+    assert places.found
+    for place in places.found:
+        assert place.score == pytest.approx(prod(place.parts.values()))
+        assert 0 < place.score <= 1
+    ranks = [(KINDS.index(place.kind), -round(place.score, 6)) for place in places.found]
+    assert ranks == sorted(ranks)
+
+
+@pytest.mark.parametrize("name", ["part.brep", "my part.brep", "it's $HOME; `x`.brep", "-o.brep"])
+def test_commands_name_file_and_edges_for_a_shell(name):
+    graph = graph_of(without(rounded_box(), 2), path=name)
+    places = places_of(graph)
+    for place in places.found:
+        for command in place.commands:
+            words = shlex.split(command)
+            assert words[:2] == ["semispline", "blend"]
+            assert words[-2] == "-o"
+            path = f"./{name}" if name.startswith("-") else name
+            if place.faces:
+                assert words[2:4] == [path, "--replace"]
+                assert int(words[4]) in place.faces
+                continue
+            assert words[2:4] == [f"{path}#{place.a.face}", f"{path}#{place.b.face}"]
+            for side, option in ((place.a, "--edge-a"), (place.b, "--edge-b")):
+                edge = words[words.index(option) + 1]
+                assert edge == side.edge
+                assert int(edge[1:]) in graph.uses.number[graph.uses.of_face(side.face)]
+    assert {place.kind for place in places.found} >= {"fillet", "gap", "sharp edge"}
+
+
+def test_a_sharp_edge_is_cut_by_less_than_the_face_has():
+    for place in places_of(graph_of(BRepPrimAPI_MakeBox(2.0, 3.0, 5.0).Shape())).found:
+        words = shlex.split(place.commands[0])
+        cuts = [float(words[words.index(option) + 1]) for option in ("--cut-a", "--cut-b")]
+        # A third of the nearest edge that does not touch it: of the smaller of two sides of the box.
+        assert cuts[0] == cuts[1]
+        assert 0.3 * place.measures["clearance"] < cuts[0] <= place.measures["clearance"] / 3
+        assert place.measures["clearance"] in (pytest.approx(2.0), pytest.approx(3.0))
+
+
+def test_nothing_found_says_what_was_refused(tmp_path):
+    path = written(BRepPrimAPI_MakeSphere(2.0).Shape(), tmp_path / "ball.brep")
+    done = CliRunner().invoke(app, ["list", str(path), "--pairs"])
+    assert done.exit_code == 0
+    assert done.output == (
+        "no place found in 1 faces (3 edges): 1 no smooth opposite sides; "
+        "`semispline list FILE --edges K` lists the edges of a face\n"
+    )
+
+
+def test_the_command_prints_and_writes_all_of_it(tmp_path):
+    path, target = written(rounded_box(), tmp_path / "part.brep"), tmp_path / "places.json"
+    done = CliRunner().invoke(app, ["list", str(path), "--pairs", "--json", str(target)])
+    assert done.exit_code == 0
+    places = find_places(path)
+    assert done.output.splitlines() == list(place_lines(places))
+    for place in places.found:
+        assert all(f"    {command}" in done.output.splitlines() for command in place.commands)
+    record = json.loads(target.read_text())
+    assert record.pop("format") == "semispline/1"
+    assert record.pop("kind") == "place_list"
+    assert record == json.loads(json.dumps(places_record(places)))
+    first = record["places"][0]
+    assert first["kind"] == "fillet"
+    assert first["times"] == 2
+    assert first["score"] == pytest.approx(prod(first["parts"].values()))
+    assert first["command"] == first["commands"][0]
+    alone = CliRunner().invoke(app, ["list", str(path), "--pairs", "--json", "-"])
+    assert json.loads(alone.output)["places"] == record["places"]
+
+
+def test_faces_that_are_refused_say_why(shared):
+    places = find_places(shared / "data/cad/demos_as1_pe_203.stp")
+    assert set(places.refused.values()) == {"turns by 180 degrees: a round end"}
+    assert sum(1 + len(place.repeats) for place in places.of_kind("round end")) == 70
+    assert any("70 round ends" in line for line in place_lines(places))
+
+
+def test_other_formats_are_refused(tmp_path):
+    path = tmp_path / "part.stl"
+    path.write_text("")
+    with pytest.raises(FileError, match=r"'\.stl', expected one of \.step .* \.3dm"):
+        find_places(path)
+
+
+def test_a_file_without_faces_says_what_it_holds(tmp_path):
+    from helpers.parts import edges_of_shape
+
+    path = written(edges_of_shape(rounded_box())[0], tmp_path / "edge.brep")
+    assert list(place_lines(find_places(path))) == [
+        "no surfaces: 1 edge; only surfaces, faces of Breps and extrusions can be used"
+    ]
