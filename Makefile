@@ -43,7 +43,7 @@ test-left-out: $(STAMP)
 test-kernels: $(STAMP)
 	$(BIN)/python tests/kernels.py $(KERNELS)
 
-# A night's work that goes on where it was interrupted; see tests/mutants/__init__.py.
+# An hour or two that go on where they were interrupted; see tests/mutants/__init__.py.
 mutants: $(STAMP)
 	PYTHONPATH=tests PYTHONHASHSEED=0 OPENBLAS_NUM_THREADS=1 $(BIN)/python -m mutants
 

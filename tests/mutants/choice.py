@@ -40,24 +40,35 @@ class Table:
 
 
 def measure(root: Path, folder: Path, slots: list[Slot]) -> Table:
-    """Run each test file once under coverage; what was measured before and has not changed is taken over."""
+    """Run each test file once under coverage; a measure holds as long as the file and what it ran stay the same."""
     folder.mkdir(parents=True, exist_ok=True)
-    sources = digest(root, sorted(p.relative_to(root).as_posix() for p in (root / _MEASURED).rglob("*.py")))
     queue: deque[Job] = deque()
     results = []
     for file in _test_files(root, folder, slots[0]):
-        known = folder / f"{sha256((file + sources + digest(root, [file])).encode()).hexdigest()[:24]}.json"
+        known = folder / f"{sha256(file.encode()).hexdigest()[:24]}.json"
         results.append(known)
-        if not known.exists():
+        if not _holds(root, file, known):
+            known.unlink(missing_ok=True)
             queue.append(
                 Job(["--maxfail=1000", file, "-m", QUICK], _Measure(known), _SECONDS_OF_A_FILE, file, None, True)
             )
     count = len(queue)
     for done, (job, outcome) in enumerate(run_all(queue, slots), 1):
         print(f"coverage {done}/{count}: {job.subject}, {outcome.seconds:.0f} s, {outcome.status}", flush=True)
-        if not job.plugin.path.exists():
+        path = job.plugin.path
+        if not path.exists():
             print(f"{job.subject}: no coverage, so none of its tests takes part; see {folder.parent}/slot-*/log")
+            continue
+        found = json.loads(path.read_text())
+        path.write_text(json.dumps({"rests_on": digest(root, [job.subject, *sorted(found["lines"])])} | found))
     return _joined([json.loads(path.read_text()) for path in results if path.exists()])
+
+
+def _holds(root: Path, file: str, known: Path) -> bool:
+    if not known.exists():
+        return False
+    found = json.loads(known.read_text())
+    return bool(found.get("rests_on") == digest(root, [file, *sorted(found["lines"])]))
 
 
 def _test_files(root: Path, folder: Path, slot: Slot) -> list[str]:
@@ -210,11 +221,7 @@ def _uses(root: Path, file: str, name: str) -> list[tuple[str, int, int]]:
     files = [file] if name.startswith("_") else [p.relative_to(root).as_posix() for p in _sources(root)]
     found = []
     for path in files:
-        for statement, is_inner in _statements(root / path):
-            body = getattr(statement, "body", None)
-            last = body[0].lineno - 1 if body else statement.end_lineno
-            loaded = [x for x in ast.walk(statement) if isinstance(getattr(x, "ctx", None), ast.Load)]
-            names = {getattr(x, "id", getattr(x, "attr", "")) for x in loaded if getattr(x, "lineno", 0) <= last}
+        for statement, is_inner, last, names in _statements(root / path):
             if name not in names:
                 continue
             if is_inner:
@@ -234,14 +241,18 @@ def _sources(root: Path) -> list[Path]:
 
 
 @cache
-def _statements(path: Path) -> list[tuple[Any, bool]]:
-    """Statements of a file, and whether a function holds them."""
-    found: list[tuple[Any, bool]] = []
+def _statements(path: Path) -> list[tuple[Any, bool, int, set[str]]]:
+    """Statements of a file, whether a function holds them, their last line without a body, and the names used there."""
+    found: list[tuple[Any, bool, int, set[str]]] = []
 
     def visit(node: ast.AST, is_inner: bool) -> None:
         for child in ast.iter_child_nodes(node):
             if isinstance(child, ast.stmt):
-                found.append((child, is_inner))
+                body = getattr(child, "body", None)
+                last = body[0].lineno - 1 if body else child.end_lineno or 0
+                loaded = [x for x in ast.walk(child) if isinstance(getattr(x, "ctx", None), ast.Load)]
+                names = {getattr(x, "id", getattr(x, "attr", "")) for x in loaded if getattr(x, "lineno", 0) <= last}
+                found.append((child, is_inner, last, names))
             visit(child, is_inner or isinstance(child, ast.FunctionDef))
 
     visit(ast.parse(path.read_bytes()), False)

@@ -18,8 +18,10 @@ KILLED = {"killed", "timeout"}
 
 @dataclass(frozen=True)
 class Record:
-    """A verdict ("killed", "timeout", "survived" or "undecided") and what it rests on.
+    """A verdict and what it rests on.
 
+    "killed", "timeout", "survived"; "alive" or "untouched" after a run in memory that a process of its own has not
+    confirmed; "undecided".
     `rests_on` is a hash of the function (and of the test that killed); `shown` are those of the tests that passed.
     """
 
@@ -59,16 +61,21 @@ def basis(root: Path, mutant: Mutant, by: str) -> str:
     return sha256(f"{mutant.around}\0{test}".encode()).hexdigest()[:16]
 
 
+def is_to_confirm(record: Record | None, *, explained: bool) -> bool:
+    """Say whether a process of its own decides: whom the quick way did not reach, and who is alive without a reason."""
+    return record is not None and (record.verdict == "untouched" or (record.verdict == "alive" and not explained))
+
+
 def still_to_show(root: Path, mutant: Mutant, record: Record | None, chosen: list[str]) -> list[str] | None:
     """Return the tests that a mutant has not passed yet, or None where its verdict holds."""
     if record is None or record.verdict == "undecided" or record.rests_on != basis(root, mutant, record.by):
         return chosen
-    if record.verdict in KILLED:
+    if record.verdict in {*KILLED, "untouched"}:
         return None
     return [test for test in chosen if digest_of_test(root, test) not in record.shown] or None
 
 
-def _reason(entries: list[dict[str, Any]], mutant: Mutant) -> dict[str, Any] | None:
+def reason(entries: list[dict[str, Any]], mutant: Mutant) -> dict[str, Any] | None:
     """Return the entry that explains a survivor; one without `change` explains all of its line."""
     for entry in entries:
         place = (entry["file"], entry["function"], entry["line"])
@@ -93,21 +100,21 @@ def report(
     mutants: list[Mutant], left_out: list[Mutant], records: dict[str, Record], accepted: list[dict[str, Any]]
 ) -> int:
     """Print what survived, and return the exit status; what is said of mutants that are left out is not stale."""
-    used = [entry for mutant in left_out if (entry := _reason(accepted, mutant))]
+    used = [entry for mutant in left_out if (entry := reason(accepted, mutant))]
     counts: dict[str, Counter[str]] = defaultdict(Counter)
     unexplained, undecided_files = 0, set()
     for mutant in mutants:
         record = records.get(mutant.key)
         verdict = record.verdict if record else "undecided"
-        entry = _reason(accepted, mutant) if verdict == "survived" else None
+        entry = reason(accepted, mutant) if verdict in {"survived", "alive"} else None
         if entry:
             used.append(entry)
             verdict = "accepted"
-        elif record and verdict == "survived":
-            unexplained += 1
-            shown = f"{mutant.function or 'module'}, {record.tests} tests"
+        elif record and verdict in {"survived", "alive"}:
+            unexplained += verdict == "survived"
+            shown = f"{mutant.function or 'module'}, {record.tests} tests" + ", to be confirmed" * (verdict == "alive")
             print(f"{mutant.file}:{mutant.line}: {mutant.change}   [{shown}]\n    {mutant.text}")
-        elif verdict == "undecided":
+        if verdict in {"undecided", "alive", "untouched"}:
             undecided_files.add(mutant.file)
         counts["complete" if mutant.complete else "sample"][verdict] += 1
     stale = [e for e in accepted if e["file"] in {m.file for m in mutants} - undecided_files and e not in used]

@@ -15,7 +15,7 @@ import sys
 import time
 import traceback
 from collections import deque
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import IO, Any
@@ -31,6 +31,8 @@ _LIBRARIES = (
 _MEMORY = 8 << 30
 # The clock ends only what waits for something that never comes, and then nothing is decided.
 _PATIENCE = 20
+# By this exit status a child says that it could not do what was to be changed.
+UNTOUCHED = 100
 
 
 @dataclass
@@ -47,7 +49,7 @@ class Job:
 
 @dataclass(frozen=True)
 class Outcome:
-    """How a run ended: "passed", "failed", "timeout" or "stuck"; what failed first; processor time."""
+    """How a run ended: "passed", "failed", "timeout", "stuck" or "untouched"; what failed first; processor time."""
 
     status: str
     failed: str
@@ -69,6 +71,15 @@ class Slot:
     def tree(self) -> Path:
         """The copy."""
         return self.folder / "tree"
+
+    @property
+    def failed(self) -> Path:
+        """Where the name of what failed first is written down."""
+        return self.folder / "failed"
+
+    def watch(self) -> Watch:
+        """Return the plugin that writes it."""
+        return Watch(self.failed)
 
 
 def load_libraries() -> None:
@@ -100,14 +111,17 @@ def make_slots(root: Path, folder: Path, count: int) -> list[Slot]:
     return slots
 
 
-def run_all(queue: deque[Job], slots: list[Slot]) -> Iterator[tuple[Job, Outcome]]:
+Child = Callable[[Slot, Job], int]
+
+
+def run_all(queue: deque[Job], slots: list[Slot], child: Child | None = None) -> Iterator[tuple[Job, Outcome]]:
     """Run the jobs; whoever takes the outcomes may add further jobs to the queue in between."""
     try:
         while queue or any(slot.job for slot in slots):
             for slot in slots:
                 if slot.job is None and queue:
-                    _start(slot, queue.popleft())
-            time.sleep(0.02)
+                    _start(slot, queue.popleft(), child or _new_pytest)
+            time.sleep(0.02 if child is None else 0.002)
             for slot in slots:
                 if slot.job and (outcome := _ended(slot)):
                     job, slot.job = slot.job, None
@@ -119,7 +133,7 @@ def run_all(queue: deque[Job], slots: list[Slot]) -> Iterator[tuple[Job, Outcome
                 os.waitpid(slot.pid, 0)
 
 
-def _start(slot: Slot, job: Job) -> None:
+def _start(slot: Slot, job: Job, child: Child) -> None:
     if job.change:
         path = slot.tree / job.change[0]
         stat = path.stat()
@@ -127,14 +141,14 @@ def _start(slot: Slot, job: Job) -> None:
         path.write_bytes(job.change[1])
         # No file of bytecode fits this time.
         os.utime(path, ns=(stat.st_atime_ns, stat.st_mtime_ns + 3600 * 10**9))
-    (slot.folder / "failed").unlink(missing_ok=True)
+    slot.failed.unlink(missing_ok=True)
     slot.job, slot.started = job, time.monotonic()
     sys.stdout.flush()
     slot.pid = os.fork()
     if slot.pid == 0:
         code = 3
         try:
-            code = _in_child(slot, job)
+            code = child(slot, job)
         except BaseException:
             traceback.print_exc()
         finally:
@@ -143,10 +157,16 @@ def _start(slot: Slot, job: Job) -> None:
             os._exit(code)
 
 
-def _in_child(slot: Slot, job: Job) -> int:
-    os.setsid()
+def end_with_parent() -> None:
+    """Let the system end this process when its parent ends."""
     if sys.platform == "linux":
-        ctypes.CDLL(None).prctl(1, signal.SIGKILL)  # PR_SET_PDEATHSIG: ends when its parent does
+        ctypes.CDLL(None).prctl(1, signal.SIGKILL)  # PR_SET_PDEATHSIG
+
+
+def confine(slot: Slot, job: Job) -> None:
+    """Give this process, a child, a group and a log of its own, and limits."""
+    os.setsid()
+    end_with_parent()
     signal.signal(signal.SIGINT, signal.SIG_DFL)
     limit = int(job.seconds) + 1
     resource.setrlimit(resource.RLIMIT_CPU, (limit, limit + 5))
@@ -155,20 +175,31 @@ def _in_child(slot: Slot, job: Job) -> int:
     log = os.open(slot.folder / "log", os.O_WRONLY | os.O_CREAT | os.O_TRUNC)
     os.dup2(log, 1)
     os.dup2(log, 2)
+
+
+def enter(slot: Slot, *, writes_bytecode: bool = False) -> None:
+    """Let this process, a child, import what is ours from the copy."""
     os.chdir(slot.tree)
     sys.path[:] = [str(slot.tree), *(p for p in sys.path if p and not _is_ours(Path(p)))]
     os.environ["PYTHONPATH"] = str(slot.tree)
-    os.environ["SEMISPLINE_SWEEPS"] = "whole"
     os.environ.pop("PYTEST_CURRENT_TEST", None)  # of a test that tests this tool
-    if not job.writes_bytecode:
+    if not writes_bytecode:
         sys.dont_write_bytecode = True
         os.environ["PYTHONDONTWRITEBYTECODE"] = "1"
+
+
+def pytest_words(slot: Slot) -> list[str]:
+    """Return the words that every run of pytest gets."""
     # The libraries are loaded already, so pytest cannot rewrite the asserts of its plugins.
-    words = ["-x", "-q", "-p", "no:cacheprovider", "-p", "no:xdist", "-W", "ignore::pytest.PytestAssertRewriteWarning"]
-    words += [f"--basetemp={slot.folder / 'temporary'}"]
-    code = int(
-        pytest.main([*words, *job.words], plugins=[p for p in (_Watch(slot.folder / "failed"), job.plugin) if p])
-    )
+    words = ["-q", "-p", "no:cacheprovider", "-p", "no:xdist", "-W", "ignore::pytest.PytestAssertRewriteWarning"]
+    return [*words, f"--basetemp={slot.folder / 'temporary'}"]
+
+
+def _new_pytest(slot: Slot, job: Job) -> int:
+    confine(slot, job)
+    enter(slot, writes_bytecode=job.writes_bytecode)
+    plugins = [p for p in (slot.watch(), job.plugin) if p]
+    code = int(pytest.main([*pytest_words(slot), "-x", *job.words], plugins=plugins))
     ours = sys.modules.get("semispline")
     if code == 0 and ours and not Path(str(ours.__file__)).is_relative_to(slot.tree):
         raise RuntimeError(f"{ours.__file__} was tested, expected a file of {slot.tree}")
@@ -180,7 +211,7 @@ def _is_ours(path: Path) -> bool:
     return path.resolve() in {root, root / "tests"}
 
 
-class _Watch:
+class Watch:
     """Writes down what failed first. How slow a machine is makes nothing red."""
 
     def __init__(self, path: Path) -> None:
@@ -214,13 +245,14 @@ def _ended(slot: Slot) -> Outcome | None:
         path.write_bytes(content)
         os.utime(path, ns=(mtime, mtime))
         slot.original = None
-    ended = slot.folder / "failed"
-    failed = ended.read_text() if ended.exists() else ""
+    failed = slot.failed.read_text() if slot.failed.exists() else ""
     seconds = usage.ru_utime + usage.ru_stime
     if stuck:
         return Outcome("stuck", failed, seconds)
     if os.WIFSIGNALED(status) and os.WTERMSIG(status) in {signal.SIGXCPU, signal.SIGKILL}:
         return Outcome("timeout", failed, seconds)
+    if os.WIFEXITED(status) and os.WEXITSTATUS(status) == UNTOUCHED:
+        return Outcome("untouched", failed, seconds)
     return Outcome("failed" if status else "passed", failed, seconds)
 
 

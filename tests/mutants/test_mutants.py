@@ -5,11 +5,13 @@ import os
 import subprocess
 import sys
 from pathlib import Path
+from types import ModuleType
 
 import pytest
 
 from mutants.choice import Table, chosen_for, digest_of_test, texts_of_tests
-from mutants.records import Record, basis, still_to_show
+from mutants.in_memory import break_in_memory
+from mutants.records import Record, basis, is_to_confirm, still_to_show
 from mutants.sites import mutants_of
 
 TOOL = Path(__file__).parent
@@ -113,10 +115,99 @@ def test_a_survivor_is_shown_what_is_new_and_a_killed_one_rests_on_its_function_
     assert still_to_show(tmp_path, moved, killed, names) is None
     assert still_to_show(tmp_path, other, killed, names) == names
     assert still_to_show(tmp_path, mutant, Record("undecided", "", 2, 0.1, survived.rests_on), names) == names
+    untouched = Record("untouched", "", 2, 0.1, survived.rests_on)
+    assert still_to_show(tmp_path, mutant, untouched, names) is None
+    alive = Record("alive", "", 2, 0.1, survived.rests_on, shown)
+    assert still_to_show(tmp_path, mutant, alive, names) == names[2:]
+    # Who is alive for a reason needs no process of its own; whom the quick way did not break needs one.
+    assert [is_to_confirm(alive, explained=e) for e in (True, False)] == [False, True]
+    assert [is_to_confirm(untouched, explained=e) for e in (True, False)] == [True, True]
+    assert not any(is_to_confirm(r, explained=False) for r in (killed, survived, None))
     tests.write_text("def test_a():\n    assert f(3)\n\n\ndef test_b():\n    assert f(2)\n")
     texts_of_tests.cache_clear()
     assert still_to_show(tmp_path, mutant, killed, names) == names
     assert still_to_show(tmp_path, mutant, survived, names[:2]) == names[:1]
+
+
+LOADED = """
+from dataclasses import dataclass
+from functools import cache, cached_property
+
+LIMIT = 2.0
+TWICE = (2 * LIMIT, LIMIT)
+UNSEEN = object()
+
+
+def plain(x, most=3, *, least=1):
+    return x < 1, most, least
+
+
+@cache
+def cached():
+    return LIMIT
+
+
+@dataclass(frozen=True)
+class Thing:
+    size: float = 5.0
+
+    def method(self):
+        return self.size + 6
+
+    @property
+    def asked(self):
+        return 7
+
+    @cached_property
+    def kept(self):
+        return 8
+
+    @staticmethod
+    def static():
+        return 9
+"""
+
+
+@pytest.fixture
+def loaded(tmp_path, monkeypatch):
+    """A module under a name of ours, and another one that has imported from it."""
+    path = tmp_path / "loaded.py"
+    path.write_text(LOADED)
+    module, user = ModuleType("semispline.loaded"), ModuleType("user")
+    module.__file__ = str(path)
+    for m in (module, user):
+        monkeypatch.setitem(sys.modules, m.__name__, m)
+    exec(compile(LOADED, path, "exec"), module.__dict__)
+    exec("from semispline.loaded import *; a_thing = Thing(5.0)", user.__dict__)
+    return path, user
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "asked", "expected"),
+    [
+        ("x < 1", "x <= 1", "plain(1)", (True, 3, 1)),
+        ("most=3", "most=4", "plain(1)", (False, 4, 1)),
+        ("least=1", "least=2", "plain(1)", (False, 3, 2)),
+        ("LIMIT = 2.0", "LIMIT = 3.0", "LIMIT, TWICE, cached()", (3.0, (6.0, 3.0), 3.0)),
+        ("size: float = 5.0", "size: float = 6.0", "Thing().size", 6.0),
+        ("self.size + 6", "self.size - 6", "a_thing.method()", -1.0),
+        ("return 7", "return 8", "a_thing.asked", 8),
+        ("return 8", "return 9", "a_thing.kept", 9),
+        ("return 9", "return None", "Thing.static()", None),
+    ],
+)
+def test_what_is_loaded_changes_in_memory_wherever_it_was_imported(loaded, old, new, asked, expected):
+    path, user = loaded
+    assert eval(asked, user.__dict__) != expected
+    vars(user.a_thing).pop("kept", None)
+    assert LOADED.count(old) == 1
+    assert break_in_memory(path, LOADED.replace(old, new).encode())
+    assert eval(asked, user.__dict__) == expected
+
+
+@pytest.mark.parametrize("new", ["UNSEEN = object()", "UNSEEN = [object()]"])
+def test_what_cannot_be_told_apart_in_memory_is_said(loaded, new):
+    assert not break_in_memory(loaded[0], LOADED.replace("UNSEEN = object()", new).encode())
 
 
 GAUGE = '''
@@ -137,12 +228,22 @@ def steps(n):
     while taken < n:
         taken += 1
     return taken
+
+
+def at_import():
+    return 7
 '''
 TESTS = """
 import subprocess
 import sys
 
-from semispline.solver.judge.gauge import is_small, steps
+from semispline.solver.judge.gauge import at_import, is_small, steps
+
+SEVEN = at_import()
+
+
+def test_of_what_was_made_at_import():
+    assert SEVEN == 7
 
 
 def test_from_both_sides():
@@ -211,7 +312,7 @@ def run(root, *words):
 
 
 def decided(done):
-    words = ("killed ", "timeout ", "survived ", "undecided ")
+    words = ("killed ", "timeout ", "survived ", "alive ", "undecided ")
     return [line for line in done.stdout.splitlines() if line.startswith(words)]
 
 
@@ -226,6 +327,9 @@ def test_the_one_mutant_that_no_test_tells_survives_and_is_named(project):
     assert first.returncode == 1
     # Constants of the module, a link, a process that a test starts, and a loop without an end.
     verdicts = {r["change"]: r["verdict"] for r in results}
+    # What tests made when they were collected stays in memory: a process of its own kills it.
+    of_seven = [r["verdict"] for r in results if r["text"] == "return 7"]
+    assert sorted(of_seven) == ["alive", "alive", "killed", "killed"]
     assert verdicts["1e-6 -> (1e-6 * 1000)"] == verdicts["1e-6 -> (1e-6 / 1000)"] == verdicts["abs -> "] == "killed"
     assert verdicts["1 -> 2"] == "killed"
     assert verdicts["taken += 1 -> pass"] == "timeout"
@@ -253,6 +357,8 @@ def test_an_interrupted_run_goes_on_where_it_ended(project):
     lines = whole.splitlines(keepends=True)
     results.write_text("".join(lines[:-3]) + lines[-3][:40])
     assert len(decided(run(root))) == 3
+    results.write_text("".join(lines[:2]))
+    assert len(decided(run(root))) == len(lines) - 2
     assert len(decided(first)) == len(lines)
 
 

@@ -1,16 +1,21 @@
 """Rims that are conics: recognised whatever made them, put into a smooth form that is the same surface; others not."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from helpers.circles import arcs, cylinder
 from helpers.conics import occ_net, standard_arcs
 from helpers.knot_lines import least_continuity
 from helpers.same_surface import departure
+from semispline import Base
 from semispline.derivations.circles import circle_points
-from semispline.solver.blending.conics import cured_conic, recognised_conic, same_arcs
+from semispline.solver.blending.conics import _boost, cured_conic, recognised_conic, same_arcs
 from semispline.solver.blending.knot_lines import knot_lines
+from semispline.solver.blending.matching import matched_edges
 from semispline.solver.splines import Basis, clamped, elevation_matrix, refinement_matrix
 from semispline.solver.splines.refinement import elevated_knots
 
@@ -215,12 +220,12 @@ def test_a_perturbed_net_is_refused(where, change):
 
 
 @pytest.mark.parametrize("change", [1e-13, 1e-7])
-@pytest.mark.parametrize("column", [0, 1, 2])
-def test_a_plane_curve_that_is_no_conic_is_refused(column, change):
+@pytest.mark.parametrize(("column", "factor"), [(0, 1), (1, 1), (2, 1), (1, 1e-4), (1, 1e4)])
+def test_a_plane_curve_that_is_no_conic_is_refused(column, factor, change):
     # All rows stay images of one curve: rank 3.
     knots, points = standard_arcs(np.linspace(0, TURN, 5))
     points[3, column] += change
-    rows = images(points, random_frames(np.random.default_rng(7), 3))
+    rows = factor * images(points, random_frames(np.random.default_rng(7), 3))
     assert (recognised_conic(rows, basis_of(knots)) is not None) is (change < 1e-10)
 
 
@@ -269,6 +274,70 @@ def test_the_same_arcs_are_told():
     assert not same_arcs(one, conic(quarters * 0.9))
 
 
+def ellipse(cuts, weights=None, flat=1.0, far=0.0):
+    """One row: an ellipse whose second axis is `flat`, moved by `far`."""
+    knots, points = standard_arcs(cuts, weights)
+    frame = np.zeros((1, 3, 4))
+    frame[0, [0, 1, 2], [0, 1, 3]] = 1, flat, 1
+    frame[0, 2, :3] = far
+    return images(points, frame), basis_of(knots)
+
+
+@pytest.mark.parametrize(("flat", "is_one"), [(1e-4, True), (1e-8, False)])
+def test_an_ellipse_that_is_nearly_straight_is_a_straight_rim(flat, is_one):
+    assert (recognised_conic(*ellipse(np.linspace(0, TURN, 5), flat=flat)) is not None) is is_one
+
+
+def test_a_straight_rim_of_two_points_is_no_conic():
+    assert recognised_conic(np.array([[[0.0, 0, 0, 1], [1, 0, 0, 1]]]), Basis(1, np.array([0, 0, 1.0, 1]))) is None
+
+
+@pytest.mark.parametrize(("weight", "is_one"), [(100, True), (1e4, False)])
+def test_arcs_whose_weights_hide_the_conic_are_refused(weight, is_one):
+    assert (recognised_conic(*ellipse(np.linspace(0, TURN, 5), [1, weight, 1, weight, 1])) is not None) is is_one
+
+
+@pytest.mark.parametrize(("missing", "is_full"), [(1e-10, True), (-1e-10, True), (1e-7, False)])
+def test_what_is_nearly_a_full_turn_is_one(missing, is_full):
+    conic = recognised_conic(*ellipse(np.linspace(0, TURN - missing, 5)))
+    assert conic.turn == TURN if is_full else conic.turn == pytest.approx(TURN - missing, abs=1e-12)
+
+
+def test_more_than_a_full_turn_is_refused():
+    assert recognised_conic(*ellipse(np.linspace(0, TURN + 1e-7, 5))) is None
+
+
+@pytest.mark.parametrize(("more", "count"), [(1e-10, 7), (1e-7, 11)])
+def test_what_is_nearly_half_a_turn_takes_one_piece(more, count):
+    assert recognised_conic(*ellipse(np.linspace(0, np.pi + more, 5))).smooth_rows(2)[1].size == count
+
+
+@pytest.mark.parametrize(("less", "is_turned"), [(1e-5, True), (1e-8, False)])
+def test_a_form_that_nearly_touches_the_conic_is_no_weight_of_an_ellipse(less, is_turned):
+    assert (_boost(np.array([1 - less, 0, 1.0])) != np.eye(3)).any() == is_turned
+
+
+@pytest.mark.parametrize(
+    ("far", "change", "is_one"), [(0, 1e-11, True), (0, 1e-8, False), (1e6, 4e-9, True), (1e6, 6e-8, False)]
+)
+def test_what_coordinates_lose_is_allowed(far, change, is_one):
+    rows, along = ellipse(np.linspace(0, TURN, 5), far=far)
+    rows[0, 3, 2] += change
+    assert (recognised_conic(rows, along) is not None) is is_one
+
+
+@pytest.mark.parametrize(("by", "is_same"), [(1e-10, True), (1e-7, False)])
+def test_arcs_that_differ_by_rounding_are_the_same(by, is_same):
+    one = recognised_conic(*ellipse(np.linspace(0, TURN, 5)))
+    # Knots are compared in parts of the domain.
+    one = replace(one, along=basis_of(100 * one.along.knots))
+    points, knots = one.points.copy(), one.along.knots.copy()
+    points[3, 0] += by
+    knots[3:5] += 100 * by
+    for other in (replace(one, turn=one.turn + by), replace(one, points=points), replace(one, along=basis_of(knots))):
+        assert same_arcs(one, other) is is_same
+
+
 def test_derivatives_at_knot_lines():
     rows, along = nine_points()
     lines = knot_lines(rows, along, 1, closed=True)
@@ -278,3 +347,17 @@ def test_derivatives_at_knot_lines():
         # One factor for all rows: (R_v)' - (R_v) = c R, c = 4 (cos - 1) for quarters.
         jump = line.after[1] - line.before[1]
         assert jump == pytest.approx(-4 * (1 - np.cos(np.pi / 4)) * line.after[0], abs=ROUNDING)
+
+
+def test_where_a_rim_starts_on_another_does_not_depend_on_its_domain():
+    quarters = np.linspace(0, 1, 5)
+    a = Base(cylinder(arcs(TURN * quarters)), "u1")
+    # Turned by a tenth of a turn, in quarters that begin at its own start.
+    shifts = [
+        matched_edges(
+            a, Base(cylinder(arcs(TURN * (quarters + 0.1), start + quarters), 2.0, (3.0, 4.0)), "u0"), "no"
+        ).shift
+        for start in (0.0, 5.0, -5.0)
+    ]
+    assert 0.85 < shifts[0] < 0.95
+    assert shifts == pytest.approx([shifts[0]] * 3, abs=1e-12)

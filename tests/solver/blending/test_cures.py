@@ -5,6 +5,7 @@ import pytest
 
 from helpers.conics import standard_arcs
 from helpers.knot_lines import least_continuity
+from semispline.solver.blending import cures
 from semispline.solver.blending.cures import cured_rows
 from semispline.solver.splines import Basis, clamped
 
@@ -77,3 +78,23 @@ def test_a_parabola_without_weights_stays_one(columns):
     found = cured_rows(rows, along, 1, SPANS)
     assert (found.cure, found.along.degree, found.left) == ("spans", 2, ())
     assert found.along.knots.tolist() == pytest.approx([0, 0, 0, 0.75, 1.5, 1.5, 1.5])
+
+
+def test_a_conic_is_smooth_to_second_order_where_nothing_else_is_said():
+    knots, points = standard_arcs(np.linspace(0, 2 * np.pi, 5))
+    rows = np.insert(points, 2, 0.0, axis=1)[None].repeat(2, axis=0)
+    rows[1, :, 2] = rows[1, :, 3]
+    assert cured_rows(rows, Basis(2, knots), 1, SPANS, closed=True).along.size == 11
+
+
+@pytest.mark.parametrize(("degree", "cure"), [(25, True), (26, False)])
+def test_a_cure_of_a_degree_that_no_kernel_takes_is_none(monkeypatch, degree, cure):
+    line = np.linspace(0, 1, degree + 1)[:, None] * [1.0, 0, 0]
+    basis = Basis(degree, np.repeat([0.0, 2.0], degree + 1))
+    found = np.stack([line, line + np.array([0, 0, 1])]), basis
+    monkeypatch.setattr(cures, "closed_lines", lambda *_, **__: (*found, 1))
+    monkeypatch.setattr(cures, "smoothed", lambda *_, **__: found)
+    slopes = cured_rows(*strip(FASTER, TWO, OTHER_SPEED), 1, SPANS)
+    assert (slopes.cure == "slopes") is cure
+    spans = cured_rows(*strip(FASTER, TWO), 1, SPANS)
+    assert spans.cure == ("spans" if cure else "none")

@@ -9,7 +9,7 @@ from scipy.interpolate import BPoly
 from helpers.bases import random_knots
 from helpers.knot_lines import least_continuity
 from semispline.solver.blending import ladder
-from semispline.solver.blending.ladder import LEAST_SHARE, Window, power_jets, tamed, weight_range
+from semispline.solver.blending.ladder import Window, power_jets, tamed, weight_range
 from semispline.solver.blending.weights import normalised_rows
 from semispline.solver.generated import contact_numpy, rows_numpy
 from semispline.solver.splines import Basis, basis_matrix, clamped, uniform_knots
@@ -163,7 +163,7 @@ def test_weights_are_tame_to_a_limit(factor):
     rows[:, :, 3] = 1
     rows[1, :, 3] = 1.5, 1.0, 0.5
     # Row 1 of the blend is (1 + a) w_0 - a w_1: for the first column 1 - a / 2.
-    most = 2 * (1 - LEAST_SHARE * factor)
+    most = 2 * (1 - 0.1 * factor)
     found = tamed(
         rows, along, 1, (1.0,), order=len(rows) - 1, blend_degree=3, blend_spans=(3.0,), window=Window((0.1, most))
     )
@@ -199,7 +199,8 @@ def test_the_last_rung_has_the_power_of_the_weight():
 
 def test_rows_of_the_last_rung_do_not_know_alpha():
     found = on_rung("om^(n+1)", 2)[2]
-    assert np.ptp(found.rows[:, :, 3], axis=0).max() == 0
+    assert (np.ptp(found.rows[:, :, 3], axis=0) == 0).all()
+    assert len(found.rows) == 3
     assert found.rung.ratio == found.rows[0, :, 3].max() / found.rows[0, :, 3].min()
     assert found.along.degree == 9
 
@@ -236,3 +237,22 @@ def test_position_alone_asks_for_nothing():
     )
     assert found.rung.name == "mean"
     assert found.rung.ratio == 4
+
+
+@pytest.mark.parametrize(("degree", "most"), [(5, 2), (6, 16)])
+def test_finer_splines_are_tried_where_the_last_rung_passes_degree_25(monkeypatch, degree, most):
+    # Order 4: the last rung has degree 25, or 30.
+    rows, along = base(np.random.default_rng(3), 4, 3.0, degree=degree)
+    parts = []
+    fit = ladder.fitted_jets
+
+    def watched(jets, along, count, **more):
+        parts.append(count)
+        # How well they fit is not the question.
+        return fit(jets, along, 1, **more)
+
+    monkeypatch.setattr(ladder, "fitted_jets", watched)
+    window = Window((0.25, 1e9))
+    assert (window.p2, window.per_a) == ((0, 0), 0)
+    tamed(rows, along, 3, SPANS, order=4, blend_degree=9, blend_spans=SPANS, window=window)
+    assert max(parts) == most

@@ -332,3 +332,16 @@ def test_units_and_order_do_not_matter():
     assert swapped.a == pytest.approx(first.b, rel=1e-5)
     assert swapped.b == pytest.approx(first.a, rel=1e-5)
     assert swapped.value == pytest.approx(first.value, rel=1e-7)
+
+
+@pytest.mark.parametrize("ends", [(0.0, 1.0), (1.0, 0.0)])
+def test_p2_that_is_zero_at_one_end_counts(ends):
+    along = Basis(2, clamped([0.5], 2, 0, 1))
+    monomials = np.random.default_rng(4).normal(size=(2, 3, along.size, 3))
+    # The first row never has it.
+    monomials[1, 0] = 0
+    exponents = np.array([[0, 0], [0, 1]])
+    found, near = (
+        linear_rows(exponents, monomials, along, 1.0, tuple(max(end, least) for end in ends)) for least in (0, 1e-12)
+    )
+    assert all(one == pytest.approx(other, abs=1e-9) for one, other in zip(found, near, strict=True))

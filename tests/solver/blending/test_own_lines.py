@@ -13,7 +13,7 @@ from semispline.solver.blending.jumps import jumps
 from semispline.solver.blending.knot_lines import knot_lines
 from semispline.solver.blending.own_lines import closed_lines, line_series
 from semispline.solver.blending.weights import end_derivatives, normalised_rows
-from semispline.solver.splines import Basis, clamped, elevation_matrix, refinement_matrix
+from semispline.solver.splines import Basis, basis_matrix, clamped, elevation_matrix, refinement_matrix
 from semispline.solver.splines.refinement import elevated_knots
 
 SPANS = (1.0, 1.0, 1.0, 1.0)
@@ -32,7 +32,7 @@ def sheet(x, y):
     return np.array([x, y, 0.3 * x * y + 0.2 * y * y - 0.1 * x * x + 5.0])
 
 
-def two_pieces(speed=0.6, bend=0.5, lean=0.7, fold=0.0, rational=False, spans=1):
+def two_pieces(speed=0.6, bend=0.5, lean=0.7, fold=0.0, rational=False, spans=1, weight=0.3):
     """One smooth sheet in two pieces: degree 6 across, 4 along; at v = 1 speeds s = speed + bend w, r = lean w."""
 
     def before(w, v):
@@ -41,7 +41,7 @@ def two_pieces(speed=0.6, bend=0.5, lean=0.7, fold=0.0, rational=False, spans=1)
     def after(w, v):
         place = sheet(w + lean * w * (v - 1), 1 + (v - 1) * (speed + bend * w))
         place[2] += fold * w * (v - 1)
-        return place, 1.2 + 0.1 * w + (v - 1) * (0.3 + 0.2 * w)
+        return place, 1.2 + 0.1 * w + (v - 1) * (weight + 0.2 * w)
 
     def piece(function, start, end):
         def point(w, v):
@@ -83,8 +83,9 @@ def test_the_line_is_closed(order, rational, spans):
     assert basis.degree == 4 + (order + rational) * (2 if spans == 1 else 4)
     lines = knot_lines(new, basis, 2)
     assert [line.continuity >= 1 for line in lines] == [True] * spans
-    # A knot inside the smooth second piece stays C2.
+    # A knot inside the smooth second piece stays C2, by its multiplicity.
     assert [line.continuity for line in lines[1:]] == [2] * (spans - 1)
+    assert [int(np.sum(basis.knots == line.v)) for line in lines[1:]] == [basis.degree - 2] * (spans - 1)
     # The edge, and the surface beside the other end, stay.
     for end, at in ((0, 0), (-1, -1)):
         one, other = new[:, end], rows[: order + 1, at]
@@ -148,18 +149,55 @@ def test_a_seam_is_closed_too(order):
     assert least_continuity(new, basis, closed=True) >= 1
 
 
-@pytest.mark.parametrize("fold", [1e-11, 1e-5])
-def test_a_base_that_is_creased_itself_is_refused(fold):
+@pytest.mark.parametrize("size", [1.0, 1e3])
+@pytest.mark.parametrize("fold", [1e-9, 2.5e-8, 1e-5])
+def test_a_base_that_is_creased_itself_is_refused(fold, size):
     rows, along = two_pieces(fold=fold)
+    rows *= size
     found = closed_lines(rows[:3], along, 6, SPANS)
     assert (found is not None) is (fold < 1e-8)
     # The crease begins at the edge with the angle 0, where `jumps` measures it.
     assert jumps(rows[:3], along, 6, SPANS)[0].degrees < 1e-6
 
 
-def test_a_reparametrisation_that_would_fold_is_refused():
-    rows, along = two_pieces(lean=9.0)
+@pytest.mark.parametrize(("lean", "folds"), [(3.0, False), (5.5, True), (9.0, True)])
+def test_a_reparametrisation_that_would_fold_is_refused(lean, folds):
+    rows, along = two_pieces(lean=lean)
+    assert (closed_lines(rows[:2], along, 6, SPANS) is None) is folds
+
+
+@pytest.mark.parametrize(("weight", "vanishes"), [(0.3, False), (9.0, True)])
+def test_a_factor_that_would_vanish_is_refused(weight, vanishes):
+    rows, along = two_pieces(rational=True, weight=weight)
+    assert (closed_lines(rows[:2], along, 6, SPANS) is None) is vanishes
+
+
+def test_a_base_that_runs_back_is_refused():
+    rows, along = two_pieces(speed=-0.5, bend=0.0)
     assert closed_lines(rows[:2], along, 6, SPANS) is None
+
+
+def test_two_lines_are_closed_each_by_its_own_speed():
+    # Run through at speeds 1, 0.6 + w / 2 and (0.6 + w / 2) (1.4 - 0.3 w), leaning more at each line.
+    def point(w, v):
+        second, third = 0.6 + 0.5 * w, (0.6 + 0.5 * w) * (1.4 - 0.3 * w)
+        x = w * (1 + 0.7 * np.clip(v - 1, 0, 1) + 0.3 * max(v - 2, 0))
+        return sheet(x, min(v, 1) + second * np.clip(v - 1, 0, 1) + third * max(v - 2, 0))
+
+    pieces = [bezier_points(lambda v: bezier_points(lambda w: point(w, v), 4, 0, 1), 2, k, k + 1) for k in range(3)]
+    rows = np.concatenate([pieces[0], pieces[1][1:], pieces[2][1:]]).transpose(1, 0, 2)[:3]
+    along = Basis(2, clamped([1, 1, 2, 2], 2, 0, 3))
+    assert [jump.kind for jump in jumps(rows, along, 4, SPANS)] == ["G1", "G1"]
+    new, basis, degree = closed_lines(rows, along, 4, SPANS)
+    assert least_continuity(new, basis) >= 1
+    # To second order it stays on the sheet, whose height less `sheet` is zero.
+    values = basis_matrix(basis.degree, basis.knots, np.linspace(0, 3, 40))
+    place, first, second = np.einsum("dk,vn,knc->dvc", end_derivatives(2, degree, SPANS), values.toarray(), new)
+    x, y, _ = place.T
+    slope = np.stack([0.2 * x - 0.3 * y, -0.3 * x - 0.4 * y, np.ones_like(x)], axis=1)
+    bend = np.array([[0.2, -0.3, 0], [-0.3, -0.4, 0], [0, 0, 0]])
+    assert np.abs(np.sum(slope * first, axis=1)).max() < 1e-9
+    assert np.abs(np.sum(slope * second, axis=1) + np.einsum("vi,ij,vj->v", first, bend, first)).max() < 1e-9
 
 
 def test_smooth_rows_and_rows_of_position_alone():

@@ -1,5 +1,7 @@
 """The energy of rational blends: by quadrature, its free rows stationary, its gradient in the fair search exact."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
@@ -11,7 +13,8 @@ from semispline.solver.blending.fairness_table import FairnessTable
 from semispline.solver.blending.gram import EnergyForm
 from semispline.solver.blending.measured_energy import measure_energy, thin_plate_energy
 from semispline.solver.blending.pipeline import state_problem
-from semispline.solver.blending.rational_energy import RationalForm
+from semispline.solver.blending.rational_energy import RationalForm, RationalSystem, free_weights
+from semispline.solver.errors import ComputationError
 from semispline.solver.splines import Basis
 
 
@@ -141,3 +144,81 @@ def test_the_gradient_of_the_fair_search_is_its_own():
         step[k] = 1e-5
         slope = (objective(middle + step)[0] - objective(middle - step)[0]) / 2e-5
         assert gradient[k] == pytest.approx(slope, rel=1e-5, abs=1e-7)
+
+
+@pytest.mark.parametrize(("filled", "is_tame"), [(0.6, True), (0.4, False), (1.9, True), (2.1, False)])
+def test_free_weights_are_tame_from_half_the_least_to_twice_the_largest(filled, is_tame):
+    line = Basis(1, np.array([0, 0, 1, 1.0]))
+    weights = np.array([1.0, 1, 0, 0, 1, 1])
+    free = slice(2, 4)
+
+    def completed(given):
+        found = given.copy()
+        found[free] = filled
+        return found
+
+    plain = SimpleNamespace(completed=completed, size=2, offsets=[0, 2, 4, 6], free=free, rows=range(1, 2))
+    found = free_weights(plain, Basis(2, np.array([0, 0, 0, 1.0, 1, 1])), (line,) * 3, weights)
+    assert found.tolist() == [1, 1, *[filled if is_tame else 1.0] * 2, 1, 1]
+
+
+@pytest.mark.parametrize("order", [-1, 0, 1])
+def test_free_rational_rows_close_up_as_smoothly_as_they_should(order):
+    form = made_form(lambda n: 1 + np.random.default_rng(1).uniform(0, 0.6, n))
+    low, high = form.offsets[1], form.offsets[2]
+    plain = SimpleNamespace(rows=range(1, 2), size=high - low, free=slice(low, high))
+    points = np.random.default_rng(2).normal(size=(form.offsets[-1], 4))
+    points[:, 3] = form.weights
+    # Where it starts it is closed up.
+    points[low:high] = 0
+    filled = RationalSystem(form, plain, [order]).completed(points)[low:high, :3]
+    basis = form.rows[1]
+    start, end = (np.array([filled[0], filled[1] - filled[0]]), np.array([filled[-1], filled[-1] - filled[-2]]))
+    speed = [basis.degree / (basis.knots[k + 4] - basis.knots[k + 1]) for k in (0, basis.size - 2)]
+    apart = [np.abs(start[0] - end[0]).max(), np.abs(speed[0] * start[1] - speed[1] * end[1]).max()]
+    assert [bool(x < 1e-10) for x in apart] == [order >= 0, order >= 1]
+
+
+@pytest.mark.parametrize(("part", "is_weight"), [(1e-8, False), (1e-4, True)])
+def test_weights_of_a_millionth_are_none(part, is_weight):
+    form = made_form(None)
+    low, high = form.offsets[1], form.offsets[2]
+    plain = SimpleNamespace(rows=range(1, 2), size=high - low, free=slice(low, high))
+    points = np.zeros((form.offsets[-1], 8))
+    points[:, [3, 7]] = 1, part
+    filled = RationalSystem(form, plain, [-1]).completed(points)[low:high]
+    assert (filled[:, 3] == 1).all()
+    assert (filled[:, 7] == is_weight).all()
+
+
+def test_excess_is_the_part_of_the_energy_that_a_step_to_the_least_takes():
+    form = made_form(lambda n: 1 + np.random.default_rng(1).uniform(0, 0.6, n))
+    low, high = form.offsets[1], form.offsets[2]
+    plain = SimpleNamespace(rows=range(1, 2), size=high - low, free=slice(low, high))
+    points = np.random.default_rng(2).normal(size=(form.offsets[-1], 4))
+    points[:, 3] = form.weights
+    system = RationalSystem(form, plain, [-1])
+    energy, least = (form.products(p[None, :, :3])[0, 0] for p in (points, system.completed(points)))
+    assert system.excess(points) == pytest.approx((energy - least) / energy, rel=1e-9)
+
+
+def free_row(points=None):
+    form = made_form(None)
+    low, high = form.offsets[1], form.offsets[2]
+    return RationalSystem(form, SimpleNamespace(rows=range(1, 2), size=high - low, free=slice(low, high)), [-1])
+
+
+def test_one_point_that_does_not_settle_is_enough_to_refuse(monkeypatch):
+    system = free_row()
+    step = np.zeros((system.size, 3))
+    step[0] = 1.0
+    monkeypatch.setattr(system, "_step", lambda numerators: step)
+    with pytest.raises(ComputationError, match="too ill-conditioned"):
+        system.completed(np.ones((system.form.offsets[-1], 4)))
+
+
+def test_a_coordinate_that_is_zero_everywhere_is_no_trouble():
+    system = free_row()
+    points = np.random.default_rng(3).normal(size=(system.form.offsets[-1], 4))
+    points[:, 2:] = 0, 1
+    assert (system.completed(points)[:, 2] == 0).all()

@@ -1,6 +1,7 @@
 """What a user should look at in a shape: each warning from both sides, by shapes whose measures are known."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -25,7 +26,7 @@ from semispline import (
     swap_directions,
 )
 from semispline.papers.reproduction.families.suite import shape_problem
-from semispline.solver.blending.shape_warnings import shape_warnings
+from semispline.solver.blending.shape_warnings import _bent, _creased, shape_warnings
 from semispline.solver.judge import Crease, measure_creases
 
 K1 = [0, 0, 1, 1]
@@ -339,3 +340,26 @@ def test_the_sharpest_crease_is_told():
     report, regular = measure_shape(sheets(1, 1)[0]), measure_regularity(sheets(1, 1)[0])
     (said,) = shape_warnings(report, regular, tuple(Crease("v", 0.1, angle) for angle in (2.0, 30.0, 4.0)))
     assert "by up to 30 degrees" in said
+
+
+@pytest.mark.parametrize(
+    ("jump", "said"), [(0.019, []), (0.021, ["G1 inside: curvature jumps by up to 2.1 % at v = 2"])]
+)
+def test_a_jump_of_curvature_of_two_percent_is_said(jump, said):
+    found = list(_bent([Crease("v", 2.0, 0.0, 1.0, jump), Crease("v", 3.0, 0.0, 1.0, jump / 2)]))
+    assert [text.split(",")[0] for text in found] == said
+
+
+@pytest.mark.parametrize(("degrees", "said"), [(9e-4, 1), (1.1e-3, 2)])
+def test_a_crease_of_the_base_itself_is_said(degrees, said):
+    cure = SimpleNamespace(left=(SimpleNamespace(degrees=degrees, v=0.5),))
+    assert len(list(_creased([Crease("v", 0.5, 1.0)], (cure, None)))) == said
+    assert list(_creased([], (cure, None))) == []
+
+
+@pytest.mark.parametrize(
+    ("angle", "said"), [(9e-4, "G1 inside"), (1.1e-3, "the blend is creased at v = 0.5, by up to")]
+)
+def test_curvature_jumps_where_there_is_no_crease(angle, said):
+    (warning,) = warnings_of(roof(0.0), creases=[Crease("v", 0.5, angle, 1.0, 0.5)])
+    assert warning.startswith(said)

@@ -411,3 +411,33 @@ def test_options_just_inside_of_their_range(options):
     bounds = np.array(problem.bounds)
     assert np.all((bounds > 0) & (bounds < np.inf))
     assert np.all(bounds[:, 0] <= bounds[:, 1])
+
+
+@pytest.mark.parametrize("closed", [True, False])
+def test_middle_curves_of_rings_have_all_knots_and_points_for_their_seam(closed):
+    # Polygons, the second one with other knots; open, neighbours are averaged in pairs.
+    own, other = np.linspace(0, 1, 5), np.array([0, 0.2, 0.5, 0.8, 1])
+    angles = np.linspace(0, 2 * np.pi if closed else 4, 5)
+    a, b = (
+        Base(
+            BSplineSurface(1, 1, K1, [0, *knots, 1], [[[np.cos(t), np.sin(t), z + k] for t in angles] for k in (0, 1)]),
+            edge,
+        )
+        for z, knots, edge in ((0.0, own, "u1"), (3.0, other, "u0"))
+    )
+    problem = state_problem(a, b, middle_curves=1, middle_knots="paper", continuity="G1").problem
+    middle = problem.rows[problem.a.count]
+    assert problem.seam_order == (0 if closed else -1)
+    inner = [0.2, 0.25, 0.5, 0.75, 0.8] if closed else [0.225, 0.5, 0.775]
+    assert middle.knots[2:-2] == pytest.approx(inner, abs=1e-12)
+
+
+@pytest.mark.parametrize(("turn", "order"), [(2 * np.pi, 0), (4.0, -1)])
+def test_middle_curves_of_rings_with_a_corner_have_points_for_both_ends(turn, order):
+    angles = np.linspace(0, turn, 4)
+    rims = [[[np.cos(t), np.sin(t), z] for t in angles] for z in (0.0, 1.0, 3.0, 4.0)]
+    knots = [0, 0, 0, 0, 1, 1, 1, 1]
+    a, b = Base(BSplineSurface(1, 3, K1, knots, rims[:2]), "u1"), Base(BSplineSurface(1, 3, K1, knots, rims[2:]), "u0")
+    problem = state_problem(a, b, middle_curves=1, middle_knots="paper", continuity="G1").problem
+    assert problem.seam_order == order
+    assert (problem.rows[problem.a.count].size >= 6) is (order == 0)

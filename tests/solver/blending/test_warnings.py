@@ -21,7 +21,7 @@ from semispline.solver.splines import greville
 LINE = [0, 0, 1, 1]
 FLOOR = Base(BSplineSurface(1, 1, LINE, LINE, [[[0, 0, 0], [0, 1, 0]], [[1, 0, 0], [1, 1, 0]]]), "u1")
 WALL = Base(BSplineSurface(1, 1, LINE, LINE, [[[2, 0, 1], [2, 1, 1]], [[2, 0, 2], [2, 1, 2]]]), "u0")
-# By hand, as the energy in test_close_knots: a quarter of the sum of M^-1 c, over c' M^-1 c.
+# By hand, as the energy in test_rounding_of_close_knots: a quarter of the sum of M^-1 c, over c' M^-1 c.
 BEST = 64 / 39
 # Near the origin, without weights.
 NO_CAUSE = RoundingCauses(1.0, 1.0, (1.0, 1.0), 1.0)

@@ -6,7 +6,8 @@ import pytest
 from helpers.bases import facing_pair, patch
 from helpers.papers_set import blend
 from semispline import Base, BSplineCurve, FoldError, SemiStructuredSurface, insert_knots
-from semispline.solver.judge.creases import measure_creases
+from semispline.solver.judge import Crease
+from semispline.solver.judge.creases import measure_creases, worst_inside
 
 
 def roof(angles):
@@ -78,3 +79,41 @@ def test_a_crease_in_u_is_warned_of_and_strict_refuses_it():
 def test_without_knots_of_full_multiplicity_there_is_nothing_to_say():
     rng = np.random.default_rng(0)
     assert measure_creases(patch(rng, degrees=(3, 3), counts=(6, 7)).to_semistructured()) == ()
+
+
+@pytest.mark.parametrize(
+    ("angle", "jump", "said", "counts"),
+    [
+        (1e-5, 0.0, "crease 1e-05 degrees at u = 0.5", True),
+        (1e-7, 1e-5, "G1 inside, curvature jump 0.001 % at u = 0.5", True),
+        (1e-7, 1e-7, "G2 inside at u = 0.5", False),
+    ],
+)
+def test_a_millionth_of_turn_and_of_curvature_is_smooth(angle, jump, said, counts):
+    crease = Crease("u", 0.5, angle, 3.0, jump)
+    assert str(crease) == said
+    assert worst_inside([crease]) is (crease if counts else None)
+
+
+def test_a_crease_of_which_no_curvature_is_said_has_none():
+    crease = Crease("u", 0.5, 1e-7)
+    assert (crease.curvature_jump, crease.curvature_jump_relative) == (0, 0)
+
+
+@pytest.mark.parametrize(("curvature", "relative"), [(1e-4, 0.05), (0.01, 1.0)])
+def test_curvature_below_a_thousandth_of_the_size_is_none(curvature, relative):
+    # z = 0, then curvature / 2 (x - 1/4)^2: square to the line at 1/4 curvature jumps from nothing. Size 1/2.
+    heights = [0, 0, 0, 0, curvature / 32]
+    rows = [[[x, y, z] for y in (0.0, 0.5)] for x, z in zip(np.linspace(0, 0.5, 5), heights, strict=True)]
+    knots = [0, 0, 0, 0.5, 0.5, 1, 1, 1]
+    surface = SemiStructuredSurface(2, knots, [BSplineCurve(1, [0, 0, 1, 1], row) for row in rows])
+    (crease,) = measure_creases(surface)
+    assert crease.curvature_jump == pytest.approx(curvature, rel=1e-6)
+    assert crease.curvature_jump_relative == pytest.approx(relative, rel=1e-6)
+
+
+def test_a_line_that_is_a_point_has_no_curvature():
+    rows = [[[-1, 0, 0], [-1, 1, 0]], [[0, 0, 0], [0, 0, 0]], [[1, 0, 0], [1, 1, 0]]]
+    surface = SemiStructuredSurface(1, [0, 0, 0.5, 1, 1], [BSplineCurve(1, [0, 0, 1, 1], row) for row in rows])
+    (crease,) = measure_creases(surface)
+    assert crease.curvature_jump == 0

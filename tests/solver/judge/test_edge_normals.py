@@ -124,3 +124,13 @@ def test_the_place_is_found_in_and_beside_a_narrow_span(surface, what, narrow):
         assert place.reason.endswith(what)
         assert place.parameter == pytest.approx(0.43, abs=1e-4)
         assert place.fraction <= 1e-7
+
+
+@pytest.mark.parametrize("width", [1e-3, 1e-5])
+def test_a_zero_in_a_span_that_is_narrow_beside_its_neighbour_is_found(width):
+    # Across the edge 0.9, 0.4, then -9: zero a little after the knot, before the first sample of the narrow span.
+    s, across = [0, 0.5, 0.5 + width, 1], [0.9, 0.4, -9.0, -9.0]
+    net = [[[x, 0, 0] for x in s], [[x, y, 0] for x, y in zip(s, across, strict=True)]]
+    base = Base(BSplineSurface(1, 1, [0, 0, 1, 1], [0, *s, 1], net), "u0")
+    (place,) = places_without_normal(base, "a")
+    assert place.parameter == pytest.approx(0.5 + width * 0.4 / 9.4, abs=1e-4 * width)

@@ -10,7 +10,7 @@ from helpers.circles import arcs, cone, cylinder, full_circle, smooth_circle, to
 from semispline import Base, BSplineSurface, measure_contact
 from semispline.solver.judge import Correspondence, corresponding_points, measure_meets
 from semispline.solver.judge.continuation import continuation
-from semispline.solver.judge.foot_points import Run, foot_map
+from semispline.solver.judge.foot_points import Run, _merged, foot_map
 from semispline.solver.judge.limits import shortfalls
 from semispline.solver.reports import contact_record, print_contact
 from semispline.solver.splines.operations import map_domain, reverse_v, split_u, swap_directions
@@ -270,3 +270,47 @@ def test_what_was_compared_is_said(capsys):
     assert contact_record(contact)["corresponds"] == "affine"
     print_contact(contact, None)
     assert "foot" not in capsys.readouterr().out
+
+
+def straight(x):
+    """Points of the x-axis, whose parameter is x."""
+    return np.stack([x, 0 * x, 0 * x], axis=-1), np.tile([1.0, 0, 0], (len(x), 1))
+
+
+def test_parameters_run_on_over_the_seam_and_back_ends_stay():
+    run = Run(straight, np.array([0.0, 2.0]))
+    assert run.wrapped(np.array([0, 0.5, 2, 2.5, -0.5])).tolist() == [0, 0.5, 2, 0.5, 1.5]
+
+
+def test_a_closed_curve_is_evaluated_in_its_range():
+    def at(x):
+        assert ((x >= 0) & (x <= 2)).all()
+        return np.stack([np.cos(np.pi * x), np.sin(np.pi * x), 0 * x], axis=-1), np.pi * np.stack(
+            [-np.sin(np.pi * x), np.cos(np.pi * x), 0 * x], axis=-1
+        )
+
+    feet, distance = Run(at, np.array([0.0, 2.0])).feet(at(np.array([0.1]))[0], np.array([1.9]), closed=True)
+    assert feet == pytest.approx([2.1], abs=1e-12)
+    assert distance == pytest.approx([0], abs=1e-12)
+
+
+def test_where_a_curve_stands_still_the_guess_stays():
+    run = Run(lambda x: (np.zeros((len(x), 3)), np.zeros((len(x), 3))), np.array([0.0, 2.0]))
+    feet, distance = run.feet(np.array([[0, 3.0, 4.0]]), np.array([0.7]), closed=False)
+    assert (feet.tolist(), distance.tolist()) == ([0.7], [5.0])
+
+
+@pytest.mark.parametrize(("times", "breaks"), [(5e-10, [0, 0.5, 0.8, 2]), (1e-8, None)])
+def test_knots_within_a_billionth_of_the_range_are_one(times, breaks):
+    off = 2 * times
+    feet = np.array([0.5 + off, 0.8, 0.8 + off])
+    merged = _merged(Run(straight, np.array([0, 0.5, 2.0])), feet)
+    assert merged.tolist() == (breaks or sorted([0, 0.5, *feet, 2]))
+
+
+def test_points_of_rims_that_are_a_little_apart_belong_together_by_angle():
+    a, b = Base(cylinder(full_circle(4)), "u0"), Base(cylinder(full_circle(3), 1 + 1e-5), "u0")
+    s = np.linspace(0.01, 0.99, 20)
+    others = corresponding_points(a, b, Correspondence(flipped=False, shift=0.0), s)
+    rims = [base.surface.evaluate_grid(np.zeros(1), at)[0] for base, at in ((a, s), (b, others))]
+    assert rims[1] == pytest.approx((1 + 1e-5) * rims[0] * [1, 1, 0], abs=1e-9)

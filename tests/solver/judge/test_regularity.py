@@ -159,3 +159,10 @@ def test_high_degrees_do_not_overflow(degrees):
     square = BSplineSurface(1, 1, [0, 0, 1, 1], [0, 0, 1, 1], [[[0, 0, 0], [0, 1, 0]], [[1, 0, 0], [1, 1, 0]]])
     found = measure_regularity(elevate_degree(square, *degrees).to_semistructured())
     assert found.proved_area_ratio == pytest.approx(1.0, abs=1e-6)
+
+
+@pytest.mark.parametrize(("bound", "proved"), [(-0.5, None), (0.5, 0.5)])
+def test_a_bound_that_is_not_positive_proves_nothing(monkeypatch, bound, proved):
+    monkeypatch.setattr(regularity, "area_bound", lambda surface: bound)
+    flat = BSplineSurface(1, 1, [0, 0, 1, 1], [0, 0, 1, 1], [[[x, y, 0] for y in (0, 1)] for x in (0, 1)])
+    assert regularity.measure_regularity(flat).proved_area_ratio == proved

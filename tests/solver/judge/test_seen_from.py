@@ -6,7 +6,7 @@ import pytest
 from helpers.shapes import arc, extruded, line, revolved, sheets, torus
 from semispline import Base, BSplineSurface, transform
 from semispline.solver.judge.continuation import continuation
-from semispline.solver.judge.seen_from import _Border, _faces, _towards_all, seen_from
+from semispline.solver.judge.seen_from import _Border, _close, _faces, _sides, _towards_all, seen_from
 
 
 @pytest.mark.parametrize("degrees", [60, 150, 170])
@@ -167,3 +167,31 @@ def test_edges_are_neighbours_up_to_four_times_what_they_are_off(way, simple):
     # Both are 0.05 off half-way, so 0.1; the way from one to the other out to a tip and back is `way`.
     corners = [(0, -1), (10, 0), (10 + way / 2, 0.05), (10, 0.1), (0, 1.1), (-10, 5), (-10, -5)]
     assert is_simple(corners, [0.05, 0, 0, 0.05, 0, 0, 0]) is simple
+
+
+@pytest.mark.parametrize("pair", [(0, 3), (1, 2), (0, 1), (0, 2)])
+def test_normals_turn_no_farther_between_any_two_corners_than_they_face(pair):
+    # Two corners 80 degrees apart, 40 from the others: cos 40 is less than sin 80, and more than sin 40.
+    for degrees, faces in ((40, False), (25, True)):
+        corners = np.tile([0.0, 0.0, 1.0], (4, 1))
+        for corner, turn in zip(pair, np.radians([degrees, -degrees]), strict=True):
+            corners[corner] = np.sin(turn), 0, np.cos(turn)
+        grid = corners[[0, 2, 1, 3]].reshape(2, 2, 3)
+        assert _faces(grid, np.array([0.0, 0, 1])) is faces
+
+
+@pytest.mark.parametrize(("allowed", "close"), [(0.4, False), (0.6, True)])
+def test_edges_are_as_far_apart_as_their_nearest_points(allowed, close):
+    # The second one begins half above the middle of the first.
+    ends = [np.array([at]) for at in ([0.0, 0], [4.0, 0], [1.0, 0.5], [1.0, 2])]
+    assert _close(*ends, np.array([allowed])).tolist() == [close]
+
+
+def test_the_border_runs_round_a_base_at_its_far_end():
+    flat = [
+        BSplineSurface(1, 1, [0, 0, length, length], [0, 0, 1, 1], [[[x, y, 0] for y in (0, 1)] for x in xs])
+        for length, xs in ((1, (0, 1)), (3, (1, 4)))
+    ]
+    surface, base = flat
+    sides = _sides(surface, None, base)
+    assert [float(np.max(side[0][:, 0])) for side in sides] == [1, 4, 4, 4, 1, 0]

@@ -221,3 +221,20 @@ def test_a_thin_pipe_of_straight_lines_far_away(seed, distance):
     turn = np.linalg.qr(rng.standard_normal((3, 3)))[0]
     contact = contact_of(cut(moved(pipe, turn, distance * rng.uniform(-1, 1, 3)), "u", 0.43), "u")
     assert answer(contact) != "no"
+
+
+@pytest.mark.parametrize(
+    ("first", "is_shared", "bend"), [(1, False, 4e-12), (-1, False, 0.0), (1, True, 2e-12), (-1, True, 0.0)]
+)
+def test_what_rows_have_alike_cancels_or_each_counts_alone(first, is_shared, bend):
+    # X_w = (1, 1, 0) leans against the edge (0, 1, 0), and X_ww = (0, 2, 0) is along it: X_ws and X_s count twice.
+    at = {(1, 0): [1.0, 1, 0], (0, 1): [0, 1.0, 0], (2, 0): [0, 2.0, 0], (1, 1): [0, 0, 0], (0, 2): [0, 0, 0]}
+    values = {key: np.array([value], dtype=float) for key, value in at.items()}
+    derivatives = np.zeros((3, 3))
+    derivatives[0, 1] = 1e-12
+    noises = EdgeNoises(derivatives, 1e-12 * np.array([[first], [1.0], [0]]), np.array([1.0, 1, 0]))
+    normal = np.array([[0, 0, 1.0]])
+    # The edge itself is one with the other side's, or is not.
+    apart = (np.zeros(1), np.zeros(1)) if is_shared else None
+    found = section_noises(values, normal, square_section(values, normal), noises, apart)[1]
+    assert found == pytest.approx([bend], rel=1e-9, abs=1e-20)

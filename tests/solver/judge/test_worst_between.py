@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from numpy.polynomial import Polynomial
 
 from semispline import Base, BSplineSurface, measure_contact
-from semispline.solver.judge.pairs import places_between
+from semispline.solver.judge.pairs import _vertices, places_between
 
 FLAT = BSplineSurface(1, 1, [0, 0, 1, 1], [0, 0, 1, 1], [[[x, y, 0] for y in (0, 1)] for x in (0, 1)])
 # Highest at 2/3, where it is 4/27: between two samples.
@@ -113,3 +113,18 @@ def test_the_search_stays_inside_its_span_and_finds_its_way():
     assert values(found).max() == pytest.approx(1.0, abs=1e-7)
     # A kind of which one value is not a number has no largest one.
     assert places_between(values, s, np.full((1, 6), np.nan), breaks).size == 0
+
+
+@pytest.mark.parametrize(
+    ("values", "at", "found"),
+    [
+        ([3, 2, 1], 0, []),
+        ([1, 2, 3], 2, []),
+        ([1, 1, 1], 1, [1.5]),
+        # A parabola through 0, 3 and 2 is highest a quarter of a step beyond the middle.
+        ([0, 3, 2], 1, [1.5 + 0.25 * 0.5]),
+    ],
+)
+def test_a_parabola_goes_through_the_highest_value_and_its_neighbours(values, at, found):
+    places = _vertices(np.array([[1, 1.5, 2]]), np.array([values], dtype=float), np.array([at]))
+    assert places.tolist() == pytest.approx(found, abs=1e-15)

@@ -391,3 +391,12 @@ def test_near_knots_end_in_a_result_or_a_reason(data):
     except SemisplineError:
         return
     assert np.isfinite(result.energy)
+
+
+@pytest.mark.parametrize(("step", "said"), [(1e-5, 0), (1e-6, 1)])
+def test_rounding_of_a_flat_blend_is_none_up_to_a_million_millionth_of_what_bends(step, said):
+    # No energy but rounding: 2e-15 and 2e-12, where a surface that bends by its size has about ten.
+    far = Base(strip(1, [], (2.0, 3.0)), "u0")
+    result = blend(floor(3, 0.5 + step * np.arange(4)), far)
+    assert result.energy < 1e-13
+    assert len(rounding_warnings(result)) == said
