@@ -1,0 +1,115 @@
+"""The command check.
+
+Heavy imports wait inside the functions, so that `--help` answers fast.
+"""
+
+from __future__ import annotations
+
+from math import isnan
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from semispline.solver.cli.words import (
+    CONTINUITY_HELP,
+    EdgeA,
+    EdgeB,
+    SurfaceA,
+    SurfaceB,
+    asked,
+    check_outputs,
+    check_words,
+    file_name,
+    print_resolved,
+    progress,
+    resolved,
+    write_json,
+)
+from semispline.solver.errors import ContactError
+from semispline.solver.exit_status import ANSWER_IS_NO, reports_errors
+from semispline.solver.options import Continuity, continuity_name
+from semispline.solver.reports import contact_record, print_contact, print_warnings
+
+if TYPE_CHECKING:
+    from semispline.solver.judge import Base, Contact
+
+
+@reports_errors
+def check_command(
+    a: SurfaceA,
+    b: SurfaceB,
+    edge_a: EdgeA,
+    edge_b: EdgeB,
+    require: Annotated[
+        str | None, typer.Option(metavar="C", help=f"Exit status 1 if they do not meet with {CONTINUITY_HELP}")
+    ] = None,
+    json_file: Annotated[
+        str | None, typer.Option("--json", metavar="FILE", help="Write the figures; - is standard output.")
+    ] = None,
+) -> None:
+    """Measure how an edge of A and an edge of B meet: gap, angle, jumps of curvature and its rates, and where."""
+    from semispline.solver.io import face_warnings
+    from semispline.solver.judge import Base, measure_contact
+
+    check_words(edge_a, edge_b)
+    required = None if require is None else continuity_name(require, "--require")
+    check_outputs({"--json": file_name(json_file)}, [a, b])
+    ends = resolved(a, edge_a, b, edge_b)
+    with progress("measuring"):
+        first, second = (Base(end.surface, end.edge) for end in ends)
+        contact = measure_contact(first, second, order=4)
+    misses = _misses(contact, required)
+    doubts = _doubts(first, second, contact, required, misses)
+    warnings = face_warnings(*((end.spec, end.edge, end.loaded) for end in ends))
+    unit = ends[0].loaded.unit
+    if json_file is not None:
+        record: dict[str, Any] = {"a": ends[0].spec, "edge_a": first.edge, "b": ends[1].spec, "edge_b": second.edge}
+        record |= {"unit": unit} | asked(ends) | contact_record(contact)
+        record["warnings"] = list(warnings)
+        if require is not None:
+            record |= {"require": required, "meets": not misses, "misses": misses, "doubts": doubts}
+        write_json(json_file, {"format": "semispline/1", "kind": "contact", **record})
+    if json_file != "-":
+        print_resolved(ends)
+        print_contact(contact, unit)
+        if require is not None:
+            reasons = "; ".join([*misses, *doubts])
+            typer.echo(f"{required}: " + ("no: " if misses else "yes, but " if doubts else "yes") + reasons)
+    print_warnings(warnings)
+    if misses:
+        raise typer.Exit(ANSWER_IS_NO)
+
+
+def _misses(contact: Contact, require: Continuity | None) -> list[str]:
+    """Return, of each measure that falls short, its name, value and limit."""
+    if require is None:
+        return []
+    from semispline.solver.judge import shortfalls
+
+    return [
+        f"{name.replace('_', ' ')} is {value:.3g}, at most {limit:.3g} allowed"
+        if not isnan(value)
+        else f"{name.replace('_', ' ')} does not exist where there is no normal"
+        for name, value, limit in shortfalls(contact, require)
+    ]
+
+
+def _doubts(a: Base, b: Base, contact: Contact, require: Continuity | None, misses: list[str]) -> list[str]:
+    """Return what qualifies the answer: places without a normal, and measures of which rounding hides a part.
+
+    Raises
+    ------
+    ContactError
+        Rounding hides so much that there is no answer.
+    """
+    from semispline.solver.judge import doubtful, rounding_causes, untold
+
+    if require is None:
+        return []
+    hidden = untold(contact, require)
+    if hidden and not misses:
+        causes = rounding_causes(a, b, int(require[1])).words(("A", "B"))
+        remedy = causes or "choose knots that are further apart, or ask for a lower continuity"
+        raise ContactError(f"{require} cannot be told: {'; '.join(hidden)}; {remedy}")
+    places = contact.no_normal if require in ("G1", "G2", "G3", "G4") else ()
+    return [f"{place.surface.upper()} has {place}" for place in places] + doubtful(contact, require)
