@@ -34,7 +34,9 @@ def radii(surface, n=40):
     return np.linalg.norm(points[..., :2], axis=2)
 
 
-@pytest.mark.parametrize("cuts", [(QUARTER, QUARTER), (HALF, HALF), (FULL, FULL), (FULL, THIRDS)])
+@pytest.mark.parametrize(
+    "cuts", [(QUARTER, QUARTER), (HALF, HALF), (FULL, FULL), (FULL, THIRDS), (FULL, tuple(x + 0.77 for x in THIRDS))]
+)
 @pytest.mark.parametrize("continuity", ["G2", "G3"])
 def test_two_pipes_of_one_radius_are_joined_by_that_pipe(cuts, continuity):
     a, b = cylinder(5.0, 0.0, 4.0, cuts[0]), cylinder(5.0, 14.0, 4.0, cuts[1])
