@@ -153,6 +153,8 @@ def _solved(problem: BlendProblem, refusable: tuple[int, ...], known: FairSoluti
     layers, exponents = problem.shape_layers()
     unknowns = make_unknowns(problem, exponents)
     u, rows, narrow = problem.form.u, problem.rows, narrow_width(problem)
+    # Closed, and perhaps not C2 there.
+    seam = problem.seam_order in (0, 1)
 
     grids: list[FairObjective] = []
 
@@ -177,16 +179,16 @@ def _solved(problem: BlendProblem, refusable: tuple[int, ...], known: FairSoluti
     if exact is not None:
         ends[exact] = points[exact]
     nodes = HIGH_ORDER_NODES_U if max(problem.a.order, problem.b.order) > 2 else NODES_U
-    search = grid(across(u, nodes), along(rows, 1, narrow))
+    search = grid(across(u, nodes), along(rows, 1, narrow, seam=seam))
 
     # Where a surface folds J has no end: no grid would settle it.
     times_v = _FINER if FOLDS in refusable else _FINER[:1]
 
     @cache
     def finer(times: int) -> FairObjective:
-        return grid(across(u, 2 * nodes), along(rows, times, narrow))
+        return grid(across(u, 2 * nodes), along(rows, times, narrow, seam=seam))
 
-    between = grid(across(u, ROUGH_U), along(rows, 1, narrow)) if search.table.size > _LARGE else None
+    between = grid(across(u, ROUGH_U), along(rows, 1, narrow, seam=seam)) if search.table.size > _LARGE else None
     levels = [(level, tolerance) for level, tolerance in ((between, _NEAR), (search, _END)) if level is not None]
     found = None
     # A rough grid may be blind to what makes a candidate worse than another: the finer one says which is best.
