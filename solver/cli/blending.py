@@ -11,7 +11,10 @@ from typing import Annotated
 
 import typer
 
+from semispline.solver.cli.wanted_bases import WantedBases
 from semispline.solver.cli.words import (
+    EDGE_HELP,
+    SURFACE_HELP,
     EdgeA,
     EdgeB,
     SurfaceA,
@@ -32,27 +35,30 @@ from semispline.solver.reports import print_result, report_record
 @reports_errors
 @takes_blend_options
 def blend_command(
-    a: SurfaceA,
-    b: SurfaceB,
-    edge_a: EdgeA,
-    edge_b: EdgeB,
+    a: Annotated[str, typer.Argument(metavar="A", help=f"{SURFACE_HELP} With --replace the file alone.")],
     out: Annotated[str, typer.Option("-o", "--out", metavar="OUT", help="File to write; the suffix says the format.")],
     options: BlendOptions,
+    b: Annotated[str | None, typer.Argument(metavar="[B]", help="The same for the other surface.")] = None,
+    edge_a: Annotated[str | None, typer.Option(metavar="EDGE", help=EDGE_HELP.format("A, or of FACE"))] = None,
+    edge_b: Annotated[str | None, typer.Option(metavar="EDGE", help=EDGE_HELP.format("B, or another of FACE"))] = None,
+    replace_face: Annotated[
+        int | None,
+        typer.Option("--replace", metavar="FACE", min=0, help="Blend the faces beside this one, as if it were away."),
+    ] = None,
+    with_bases: Annotated[
+        bool, typer.Option("--with-bases", help="Write the bases, cut to their edges, as surfaces beside the blend.")
+    ] = False,
     report: Annotated[str | None, typer.Option(metavar="FILE", help="JSON with all that is known of it.")] = None,
 ) -> None:
     """Join an edge of A and an edge of B by a semi-structured surface of fairest shape, or as the options say."""
-    from semispline.solver.io import (
-        atomic_path,
-        check_surface_output,
-        face_warnings,
-        to_text,
-        write_surface,
-    )
+    from semispline.solver.io import atomic_path, check_surface_output, face_warnings, to_text, write_surfaces
 
-    check_words(edge_a, edge_b)
-    check_surface_output(out)
-    check_outputs({"--out": out, "--report": report}, [a, b])
-    ends = resolved(a, edge_a, b, edge_b)
+    wanted = WantedBases(a, b, edge_a, edge_b, replace_face)
+    wanted.check()
+    check_surface_output(out, 3 if with_bases else 1)
+    check_outputs({"--out": out, "--report": report}, wanted.specs)
+    with progress("reading"):
+        ends, said = wanted.resolved()
     trims = face_warnings(*((end.spec, end.edge, end.loaded) for end in ends), strict=options.strict)
     with progress("blending"):
         from semispline.solver.blending import blend
@@ -65,8 +71,11 @@ def blend_command(
         # The report first, into its temporary file: neither file is touched unless both can be written.
         if report is not None:
             temporary = stack.enter_context(atomic_path(report))
-            temporary.write_text(to_text(report_record(result) | asked(ends)))
-        write_surface(out, result.surface, ends[0].loaded.unit)
+            temporary.write_text(to_text(report_record(result) | asked(ends) | wanted.record))
+        surfaces = [result.surface, first.surface, second.surface] if with_bases else [result.surface]
+        write_surfaces(out, surfaces, ends[0].loaded.unit)
+    if said:
+        typer.echo(said)
     print_resolved(ends)
     print_result(result)
 
