@@ -31,6 +31,11 @@ from semispline.solver.option_flags import takes_blend_options
 from semispline.solver.options import BlendOptions
 from semispline.solver.reports import print_result, report_record
 
+_CUT_HELP = (
+    "Move the contact from the edge into {}: a distance along the surface, square to the edge, or a parameter, u=0.3. "
+    "Two faces of one file that share an edge need no --edge."
+)
+
 
 @reports_errors
 @takes_blend_options
@@ -45,6 +50,8 @@ def blend_command(
         int | None,
         typer.Option("--replace", metavar="FACE", min=0, help="Blend the faces beside this one, as if it were away."),
     ] = None,
+    cut_a: Annotated[str | None, typer.Option(metavar="D", help=_CUT_HELP.format("A"))] = None,
+    cut_b: Annotated[str | None, typer.Option(metavar="D", help=_CUT_HELP.format("B"))] = None,
     with_bases: Annotated[
         bool, typer.Option("--with-bases", help="Write the bases, cut to their edges, as surfaces beside the blend.")
     ] = False,
@@ -53,7 +60,7 @@ def blend_command(
     """Join an edge of A and an edge of B by a semi-structured surface of fairest shape, or as the options say."""
     from semispline.solver.io import atomic_path, check_surface_output, face_warnings, to_text, write_surfaces
 
-    wanted = WantedBases(a, b, edge_a, edge_b, replace_face)
+    wanted = WantedBases(a, b, edge_a, edge_b, replace_face, (cut_a, cut_b))
     wanted.check()
     check_surface_output(out, 3 if with_bases else 1)
     check_outputs({"--out": out, "--report": report}, wanted.specs)

@@ -8,7 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from semispline.solver.cli.words import check_words
+from semispline.solver.cli.words import check_word, check_words
 from semispline.solver.errors import OptionError
 
 if TYPE_CHECKING:
@@ -24,6 +24,7 @@ class WantedBases:
     edge_a: str | None
     edge_b: str | None
     replaced: int | None
+    cuts: tuple[str | None, str | None] = (None, None)
 
     @property
     def specs(self) -> list[str]:
@@ -44,6 +45,8 @@ class WantedBases:
         """
         if self.replaced is not None:
             self._check_replace()
+        elif self.b is not None and self.cuts != (None, None):
+            self._check_cuts()
         elif self.b is None or self.edge_a is None or self.edge_b is None:
             missing = [
                 name
@@ -51,7 +54,8 @@ class WantedBases:
                 if said is None
             ]
             raise OptionError(
-                f"blend: {', '.join(missing)} missing, expected A B --edge-a EDGE --edge-b EDGE, or FILE --replace FACE"
+                f"blend: {', '.join(missing)} missing, expected A B --edge-a EDGE --edge-b EDGE, FILE --replace FACE, "
+                "or PATH#N PATH#M --cut-a D --cut-b D"
             )
         else:
             check_words(self.edge_a, self.edge_b)
@@ -63,18 +67,24 @@ class WantedBases:
         ------
         EdgeError, FileError, ComputationError
         """
-        from semispline.solver.topology import replaced_pair, resolve_edges
+        from semispline.solver.topology import moved_edges, replaced_pair, resolve_edges
 
         if self.replaced is not None:
             pair = replaced_pair(self.a, self.replaced, self.edge_a, self.edge_b)
             return [pair.a, pair.b], pair.said
-        assert self.b is not None and self.edge_a is not None and self.edge_b is not None
+        assert self.b is not None
+        if self.cuts != (None, None):
+            return moved_edges((self.a, self.b), (self.edge_a, self.edge_b), self.cuts), ""
+        assert self.edge_a is not None
+        assert self.edge_b is not None
         return resolve_edges([(self.a, self.edge_a), (self.b, self.edge_b)]), ""
 
     def _check_replace(self) -> None:
         from semispline.solver.io import split_spec
         from semispline.solver.topology import is_of_a_face
 
+        if self.cuts != (None, None):
+            raise OptionError("--replace: found it together with --cut-a or --cut-b, expected one of them")
         if self.b is not None:
             raise OptionError(f"--replace: found a second file {self.b!r}, expected the one that holds the face")
         path, number = split_spec(self.a)
@@ -88,3 +98,13 @@ class WantedBases:
                     f"{name}: found {word!r}, expected an edge of face {self.replaced}, as e1: "
                     f"`semispline list {path} --edges {self.replaced}` lists them"
                 )
+
+    def _check_cuts(self) -> None:
+        from semispline.solver.topology import parse_cut
+
+        for name, word in zip(("--cut-a", "--cut-b"), self.cuts, strict=True):
+            if word is not None:
+                parse_cut(word, name)
+        for name, word in (("--edge-a", self.edge_a), ("--edge-b", self.edge_b)):
+            if word is not None:
+                check_word(word, name)

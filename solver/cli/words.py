@@ -30,12 +30,17 @@ EdgeB = Annotated[str, typer.Option("--edge-b", metavar="EDGE", help=EDGE_HELP.f
 
 def check_words(edge_a: str, edge_b: str) -> None:
     """Refuse what names no edge before a file is read."""
+    check_word(edge_a, "--edge-a")
+    check_word(edge_b, "--edge-b")
+
+
+def check_word(word: str, name: str) -> None:
+    """Refuse what names no edge; messages call it `name`."""
     from semispline.solver.splines import parse_edge
     from semispline.solver.topology import is_of_a_face
 
-    for word, name in ((edge_a, "--edge-a"), (edge_b, "--edge-b")):
-        if not is_of_a_face(word):
-            parse_edge(word, name)
+    if not is_of_a_face(word):
+        parse_edge(word, name)
 
 
 def resolved(a: str, edge_a: str, b: str, edge_b: str) -> list[ResolvedEdge]:

@@ -1,3 +1,4 @@
+from .cuts import parse_cut as parse_cut
 from .edge_listing import edge_lines as edge_lines
 from .edge_listing import edges_record as edges_record
 from .face_edges import FaceEdge as FaceEdge
@@ -9,6 +10,7 @@ from .face_edges import resolve_edge as resolve_edge
 from .face_edges import resolve_edges as resolve_edges
 from .listing import place_lines as place_lines
 from .listing import places_record as places_record
+from .moved_edges import moved_edges as moved_edges
 from .place import Place as Place
 from .place import Places as Places
 from .place import PlaceSide as PlaceSide

@@ -255,14 +255,14 @@ def _exactly(face: Face, paths: Paths, axis: int, distance: float) -> float:
     def speed(value: FloatArray) -> FloatArray:
         at = np.full((len(value), 2), beside)
         at[:, axis] = value
-        return np.linalg.norm(face.jet(at, 1)[(1, 0) if axis == 0 else (0, 1)], axis=1)
+        return np.asarray(np.linalg.norm(face.jet(at, 1)[(1, 0) if axis == 0 else (0, 1)], axis=1))
 
     breaks = face.surface.breakpoints[axis]
 
     def missing(value: float) -> float:
         low, high = sorted((start, value))
         nodes = np.unique([low, *breaks[(breaks > low) & (breaks < high)], *np.linspace(low, high, _INTERVALS), high])
-        return sum(fixed_quad(speed, a, b, n=8)[0] for a, b in pairwise(nodes)) - distance
+        return float(sum(fixed_quad(speed, a, b, n=8)[0] for a, b in pairwise(nodes))) - distance
 
     margin = 1e-3 * (end - start)
     if missing(end - margin) * missing(end + margin) >= 0:

@@ -199,7 +199,7 @@ def resolve_edges(
                 graph, f"{names[k]} {words[k]}", measured[path].nearest[words[k], number], where
             )
         else:
-            rows[k] = row_of(graph, words[k], _only_face(graph, number, path), names[k])
+            rows[k] = row_of(graph, words[k], only_face(graph, number, path), names[k])
     _take_faces(rows, picked, words, measured, names)
     faces = [
         number if row is None else int(measured[path].graph.uses.face[row])
@@ -228,9 +228,13 @@ def resolved_use(
     EdgeError
         It has no name that a surface knows.
     """
+    return _resolved(spec, loaded, word, edge_of_use(measured, row, loaded), name, near)
+
+
+def edge_of_use(measured: MeasuredEdges, row: int, loaded: LoadedSurface) -> FaceEdge:
+    """Return what is known of an edge of a face whose surface is read."""
     uses = measured.graph.uses
-    entry = _edges_of(measured, int(uses.face[row]), loaded).edges[int(uses.number[row])]
-    return _resolved(spec, loaded, word, entry, name, near)
+    return _edges_of(measured, int(uses.face[row]), loaded).edges[int(uses.number[row])]
 
 
 def _in_own_units(specs: Sequence[str], paths: Sequence[str]) -> list[LoadedSurface]:
@@ -303,7 +307,8 @@ def _uses_of_edge(graph: EdgeGraph, row: int | None) -> list[int]:
     return [row, *(x for x in (partner, twin) if x != NONE)]
 
 
-def _only_face(graph: EdgeGraph, number: int | None, path: str) -> int:
+def only_face(graph: EdgeGraph, number: int | None, path: str) -> int:
+    """Return the number of a face; without one that of the only face of the file."""
     if number is None:
         if len(graph.faces) != 1:
             raise FileError(f"{path}: holds {len(graph.faces)} surfaces; choose one as {path}#N")

@@ -44,7 +44,8 @@ def outline_of(graph: EdgeGraph, row: int, surface: BSplineSurface) -> Outline:
     drawn = [x for x in rows if uses.pcurve[x] != "none" and not uses.degenerate[x]]
     trims = _trims(graph, face, drawn)
     near = {int(uses.previous[row]), int(uses.following[row])}
-    ends, others = [], []
+    ends: list[FloatArray] = []
+    others: list[FloatArray] = []
     for x in drawn:
         if x != row:
             line = _polyline(graph, x, surface, trims.get(x))
@@ -81,7 +82,7 @@ def _polyline(graph: EdgeGraph, row: int, surface: BSplineSurface, trim: TrimCur
 def own_parameters(graph: EdgeGraph, row: int, surface: BSplineSurface) -> FloatArray:
     """Return the samples of a use in the parameters of the surface, shape (N, 2)."""
     uses, face = graph.uses, int(graph.uses.face[row])
-    found = np.empty_like(uses.uv[row])
+    found: FloatArray = np.empty_like(uses.uv[row])
     for axis, kind in enumerate(graph.faces.parameters[face]):
         start, first = graph.faces.ends[face][2 * axis], surface.domain[axis][0]
         own = uses.uv[row][:, axis] - start + first if start != first else uses.uv[row][:, axis]
