@@ -54,7 +54,7 @@ def check_command(
 ) -> None:
     """Measure how an edge of A and an edge of B meet: gap, angle, jumps of curvature and its rates, and where."""
     from semispline.solver.io import check_folder, face_warnings, write_files
-    from semispline.solver.judge import Base, measure_contact, measure_profile
+    from semispline.solver.judge import Base, measure_contact, measure_profile, with_worse
 
     check_words(edge_a, edge_b)
     required = None if require is None else continuity_name(require, "--require")
@@ -66,6 +66,7 @@ def check_command(
         first, second = (Base(end.surface, end.edge) for end in ends)
         contact = measure_contact(first, second, order=4)
         profile = measure_profile(first, second, contact)
+        contact = with_worse(contact, profile)
     misses = _misses(contact, required)
     doubts = _doubts(first, second, contact, required, misses)
     warnings = face_warnings(*((end.spec, end.edge, end.loaded) for end in ends))

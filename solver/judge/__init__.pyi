@@ -48,6 +48,7 @@ from .parametric import geometry as geometry
 from .parametric import geometry_grid as geometry_grid
 from .profile import Profile as Profile
 from .profile import measure_profile as measure_profile
+from .profile import with_worse as with_worse
 from .regularity import Regularity as Regularity
 from .regularity import measure_regularity as measure_regularity
 from .rounding import RoundingCauses as RoundingCauses

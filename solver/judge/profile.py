@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
 from semispline.solver.arrays import FloatArray
 from semispline.solver.errors import InputError
 from semispline.solver.judge.base import Base, local_origin
-from semispline.solver.judge.contact import Contact
+from semispline.solver.judge.contact import Contact, Place
 from semispline.solver.judge.correspondence import Correspondence
 from semispline.solver.judge.edge_samples import Edges
 from semispline.solver.judge.sections import just_inside
@@ -35,6 +36,8 @@ class Profile:
     ----------
     parameter : ndarray, shape (K,)
         Along edge a.
+    points : ndarray, shape (K, 3)
+        On edge a.
     length : ndarray, shape (K,)
         Of the edge from its start, model units, as that of chords.
     values : mapping
@@ -42,6 +45,7 @@ class Profile:
     """
 
     parameter: FloatArray
+    points: FloatArray
     length: FloatArray
     values: Mapping[str, FloatArray]
 
@@ -103,7 +107,28 @@ def measure_profile(a: Base, b: Base, contact: Contact) -> Profile:
             # Both have one scale all along.
             values[relative] = value * (getattr(contact, relative) / most if most else 0.0)
     points = edges.curves_a.points(s, 0)[0, 0]
-    return Profile(s, np.append(0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))), values)
+    return Profile(s, points + edges.origin, chord_lengths(points), values)
+
+
+def chord_lengths(points: FloatArray) -> FloatArray:
+    """Return the length of a polygon from its start to each of its points."""
+    return np.append(0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1)))
+
+
+def with_worse(contact: Contact, profile: Profile) -> Contact:
+    """Return the contact with what its profile shows to be worse: rounding, which is another at each place."""
+    worse: dict[str, Any] = {}
+    for name, at, relative in _KINDS:
+        if name not in profile.values:
+            continue
+        value = profile.values[name]
+        k = int(np.nan_to_num(value, nan=-np.inf).argmax())
+        if value[k] > getattr(contact, name):
+            x, y, z = profile.points[k].tolist()
+            worse |= {name: float(value[k]), at: Place(float(profile.parameter[k]), (x, y, z))}
+            if relative is not None:
+                worse[relative] = float(profile.values[relative][k])
+    return replace(contact, **worse)
 
 
 def _places(breaks: FloatArray) -> FloatArray:

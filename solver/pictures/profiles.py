@@ -18,7 +18,7 @@ _PLOTS = (
     ("second-rate.png", "second_rate_jump_relative", "jump of its second rate, relative"),
 )
 _WIDTH, _HEIGHT, _DPI = 8.0, 3.6, 150
-# Where maximum and limit are further apart than this, both are seen on a logarithmic axis alone.
+# A maximum that is so many times below its limit is seen on a logarithmic axis alone.
 _FAR = 20.0
 
 
@@ -57,7 +57,7 @@ def _plot(profile: Profile, measure: str, words: str, limit: float | None, unit:
     most = float(value[known].max(initial=0.0))
     # A limit that rounding has eaten up is none.
     limit = limit if limit is not None and np.isfinite(limit) and limit > 0 else None
-    if most > 0 and limit is not None and not 1 / _FAR < most / limit < _FAR:
+    if most > 0 and limit is not None and most < limit / _FAR:
         axes.set_yscale("log")
         # What is nothing at all lies on the lower border.
         value = np.maximum(value, value[known & (value > 0)].min())
@@ -73,7 +73,8 @@ def _plot(profile: Profile, measure: str, words: str, limit: float | None, unit:
         axes.axhline(max(mean, axes.get_ylim()[0]), color="#7f7f7f", linestyle=":", label=f"mean {mean:.3g}")
     if limit is not None:
         axes.axhline(limit, color="#d55e00", linestyle="--", label=f"limit {limit:.3g}")
-    figure.legend(loc="outside upper right", ncols=3, frameon=False)
+    if axes.get_legend_handles_labels()[0]:
+        figure.legend(loc="outside upper right", ncols=3, frameon=False)
     stored = BytesIO()
     figure.savefig(stored, format="png")
     return stored.getvalue()
