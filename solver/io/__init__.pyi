@@ -4,6 +4,7 @@ from .disk import check_output as check_output
 from .disk import check_outputs as check_outputs
 from .disk import require_file as require_file
 from .disk import shown as shown
+from .disk import write_files as write_files
 from .disk import write_text as write_text
 from .disk import write_texts as write_texts
 from .faces import MILLIMETRES as MILLIMETRES

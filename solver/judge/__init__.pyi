@@ -28,6 +28,7 @@ from .de_boor import surface_points as surface_points
 from .edge_normals import check_regular_edge as check_regular_edge
 from .face_contact import FaceContact as FaceContact
 from .face_contact import measure_face_contact as measure_face_contact
+from .face_contact import measure_face_profile as measure_face_profile
 from .fairness import Fairness as Fairness
 from .fairness import measure_fairness as measure_fairness
 from .limits import cad_measures as cad_measures
@@ -45,6 +46,8 @@ from .meets import measure_meets as measure_meets
 from .parametric import ParametricSurface as ParametricSurface
 from .parametric import geometry as geometry
 from .parametric import geometry_grid as geometry_grid
+from .profile import Profile as Profile
+from .profile import measure_profile as measure_profile
 from .regularity import Regularity as Regularity
 from .regularity import measure_regularity as measure_regularity
 from .rounding import RoundingCauses as RoundingCauses

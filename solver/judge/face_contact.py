@@ -20,6 +20,7 @@ from semispline.solver.judge.base import Base, local_origin
 from semispline.solver.judge.contact import Place
 from semispline.solver.judge.curvature_rates import curvature_rates
 from semispline.solver.judge.de_boor import edge_curves, surface_points
+from semispline.solver.judge.profile import Profile
 from semispline.solver.splines import BSplineSurface, bounding_box, transform
 
 # Points of each span of the edge; of the face, each way, from the nearest of which a foot is sought.
@@ -92,6 +93,39 @@ def measure_face_contact(base: Base, face: BSplineSurface, *, order: int = 2, sa
     >>> measure_face_contact(Base(wall, "v0"), floor).angle_degrees
     90.0
     """
+    found = _sampled(base, face, order, same_side)
+    values = found.values
+    worst = {name: int(np.where(np.isnan(x), np.inf, x).argmax()) for name, x in values.items()}
+    where = {name: Place(float(found.s[k]), tuple(found.points[k].tolist())) for name, k in worst.items()}
+    most = {name: float(values[name][k]) for name, k in worst.items()}
+    rates = {name: most.get(name) for name in ("rate_jump_relative", "second_rate_jump_relative")}
+    return FaceContact(
+        gap=most["gap"],
+        angle_degrees=most["angle_degrees"],
+        curvature_jump_relative=most["curvature_jump_relative"],
+        length=float(found.length[-1]),
+        at=where,
+        **rates,
+    )
+
+
+def measure_face_profile(base: Base, face: BSplineSurface, *, order: int = 2, same_side: bool = False) -> Profile:
+    """Measure along an edge what `measure_face_contact` finds the worst of; its arguments and its errors."""
+    found = _sampled(base, face, order, same_side)
+    return Profile(found.s, found.length, found.values)
+
+
+@dataclass(frozen=True, eq=False)
+class _Sampled:
+    """Measures at places along an edge."""
+
+    s: FloatArray
+    points: FloatArray
+    length: FloatArray
+    values: dict[str, FloatArray]
+
+
+def _sampled(base: Base, face: BSplineSurface, order: int, same_side: bool) -> _Sampled:
     require(base, "base", Base)
     require(face, "face", BSplineSurface)
     origin = local_origin(base.surface, face)
@@ -99,10 +133,10 @@ def measure_face_contact(base: Base, face: BSplineSurface, *, order: int = 2, sa
     s = _places(base.breakpoints_along())
     at = edge_curves(base.surface, base.side, order, origin).points(s, order)
     points = at[0, 0]
-    length = float(np.linalg.norm(np.diff(points, axis=0), axis=1).sum())
+    length = np.append(0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1)))
     feet = _feet(moved, points)
     away = np.linalg.norm(points - surface_points(moved, feet[:, 0], feet[:, 1]), axis=1)
-    if away.max() > _NOT_ON_IT * length:
+    if away.max() > _NOT_ON_IT * length[-1]:
         k = int(away.argmax())
         x, y, z = points[k] + origin
         raise EdgeError(
@@ -119,18 +153,7 @@ def measure_face_contact(base: Base, face: BSplineSurface, *, order: int = 2, sa
     size = float(np.ptp(bounding_box(face), axis=0).max())
     values = {"gap": away, "angle_degrees": np.degrees(np.arctan2(sine, np.sum(own * normal, axis=1)))}
     values |= _curvature_jumps(sides, (own, normal), size, order)
-    worst = {name: int(np.where(np.isnan(x), np.inf, x).argmax()) for name, x in values.items()}
-    where = {name: Place(float(s[k]), tuple((points[k] + origin).tolist())) for name, k in worst.items()}
-    found = {name: float(values[name][k]) for name, k in worst.items()}
-    rates = {name: found.get(name) for name in ("rate_jump_relative", "second_rate_jump_relative")}
-    return FaceContact(
-        gap=found["gap"],
-        angle_degrees=found["angle_degrees"],
-        curvature_jump_relative=found["curvature_jump_relative"],
-        length=length,
-        at=where,
-        **rates,
-    )
+    return _Sampled(s, points + origin, length, values)
 
 
 def _places(breaks: FloatArray) -> FloatArray:
