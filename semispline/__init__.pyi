@@ -119,5 +119,7 @@ from .solver.topology.place import Place as Place
 from .solver.topology.place import Places as Places
 from .solver.topology.place import PlaceSide as PlaceSide
 from .solver.topology.places import find_places as find_places
+from .solver.topology.replacing import ReplacedPair as ReplacedPair
+from .solver.topology.replacing import replaced_pair as replaced_pair
 
 __version__: str

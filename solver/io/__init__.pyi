@@ -40,3 +40,4 @@ from .surface_files import read_surfaces as read_surfaces
 from .surface_files import relative_spec as relative_spec
 from .surface_files import split_spec as split_spec
 from .surface_files import write_surface as write_surface
+from .surface_files import write_surfaces as write_surfaces

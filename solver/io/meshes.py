@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -19,8 +20,8 @@ _SAMPLES = 160
 _NO_AREA = 1e-15
 
 
-def write_mesh(path: Path, surface: Surface) -> None:
-    """Write a triangle mesh; the suffix is .obj, .stl, .ply, .gltf or .glb.
+def write_mesh(path: Path, surfaces: Sequence[Surface]) -> None:
+    """Write one triangle mesh of all surfaces; the suffix is .obj, .stl, .ply, .gltf or .glb.
 
     Raises
     ------
@@ -28,7 +29,8 @@ def write_mesh(path: Path, surface: Surface) -> None:
         pyvista is not installed, or VTK could not write the file.
     """
     pyvista = pyvista_module(path.suffix)
-    mesh = triangle_mesh(*sampled(surface, _SAMPLES))
+    meshes = [triangle_mesh(*sampled(surface, _SAMPLES)) for surface in surfaces]
+    mesh = meshes[0] if len(meshes) == 1 else pyvista.merge(meshes, merge_points=False)
     with silenced(1, 2):
         if path.suffix.lower() in (".gltf", ".glb"):
             _write_gltf(path, pyvista.MultiBlock([pyvista.MultiBlock([mesh])]))

@@ -25,6 +25,7 @@ OCC_SUFFIXES = (".step", ".stp", ".iges", ".igs", ".brep", ".brp")
 _READABLE = (".json", *OCC_SUFFIXES, ".3dm")
 _MESHES = (".obj", ".stl", ".ply", ".gltf", ".glb")
 _WRITABLE = (*_READABLE, *_MESHES)
+_SEVERAL = (*OCC_SUFFIXES, ".3dm", *_MESHES)
 # Formats that name a unit get this one for a surface whose own is not known.
 _DEFAULT_UNIT = "mm"
 # What writing and reading back may change: rounding of a few products (weights, units of length).
@@ -287,32 +288,43 @@ def write_surface(path: str | Path, surface: Surface, unit: str | None = None) -
         Unknown suffix, the file cannot be written, the format cannot hold the surface (what was written is read back
         and compared), or an extra that is not installed.
     """
-    suffix = check_surface_output(path)
+    write_surfaces(path, [surface], unit)
+
+
+def write_surfaces(path: str | Path, surfaces: Sequence[Surface], unit: str | None = None) -> None:
+    """Write some surfaces into one file, in their order, as `write_surface` does one; of .json there can be one only.
+
+    Raises
+    ------
+    FileError
+        As `write_surface`.
+    """
+    suffix = check_surface_output(path, len(surfaces))
     if suffix == ".json":
         from semispline.solver.io.json_files import write_json_surface
 
-        write_json_surface(path, surface)
+        write_json_surface(path, surfaces[0])
         return
     with atomic_path(path) as temporary:
         if suffix in _MESHES:
             from semispline.solver.io.meshes import write_mesh
 
-            write_mesh(temporary, surface)
+            write_mesh(temporary, surfaces)
             return
-        spline = surface.to_bspline() if isinstance(surface, SemiStructuredSurface) else surface
+        splines = [x.to_bspline() if isinstance(x, SemiStructuredSurface) else x for x in surfaces]
         if suffix == ".3dm":
             from semispline.solver.io.rhino import write_3dm
 
-            write_3dm(temporary, spline, unit or _DEFAULT_UNIT)
+            write_3dm(temporary, splines, unit or _DEFAULT_UNIT)
         else:
             from semispline.solver.io.occ_writing import occ_bytes
 
-            temporary.write_bytes(occ_bytes(spline, suffix, unit or _DEFAULT_UNIT))
-        _check_written(temporary, spline, str(path))
+            temporary.write_bytes(occ_bytes(splines, suffix, unit or _DEFAULT_UNIT))
+        _check_written(temporary, splines, str(path))
 
 
-def check_surface_output(path: str | Path) -> str:
-    """Return the suffix if a surface can be written to `path`; long work calls this first.
+def check_surface_output(path: str | Path, count: int = 1) -> str:
+    """Return the suffix if so many surfaces can be written to `path`; long work calls this first.
 
     Raises
     ------
@@ -324,6 +336,8 @@ def check_surface_output(path: str | Path) -> str:
         raise FileError(
             f"{shown(path)}: suffix {shown(suffix)!r} cannot be written, expected one of {' '.join(_WRITABLE)}"
         )
+    if suffix == ".json" and count > 1:
+        raise FileError(f"{shown(path)}: .json holds one surface, expected {' '.join(_SEVERAL)} for {count}")
     check_output(path)
     return suffix
 
@@ -438,7 +452,7 @@ def _scaled(surface: Surface, factor: float) -> Surface:
     return replace(surface, control_curves=tuple(curves))
 
 
-def _check_written(written: Path, surface: BSplineSurface, where: str) -> None:
+def _check_written(written: Path, surfaces: Sequence[BSplineSurface], where: str) -> None:
     """Read a CAD file back: kernels drop or merge what is small against their tolerances, and do not say so."""
     from semispline.solver.io.occ import read_occ
     from semispline.solver.io.rhino import read_3dm
@@ -446,8 +460,10 @@ def _check_written(written: Path, surface: BSplineSurface, where: str) -> None:
     try:
         # What this process wrote, it can read without a process of its own.
         read = read_occ if written.suffix.lower() in OCC_SUFFIXES else read_3dm
-        found = picked(read(written), None).surface()
-        same = isinstance(found, BSplineSurface) and _agree(found, surface)
+        found = [face.surface() for face in read(written).faces]
+        same = len(found) == len(surfaces) and all(
+            isinstance(one, BSplineSurface) and _agree(one, other) for one, other in zip(found, surfaces, strict=True)
+        )
     except FileError:
         same = False
     if not same:

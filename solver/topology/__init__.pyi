@@ -13,3 +13,5 @@ from .place import Place as Place
 from .place import Places as Places
 from .place import PlaceSide as PlaceSide
 from .places import find_places as find_places
+from .replacing import ReplacedPair as ReplacedPair
+from .replacing import replaced_pair as replaced_pair

@@ -143,7 +143,7 @@ def list_edges(path: str | Path, face: int) -> FaceEdges:
         The process that read the file was killed.
     """
     measured = measured_edges(path, [face])
-    _check_face(measured.graph, face, str(path))
+    check_face(measured.graph, face, str(path))
     (loaded,) = read_surfaces([f"{path}#{face}"])
     return _edges_of(measured, face, loaded)
 
@@ -199,7 +199,7 @@ def resolve_edges(
                 graph, f"{names[k]} {words[k]}", measured[path].nearest[words[k], number], where
             )
         else:
-            rows[k] = _row_of(graph, words[k], _only_face(graph, number, path), names[k])
+            rows[k] = row_of(graph, words[k], _only_face(graph, number, path), names[k])
     _take_faces(rows, picked, words, measured, names)
     faces = [
         number if row is None else int(measured[path].graph.uses.face[row])
@@ -213,10 +213,24 @@ def resolve_edges(
         if row is None or face is None:
             found.append(ResolvedEdge(full[k], loaded, str(parse_edge(words[k], names[k]))))
             continue
-        entry = _edges_of(measured[path], face, loaded).edges[int(measured[path].graph.uses.number[row])]
-        found.append(_resolved(full[k], loaded, words[k], entry, names[k], said[k]))
+        found.append(resolved_use(measured[path], row, full[k], loaded, words[k], names[k], said[k]))
     same = in_one_unit([one.loaded for one in found])
     return [replace(one, loaded=loaded) for one, loaded in zip(found, same, strict=True)]
+
+
+def resolved_use(
+    measured: MeasuredEdges, row: int, spec: str, loaded: LoadedSurface, word: str, name: str, near: str = ""
+) -> ResolvedEdge:
+    """Return a use of an edge as its surface knows it; `word`, and how near it is, is what it was found by.
+
+    Raises
+    ------
+    EdgeError
+        It has no name that a surface knows.
+    """
+    uses = measured.graph.uses
+    entry = _edges_of(measured, int(uses.face[row]), loaded).edges[int(uses.number[row])]
+    return _resolved(spec, loaded, word, entry, name, near)
 
 
 def _in_own_units(specs: Sequence[str], paths: Sequence[str]) -> list[LoadedSurface]:
@@ -294,17 +308,21 @@ def _only_face(graph: EdgeGraph, number: int | None, path: str) -> int:
         if len(graph.faces) != 1:
             raise FileError(f"{path}: holds {len(graph.faces)} surfaces; choose one as {path}#N")
         return 0
-    _check_face(graph, number, path)
+    check_face(graph, number, path)
     return number
 
 
-def _check_face(graph: EdgeGraph, face: int, path: str) -> None:
+def check_face(graph: EdgeGraph, face: int, path: str) -> None:
+    """Refuse a number that no face of the file has."""
     count = len(graph.faces)
     if not 0 <= face < count:
         raise FileError(f"{path}#{face}: no such surface; the file holds {count}, numbered 0 to {count - 1}")
 
 
-def _row_of(graph: EdgeGraph, word: str, face: int, name: str) -> int:
+def row_of(graph: EdgeGraph, word: str, face: int, name: str) -> int:
+    """Return the use that is called "e3" in a face."""
+    if not _OF_A_FACE.fullmatch(word):
+        raise EdgeError(f"{name}: found {word!r}, expected an edge of face #{face} of {graph.path}, as e0")
     number = int(word[1:])
     rows = graph.uses.of_face(face)
     count = rows.stop - rows.start
