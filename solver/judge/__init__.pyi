@@ -29,8 +29,12 @@ from .edge_normals import check_regular_edge as check_regular_edge
 from .face_contact import FaceContact as FaceContact
 from .face_contact import measure_face_contact as measure_face_contact
 from .face_contact import measure_face_profile as measure_face_profile
+from .face_limits import exact_face_limits as exact_face_limits
+from .face_limits import face_shortfalls as face_shortfalls
+from .face_limits import required_face_measures as required_face_measures
 from .fairness import Fairness as Fairness
 from .fairness import measure_fairness as measure_fairness
+from .free_edge import FreeEdge as FreeEdge
 from .limits import cad_measures as cad_measures
 from .limits import doubtful as doubtful
 from .limits import required_limits as required_limits

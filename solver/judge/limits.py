@@ -138,6 +138,11 @@ def _hidden(contact: Contact, continuity: Continuity) -> list[tuple[str, bool]]:
     return found
 
 
+def required_measures(continuity: Continuity) -> tuple[str, ...]:
+    """Return the names of the measures that a continuity requires, as `Contact` has them."""
+    return _REQUIRED[continuity]
+
+
 def _measures(contact: Contact, continuity: Continuity) -> tuple[str, ...]:
     for name in _REQUIRED[continuity]:
         if name not in contact.allowed:
