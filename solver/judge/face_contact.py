@@ -183,7 +183,7 @@ def _edge_side(edge: FreeEdge, order: int) -> _Side:
 
 
 def _unit(vectors: FloatArray) -> FloatArray:
-    return vectors / np.linalg.norm(vectors, axis=1)[:, None]
+    return np.asarray(vectors / np.linalg.norm(vectors, axis=1)[:, None])
 
 
 def _places(breaks: FloatArray) -> FloatArray:

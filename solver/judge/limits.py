@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import radians
 
 from semispline.solver.errors import InputError
@@ -91,6 +92,15 @@ def cad_measures(length: float, millimetres: float | None = None) -> dict[str, f
         "rate_jump_relative": CAD_RATE,
         "second_rate_jump_relative": CAD_RATE,
     }
+
+
+def in_cad_limits(contact: Contact, length: float, millimetres: float | None = None) -> Contact:
+    """Return a contact that is held to the limits of checkers of CAD systems, but for what only parameters have.
+
+    `length` is that of the edge; `millimetres` as in `cad_measures`.
+    """
+    cad = cad_measures(length, millimetres)
+    return replace(contact, allowed={name: max(cad.get(name, 0.0), x) for name, x in contact.allowed.items()})
 
 
 def required_limits(contact: Contact, continuity: Continuity) -> list[tuple[str, float, float]]:

@@ -181,8 +181,8 @@ def resolve_edge(spec: str | Path, word: str, name: str = "edge") -> ResolvedEdg
     spec : str
         PATH, or PATH#N.
     word : str
-        "e3", "e3[0]" (of a free curve the part between its start and the first place where bands are cut), "near=x,y,z",
-        or a name that `Base` knows, which is returned as it is.
+        "e3", "near=x,y,z", "e3[0]" (of a free curve the part up to the first place where bands are cut), or a name that
+        `Base` knows, which is returned as it is.
     name : str
         What messages call the word.
 
@@ -368,7 +368,9 @@ def _resolved(spec: str, loaded: LoadedSurface, word: str, entry: FaceEdge, name
         path, number = split_spec(spec)
         raise EdgeError(f"{title} {why}; `semispline list {path} --edges {number or 0}` lists the edges of the face")
     elif part is not None:
-        raise EdgeError(f"{title} is {edge}: only free curves are cut into parts; name {entry.name}, or a part as u1[0,1]")
+        raise EdgeError(
+            f"{title} is {edge}: only free curves are cut into parts; name {entry.name}, or a part as u1[0,1]"
+        )
     if entry.seam and near:
         raise EdgeError(f"{title} is a seam: both its sides are of this face; name one of them, as {edge}")
     is_what = "a free curve" if entry.kind == "free" else edge

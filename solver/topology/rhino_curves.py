@@ -22,11 +22,11 @@ def _curve(model: Model, face: int, number: int) -> Any:
     if not 0 <= face < len(model.faces):
         return FileError(f"{model.path}#{face}: the file has {len(model.faces)} faces, counted from 0")
     item = model.faces[face]
+    assert isinstance(item, RhinoFace)
     try:
         surface = item.surface()
     except InputError as error:
         return error
-    assert isinstance(item, RhinoFace)
     walked = edges_in_order(item)
     if not 0 <= number < len(walked):
         return f"the face has {len(walked)} edges" + (f", e0 to e{len(walked) - 1}" if walked else "")

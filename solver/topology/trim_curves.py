@@ -4,14 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
 from typing import Literal, TypeVar
 
 from semispline.solver.errors import EdgeError
 from semispline.solver.io import MILLIMETRES, open_3dm, read_apart, require_file, require_kernel
+from semispline.solver.judge import FreeEdge
 from semispline.solver.splines import BSplineCurve, BSplineSurface
-from semispline.solver.topology.band_search import Continuity
+from semispline.solver.topology.band_search import Continuity, is_plane
 from semispline.solver.topology.bands import Band, band_along
+from semispline.solver.topology.face_curves import FaceCurve, Source, trim_curve
+from semispline.solver.topology.face_jets import Face
 from semispline.solver.topology.rhino_curves import curves_of_3dm
 
 
@@ -45,8 +49,32 @@ class TrimCurve:
     tolerance: float
     millimetres: float | None
 
-    def bands(self, continuity: Continuity = "G2") -> tuple[Band, ...]:
-        """Return the bands of the face along the edge, as `band_along`."""
+    @property
+    def word(self) -> str:
+        """How it is named among the edges of its face: "e3"."""
+        return self.name.split()[1]
+
+    @cached_property
+    def is_plane(self) -> bool:
+        """Whether its face is flat."""
+        return is_plane(Face(self.surface))
+
+    @cached_property
+    def on_face(self) -> FaceCurve:
+        """Which curve on the face is meant, and how far the edge and the pcurve are apart; errors as `band_along`."""
+        return trim_curve(Face(self.surface), self.pcurve, self.edge, self.tolerance)
+
+    def free_edge(self, source: Source | None = None) -> FreeEdge:
+        """Return what a contact along it is measured against: the edge in space, or where that is far off the pcurve.
+
+        `source` is that of a band, where it is known.
+        """
+        curve = self.edge if (source or self.on_face.source) == "foot" else self.pcurve
+        assert curve is not None
+        return FreeEdge(self.surface, curve, curve is self.edge, self.keep)
+
+    def bands(self, continuity: Continuity = "G2", part: int | None = None) -> tuple[Band, ...]:
+        """Return the bands of the face along the edge, or along one part of it, as `band_along`."""
         return band_along(
             self.surface,
             self.pcurve,
@@ -55,6 +83,7 @@ class TrimCurve:
             tolerance=self.tolerance,
             millimetres=self.millimetres,
             continuity=continuity,
+            part=part,
             name=self.name,
         )
 
@@ -80,7 +109,7 @@ def _scaled(spline: _Spline, factor: float) -> _Spline:
 
 
 def read_trim_curves(path: str | Path, edges: Sequence[tuple[int, int]]) -> list[TrimCurve]:
-    """Return edges of faces of a STEP, IGES, BREP or 3dm file, in the file's unit; kernels run in a process of their own.
+    """Return edges of faces of a STEP, IGES, BREP or 3dm file, in the file's unit; kernels have a process of their own.
 
     Parameters
     ----------
