@@ -22,15 +22,15 @@ if TYPE_CHECKING:
 
 def contact_record(contact: Contact) -> dict[str, Any]:
     """Return what a JSON file holds of a measured contact: nothing of what was not asked for."""
-    return {name: _finite(value) for name, value in asdict(contact).items() if value is not None}
+    return {name: finite(value) for name, value in asdict(contact).items() if value is not None}
 
 
-def _finite(value: Any) -> Any:
+def finite(value: Any) -> Any:
     """Return a value or record for JSON, which knows neither NaN nor infinity: what cannot be told is null."""
     if isinstance(value, dict):
-        return {name: _finite(part) for name, part in value.items()}
+        return {name: finite(part) for name, part in value.items()}
     if isinstance(value, list):
-        return [_finite(part) for part in value]
+        return [finite(part) for part in value]
     return None if isinstance(value, float) and not isfinite(value) else value
 
 
@@ -83,10 +83,6 @@ def report_record(result: BlendResult) -> dict[str, Any]:
     }
 
 
-# Surfaces that differ in lower order do so in these.
-_COUNTS_ONLY_WITH: dict[str, Continuity] = {"rate_jump_relative": "G2", "second_rate_jump_relative": "G3"}
-
-
 def shape_record(shape: ShapeReport) -> dict[str, Any]:
     """Return what a JSON file holds of the measures of shape; places beside their figures."""
     turn, waist = asdict(shape.turn), shape.waist
@@ -112,7 +108,7 @@ def shape_record(shape: ShapeReport) -> dict[str, Any]:
         },
         "meets": meets_record(shape.meets),
     }
-    return {name: _finite(value) for name, value in record.items()}
+    return {name: finite(value) for name, value in record.items()}
 
 
 def meets_record(meets: Meets) -> dict[str, Any]:
@@ -126,42 +122,6 @@ def meets_record(meets: Meets) -> dict[str, Any]:
         "seen_from": meets.seen_from,
         "seen_from_with_bases": meets.seen_from_with_bases,
     }
-
-
-def print_contact(contact: Contact, unit: str | None) -> None:
-    """Print what was measured of a contact, and where it is worst."""
-    from semispline.solver.judge import shortfalls
-
-    length = unit or "model units"
-    bend, rate, second_rate = (f"1/{unit or '(model units)'}{power}" for power in ("", "\u00b2", "\u00b3"))
-    rows = [("measure", "worst", "allowed", "unit", "at parameter", "at point")]
-    for name, measure, in_unit, place in (
-        ("gap", "gap", length, contact.gap_at),
-        ("angle", "angle_degrees", "degrees", contact.angle_at),
-        ("curvature jump", "curvature_jump", bend, contact.curvature_at),
-        ("curvature jump, relative", "curvature_jump_relative", "1", contact.curvature_at),
-        ("rate jump", "rate_jump", rate, contact.rate_at),
-        ("rate jump, relative", "rate_jump_relative", "1", contact.rate_at),
-        ("second rate jump", "second_rate_jump", second_rate, contact.second_rate_at),
-        ("second rate jump, relative", "second_rate_jump_relative", "1", contact.second_rate_at),
-    ):
-        if place is None:
-            continue
-        point = ", ".join(f"{x:.5g}" for x in place.point)
-        value, limit = getattr(contact, measure), contact.allowed.get(measure)
-        below = _COUNTS_ONLY_WITH.get(measure)
-        if below is not None and shortfalls(contact, below):
-            allowed = f"counts only with {below}"
-        else:
-            allowed = "see below" if limit is None else f"{limit:.3g}"
-        rows.append((name, f"{value:.3g}", allowed, in_unit, f"{place.parameter:.5g}", f"({point})"))
-    _print_table(rows)
-    if contact.corresponds == "foot points":
-        typer.echo(
-            "the edges are one curve with two parametrisations: each point is compared with its foot on the other"
-        )
-    for bare in contact.no_normal:
-        typer.echo(f"{bare.surface.upper()}: {bare}")
 
 
 def print_result(result: BlendResult) -> None:
@@ -211,7 +171,7 @@ def print_result(result: BlendResult) -> None:
     if (worst := worst_inside(result.creases)) is not None:
         rows.append(("inside", str(worst)))
     rows += _shape_rows(result.shape)
-    _print_table(rows)
+    print_table(rows)
     print_warnings(result.warnings)
 
 
@@ -312,14 +272,15 @@ def print_entries(entries: Sequence[SurfaceEntry], others: Mapping[str, int]) ->
         if entry.deviation is not None:
             off = f"about {entry.deviation:.3g} off at worst, in the unit of the file"
             notes.append(f"#{entry.number} has no exact B-spline form: the surface taken for it is {off}")
-    _print_table(rows)
+    print_table(rows)
     for note in notes:
         typer.echo(note)
     if others:
         typer.echo(f"cannot be used: {counted(others)}")
 
 
-def _print_table(rows: Sequence[Sequence[str]]) -> None:
+def print_table(rows: Sequence[Sequence[str]]) -> None:
+    """Print rows with their columns aligned."""
     widths = [max(len(row[k]) for row in rows) for k in range(len(rows[0]))]
     for row in rows:
         typer.echo("  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip())

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from semispline.solver.cli.contact_table import plot_limits, print_contact, profile_record
 from semispline.solver.cli.words import (
     CONTINUITY_HELP,
     EdgeA,
@@ -28,7 +29,7 @@ from semispline.solver.cli.words import (
 from semispline.solver.errors import ContactError
 from semispline.solver.exit_status import ANSWER_IS_NO, reports_errors
 from semispline.solver.options import Continuity, continuity_name
-from semispline.solver.reports import contact_record, print_contact, print_warnings
+from semispline.solver.reports import contact_record, print_warnings
 
 if TYPE_CHECKING:
     from semispline.solver.judge import Base, Contact
@@ -46,32 +47,44 @@ def check_command(
     json_file: Annotated[
         str | None, typer.Option("--json", metavar="FILE", help="Write the figures; - is standard output.")
     ] = None,
+    plots: Annotated[
+        str | None,
+        typer.Option(metavar="DIR", help="Draw each measure along the edge, with its limit, into PNG files there."),
+    ] = None,
 ) -> None:
     """Measure how an edge of A and an edge of B meet: gap, angle, jumps of curvature and its rates, and where."""
-    from semispline.solver.io import face_warnings
-    from semispline.solver.judge import Base, measure_contact
+    from semispline.solver.io import check_folder, face_warnings, write_files
+    from semispline.solver.judge import Base, measure_contact, measure_profile, with_worse
 
     check_words(edge_a, edge_b)
     required = None if require is None else continuity_name(require, "--require")
     check_outputs({"--json": file_name(json_file)}, [a, b])
+    if plots is not None:
+        check_folder(plots)
     ends = resolved(a, edge_a, b, edge_b)
     with progress("measuring"):
         first, second = (Base(end.surface, end.edge) for end in ends)
         contact = measure_contact(first, second, order=4)
+        profile = measure_profile(first, second, contact)
+        contact = with_worse(contact, profile)
     misses = _misses(contact, required)
     doubts = _doubts(first, second, contact, required, misses)
     warnings = face_warnings(*((end.spec, end.edge, end.loaded) for end in ends))
     unit = ends[0].loaded.unit
+    if plots is not None:
+        from semispline.solver.pictures import profile_plots
+
+        write_files(plots, profile_plots(profile, plot_limits(contact), unit))
     if json_file is not None:
         record: dict[str, Any] = {"a": ends[0].spec, "edge_a": first.edge, "b": ends[1].spec, "edge_b": second.edge}
-        record |= {"unit": unit} | asked(ends) | contact_record(contact)
+        record |= {"unit": unit} | asked(ends) | contact_record(contact) | profile_record(profile)
         record["warnings"] = list(warnings)
         if require is not None:
             record |= {"require": required, "meets": not misses, "misses": misses, "doubts": doubts}
         write_json(json_file, {"format": "semispline/1", "kind": "contact", **record})
     if json_file != "-":
         print_resolved(ends)
-        print_contact(contact, unit)
+        print_contact(contact, profile, unit, required)
         if require is not None:
             reasons = "; ".join([*misses, *doubts])
             typer.echo(f"{required}: " + ("no: " if misses else "yes, but " if doubts else "yes") + reasons)

@@ -4,12 +4,14 @@ from .disk import check_output as check_output
 from .disk import check_outputs as check_outputs
 from .disk import require_file as require_file
 from .disk import shown as shown
+from .disk import write_files as write_files
 from .disk import write_text as write_text
 from .disk import write_texts as write_texts
 from .faces import MILLIMETRES as MILLIMETRES
 from .faces import Model as Model
 from .faces import SurfaceEntry as SurfaceEntry
 from .faces import counted as counted
+from .faces import without_equal_weights as without_equal_weights
 from .faces import without_surfaces as without_surfaces
 from .foreign import read_apart as read_apart
 from .json_files import StoredProblem as StoredProblem

@@ -4,6 +4,7 @@ from .plotting import CURVE_COLORS as CURVE_COLORS
 from .plotting import PALETTE as PALETTE
 from .plotting import check_picture as check_picture
 from .plotting import render as render
+from .profiles import profile_plots as profile_plots
 from .viewer import model as model
 from .viewer import viewer_html as viewer_html
 from .viewer import viewer_script as viewer_script

@@ -1,4 +1,13 @@
 from .cuts import parse_cut as parse_cut
+from .edge_bases import EdgeBase as EdgeBase
+from .edge_bases import bases_along as bases_along
+from .edge_bases import edge_bases as edge_bases
+from .edge_bases import free_curves as free_curves
+from .edge_bases import paired_bases as paired_bases
+from .edge_blends import blend_bases as blend_bases
+from .edge_blends import blend_edges as blend_edges
+from .edge_limits import default_limits as default_limits
+from .edge_limits import face_limits as face_limits
 from .edge_listing import edge_lines as edge_lines
 from .edge_listing import edges_record as edges_record
 from .face_edges import FaceEdge as FaceEdge
@@ -17,3 +26,5 @@ from .place import PlaceSide as PlaceSide
 from .places import find_places as find_places
 from .replacing import ReplacedPair as ReplacedPair
 from .replacing import replaced_pair as replaced_pair
+from .trim_curves import TrimCurve as TrimCurve
+from .trim_curves import read_trim_curves as read_trim_curves

@@ -121,7 +121,7 @@ def test_edges_are_read_by_a_process_of_its_own(tmp_path):
     graph, uses = free_edges(shape)
     use = next(i for i in uses if graph.faces.kind[graph.uses.face[i]] == "cylinder")
     face, number = int(graph.uses.face[use]), int(graph.uses.number[use])
-    (curve,) = read_trim_curves(path, face, [number])
+    (curve,) = read_trim_curves(path, [(face, number)])
     assert curve.name == f"edge e{number} of face {face}"
     # BREP files have no unit.
     assert curve.millimetres is None
@@ -129,13 +129,13 @@ def test_edges_are_read_by_a_process_of_its_own(tmp_path):
     assert band.source == "foot"
     assert band.edge_to_face <= curve.tolerance
     with pytest.raises(FileError, match="faces, counted from 0"):
-        read_trim_curves(path, 99, [0])
+        read_trim_curves(path, [(99, 0)])
     with pytest.raises(EdgeError, match=r"e99: the face has \d+ edges"):
-        read_trim_curves(path, face, [99])
+        read_trim_curves(path, [(face, 99)])
     degenerate = graph_of(BRepPrimAPI_MakeSphere(8.0).Shape()).uses
     ball = written(BRepPrimAPI_MakeSphere(8.0).Shape(), tmp_path / "ball.brep")
     with pytest.raises(EdgeError, match="it is a point; choose another edge"):
-        read_trim_curves(ball, 0, [int(degenerate.number[np.flatnonzero(degenerate.degenerate)[0]])])
+        read_trim_curves(ball, [(0, int(degenerate.number[np.flatnonzero(degenerate.degenerate)[0]]))])
 
 
 def test_the_seam_of_a_closed_face_is_met_from_both_sides():
