@@ -1,9 +1,9 @@
 from .cuts import parse_cut as parse_cut
-from .edge_bases import EdgeBase as EdgeBase
-from .edge_bases import bases_along as bases_along
-from .edge_bases import edge_bases as edge_bases
-from .edge_bases import free_curves as free_curves
-from .edge_bases import paired_bases as paired_bases
+from .bases import EdgeBase as EdgeBase
+from .bases import bases_along as bases_along
+from .bases import edge_bases as edge_bases
+from .bases import free_curves as free_curves
+from .bases import paired_bases as paired_bases
 from .edge_blends import blend_bases as blend_bases
 from .edge_blends import blend_edges as blend_edges
 from .edge_limits import default_limits as default_limits
