@@ -1,3 +1,5 @@
+from .drawn_faces import DrawnFace as DrawnFace
+from .drawn_faces import read_drawn as read_drawn
 from .edge_listing import edge_lines as edge_lines
 from .edge_listing import edges_record as edges_record
 from .face_edges import FaceEdge as FaceEdge
@@ -7,6 +9,8 @@ from .face_edges import is_of_a_face as is_of_a_face
 from .face_edges import list_edges as list_edges
 from .face_edges import resolve_edge as resolve_edge
 from .face_edges import resolve_edges as resolve_edges
+from .face_meshes import EdgeLine as EdgeLine
+from .face_meshes import FaceMesh as FaceMesh
 from .listing import place_lines as place_lines
 from .listing import places_record as places_record
 from .place import Place as Place
