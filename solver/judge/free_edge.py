@@ -15,6 +15,9 @@ from semispline.solver.splines import BSplineCurve, BSplineSurface
 # Points of the edge, in all and in a span, from the nearest of which another one is sought by so many steps.
 _NODES, _PER_SPAN, _STEPS = 2000, 8, 8
 
+# Ends nearer than this fraction of the extent are one point.
+_SAME_POINT = 1e-6
+
 
 @dataclass(frozen=True, eq=False)
 class FreeEdge:
@@ -53,11 +56,14 @@ class FreeEdge:
     def nearest(self, points: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return the points of the edge nearest to others, and its derivatives there, shapes (K, 3)."""
         nodes = self._nodes()
-        x = nodes[KDTree(self.at(nodes)[0]).query(points)[1]]
+        start, end = float(nodes[0]), float(nodes[-1])
+        places = self.at(nodes)[0]
+        closed = np.linalg.norm(places[0] - places[-1]) <= _SAME_POINT * np.ptp(places, axis=0).max()
+        x = nodes[KDTree(places).query(points)[1]]
         here, slope = self.at(x)
         for _ in range(_STEPS):
             step = np.sum((points - here) * slope, axis=1) / np.maximum(np.sum(slope**2, axis=1), 1e-300)
-            tried = np.clip(x + step, nodes[0], nodes[-1])
+            tried = start + np.mod(x + step - start, end - start) if closed else np.clip(x + step, start, end)
             there, steeper = self.at(tried)
             closer = np.linalg.norm(points - there, axis=1) < np.linalg.norm(points - here, axis=1)
             x = np.where(closer, tried, x)
