@@ -160,5 +160,5 @@ def test_each_measure_counts_from_both_sides_of_its_limit(continuity, names):
 def test_a_wrong_call_is_refused():
     with pytest.raises(Exception, match="base: found a BSplineSurface, expected a Base or a FreeEdge"):
         measure_face_contact(FLOOR, DIAGONAL)
-    with pytest.raises(Exception, match="face: the edge is .* away from it at"):
+    with pytest.raises(Exception, match=r"face: the edge is .* away from it at"):
         measure_face_contact(Base(plane([0, 0, 9], [1, 0, 0], [0, 1, 0]), "u0"), DIAGONAL)

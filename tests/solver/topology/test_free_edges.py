@@ -113,7 +113,7 @@ def test_a_blend_is_measured_on_the_true_face_and_lies_beyond_the_edge(cylinder)
     (base,) = edge_bases([a])[0]
     assert band.gap == pytest.approx(measure_face_contact(base.base, curve.surface, same_side=True).gap, rel=0.1)
     # Into the face backwards from the blend, and out of it with the blend: by the kernel's classifier.
-    path, number = split(spec)
+    _, number = split(spec)
     item = list(_faces(drilled_part("cylinder")))[number]
     v = np.linspace(*result.surface.domain[1], 13)[:-1]
     points, across = (result.surface.evaluate(np.zeros(12), v, order, 0) for order in (0, 1))
