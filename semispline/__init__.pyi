@@ -112,8 +112,8 @@ from .solver.splines.surfaces import BSplineSurface as BSplineSurface
 from .solver.splines.surfaces import SemiStructuredSurface as SemiStructuredSurface
 from .solver.topology.bands import Band as Band
 from .solver.topology.bands import band_along as band_along
-from .solver.topology.edge_bases import EdgeBase as EdgeBase
-from .solver.topology.edge_bases import edge_bases as edge_bases
+from .solver.topology.bases import EdgeBase as EdgeBase
+from .solver.topology.bases import edge_bases as edge_bases
 from .solver.topology.edge_blends import blend_edges as blend_edges
 from .solver.topology.face_edges import FaceEdge as FaceEdge
 from .solver.topology.face_edges import FaceEdges as FaceEdges

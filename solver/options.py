@@ -162,7 +162,7 @@ class BlendOptions:
             "p2": _p2(self.p2),
             "bulge": tuple(map(_bulge, _pair(self.bulge, "bulge"))),
             "box": None if self.box is None else _box(self.box),
-            "limits": _word(self.limits, "limits", ("auto", *get_args(Limits))),
+            "limits": limits_name(self.limits),
             "v_scale": None if self.v_scale is None else _word(self.v_scale, "v_scale", get_args(VScale)),
             "u_knots": None if self.u_knots is None else _knots(self.u_knots, "u_knots"),
             "middle_knots": None if self.middle_knots is None else _middle_knots(self.middle_knots),
@@ -314,6 +314,17 @@ def continuity_name(value: object, name: str = "continuity") -> Continuity:
     """
     upper = value.upper() if isinstance(value, str) else ""
     return cast("Continuity", upper if upper in get_args(Continuity) else _word(value, name, get_args(Continuity)))
+
+
+def limits_name(value: object, name: str = "limits") -> Limits | Auto:
+    """Return auto, exact or cad; messages call it `name`.
+
+    Raises
+    ------
+    OptionError
+        It is none of the three.
+    """
+    return cast("Limits | Auto", _word(value, name, ("auto", *get_args(Limits))))
 
 
 def _word(value: object, name: str, words: Sequence[str]) -> str:

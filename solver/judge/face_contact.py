@@ -101,7 +101,11 @@ def measure_face_contact(
     >>> measure_face_contact(Base(wall, "v0"), floor).angle_degrees
     90.0
     """
-    found = measure_face_profile(base, face, order=order, same_side=same_side)
+    return worst_of_face(measure_face_profile(base, face, order=order, same_side=same_side))
+
+
+def worst_of_face(found: Profile) -> FaceContact:
+    """Return the worst of what `measure_face_profile` found."""
     worst = {name: int(np.where(np.isnan(x), np.inf, x).argmax()) for name, x in found.values.items()}
     where = {name: Place(float(found.parameter[k]), tuple(found.points[k].tolist())) for name, k in worst.items()}
     most = {name: float(found.values[name][k]) for name, k in worst.items()}
@@ -128,7 +132,7 @@ def measure_face_profile(
     moved = transform(other, np.eye(3), -origin)
     own = _edge_side(base.moved(-origin), order) if isinstance(base, FreeEdge) else _base_side(base, order, origin)
     points, length = own.jet[0, 0], chord_lengths(own.jet[0, 0])
-    feet = feet_on(moved, points)
+    feet = surface_feet(moved, points)
     away = np.linalg.norm(points - surface_points(moved, feet[:, 0], feet[:, 1]), axis=1)
     if away.max() > _NOT_ON_IT * length[-1]:
         k = int(away.argmax())
@@ -176,7 +180,7 @@ def _edge_side(edge: FreeEdge, order: int) -> _Side:
     """Return the side of a face along an edge of it: at the feet of points of the edge."""
     s = _places(np.unique(edge.curve.knots))
     points, slope = edge.at(s)
-    feet = feet_on(edge.face, points)
+    feet = surface_feet(edge.face, points)
     normal = _normal(_face_jet(edge.face, feet, np.zeros_like(points), 1))
     into = np.cross(normal, slope) * (1.0 if edge.keep == "left" else -1.0)
     return _Side(s, _face_jet(edge.face, feet, into, order), _unit(slope), into)
@@ -192,8 +196,11 @@ def _places(breaks: FloatArray) -> FloatArray:
     return np.concatenate([breaks[:1], inside.ravel(), breaks[-1:]])
 
 
-def feet_on(face: BSplineSurface, points: FloatArray) -> FloatArray:
-    """Return the parameters of feet, shape (K, 2): Gauss-Newton steps from the nearest of many points, each halved."""
+def surface_feet(face: BSplineSurface, points: FloatArray) -> FloatArray:
+    """Return the parameters of the feet of points on a face, shape (K, 2).
+
+    Source: Gauss-Newton steps from the nearest of many points of the face, halved where they lead away.
+    """
     grids = []
     for breaks in face.breakpoints:
         each = -(-_GRID // (len(breaks) - 1))

@@ -15,6 +15,9 @@ from semispline.solver.splines import BSplineCurve, BSplineSurface
 # Points of the edge, in all and in a span, from the nearest of which another one is sought by so many steps.
 _NODES, _PER_SPAN, _STEPS = 2000, 8, 8
 
+# Ends nearer than this fraction of the extent are one point.
+_SAME_POINT = 1e-6
+
 
 @dataclass(frozen=True, eq=False)
 class FreeEdge:
@@ -44,22 +47,34 @@ class FreeEdge:
             return replace(self, face=face)
         return replace(self, face=face, curve=replace(self.curve, control_points=self.curve.control_points + step))
 
+    @property
+    def length(self) -> float:
+        """Model units, as that of chords."""
+        points = self.at(self._nodes())[0]
+        return float(np.linalg.norm(np.diff(points, axis=0), axis=1).sum())
+
     def nearest(self, points: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return the points of the edge nearest to others, and its derivatives there, shapes (K, 3)."""
-        breaks = np.unique(self.curve.knots)
-        count = max(_PER_SPAN, -(-_NODES // (len(breaks) - 1)))
-        inside = breaks[:-1, None] + np.diff(breaks)[:, None] * (np.arange(count) / count)
-        nodes = np.append(inside.ravel(), breaks[-1])
-        x = nodes[KDTree(self.at(nodes)[0]).query(points)[1]]
+        nodes = self._nodes()
+        start, end = float(nodes[0]), float(nodes[-1])
+        places = self.at(nodes)[0]
+        closed = np.linalg.norm(places[0] - places[-1]) <= _SAME_POINT * np.ptp(places, axis=0).max()
+        x = nodes[KDTree(places).query(points)[1]]
         here, slope = self.at(x)
         for _ in range(_STEPS):
             step = np.sum((points - here) * slope, axis=1) / np.maximum(np.sum(slope**2, axis=1), 1e-300)
-            tried = np.clip(x + step, breaks[0], breaks[-1])
+            tried = start + np.mod(x + step - start, end - start) if closed else np.clip(x + step, start, end)
             there, steeper = self.at(tried)
             closer = np.linalg.norm(points - there, axis=1) < np.linalg.norm(points - here, axis=1)
             x = np.where(closer, tried, x)
             here, slope = np.where(closer[:, None], there, here), np.where(closer[:, None], steeper, slope)
         return here, slope
+
+    def _nodes(self) -> FloatArray:
+        breaks = np.unique(self.curve.knots)
+        count = max(_PER_SPAN, -(-_NODES // (len(breaks) - 1)))
+        inside = breaks[:-1, None] + np.diff(breaks)[:, None] * (np.arange(count) / count)
+        return np.append(inside.ravel(), breaks[-1])
 
     def at(self, x: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return points in space and derivatives, shapes (K, 3)."""

@@ -1,13 +1,11 @@
+from .bases import EdgeBase as EdgeBase
+from .bases import edge_bases as edge_bases
+from .bases import paired_bases as paired_bases
 from .cuts import parse_cut as parse_cut
-from .edge_bases import EdgeBase as EdgeBase
-from .edge_bases import bases_along as bases_along
-from .edge_bases import edge_bases as edge_bases
-from .edge_bases import free_curves as free_curves
-from .edge_bases import paired_bases as paired_bases
+from .drawn_faces import DrawnFace as DrawnFace
+from .drawn_faces import read_drawn as read_drawn
 from .edge_blends import blend_bases as blend_bases
 from .edge_blends import blend_edges as blend_edges
-from .edge_limits import default_limits as default_limits
-from .edge_limits import face_limits as face_limits
 from .edge_listing import edge_lines as edge_lines
 from .edge_listing import edges_record as edges_record
 from .face_edges import FaceEdge as FaceEdge
@@ -17,6 +15,10 @@ from .face_edges import is_of_a_face as is_of_a_face
 from .face_edges import list_edges as list_edges
 from .face_edges import resolve_edge as resolve_edge
 from .face_edges import resolve_edges as resolve_edges
+from .face_meshes import EdgeLine as EdgeLine
+from .face_meshes import FaceMesh as FaceMesh
+from .free_contact import FreeContact as FreeContact
+from .free_contact import measure_free_contact as measure_free_contact
 from .listing import place_lines as place_lines
 from .listing import places_record as places_record
 from .moved_edges import moved_edges as moved_edges
@@ -26,5 +28,3 @@ from .place import PlaceSide as PlaceSide
 from .places import find_places as find_places
 from .replacing import ReplacedPair as ReplacedPair
 from .replacing import replaced_pair as replaced_pair
-from .trim_curves import TrimCurve as TrimCurve
-from .trim_curves import read_trim_curves as read_trim_curves

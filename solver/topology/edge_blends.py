@@ -10,7 +10,7 @@ from semispline.solver.blending import BandContact, BlendResult, blend
 from semispline.solver.errors import ComputationError, ContactError
 from semispline.solver.judge import Base, face_shortfalls, measure_face_contact
 from semispline.solver.options import BlendOptions, Continuity, named_options
-from semispline.solver.topology.edge_bases import EdgeBase, edge_bases, paired_bases
+from semispline.solver.topology.bases import EdgeBase, edge_bases, paired_bases
 from semispline.solver.topology.edge_limits import default_limits, face_limits
 from semispline.solver.topology.face_edges import ResolvedEdge
 from semispline.solver.topology.trim_curves import TrimCurve

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Literal
-
 from semispline.solver.judge import Base, cad_measures, exact_face_limits
+from semispline.solver.options import Limits
 from semispline.solver.topology.trim_curves import TrimCurve
 
 
-def default_limits(curve: TrimCurve) -> Literal["exact", "cad"]:
+def default_limits(curve: TrimCurve) -> Limits:
     """Return the limits of what meets a face through a band: bands of planes are exact, others are fitted."""
     return "exact" if curve.is_plane else "cad"
 
@@ -16,7 +15,7 @@ def default_limits(curve: TrimCurve) -> Literal["exact", "cad"]:
 def face_limits(
     curve: TrimCurve,
     base: Base,
-    kind: Literal["exact", "cad"],
+    kind: Limits,
     *,
     length: float,
     smoothed_by: float = 0.0,
