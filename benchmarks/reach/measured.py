@@ -12,14 +12,12 @@ from semispline.solver.io import LoadedSurface
 from semispline.solver.judge import FOLD_DEGREES, measure_face_contact
 from semispline.solver.topology import blend_edges
 from semispline.solver.topology.between import Between
-from semispline.solver.topology.fillets import Fillets
+from semispline.solver.topology.fillets import MOST_TURN, Fillets
 from semispline.solver.topology.half_edges import NONE, EdgeGraph
 from semispline.solver.topology.measuring import MeasuredEdges
 from semispline.solver.topology.relations import Relations
 from semispline.solver.topology.replacing import pair_of, resolved_pair, rows_beyond
 
-# Half a hole, or a pin, turns by more than this.
-_HALF = 150.0
 # Below this jump of curvature at a contact both sides of it are one smooth surface.
 _ONE_SURFACE = 0.4
 
@@ -59,7 +57,7 @@ def outcome(
         "kind": graph.faces.kind[place.face],
         "default": {between.a.uses, between.b.uses} == {taken.a.uses, taken.b.uses},
         "fillet": accepted is not None and {accepted.a.uses, accepted.b.uses} == {between.a.uses, between.b.uses},
-        "half_hole": between.turn > _HALF,
+        "half_hole": place.face in fillets.round_ends or between.turn > MOST_TURN,
         "hull": _is_of_a_hull(between),
         "turn": between.turn,
         "width": between.width,

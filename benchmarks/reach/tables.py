@@ -86,10 +86,8 @@ def _contacts(rows: Sequence[Row]) -> list[str]:
     if not contacts:
         return ["", "", ""]
     gap = max(contact["gap"] / contact["length"] for contact in contacts)
-    return [
-        f"{gap:.0e}",
-        *(f"{max(x[key] for x in contacts):.0e}" for key in ("angle_degrees", "curvature_jump_relative")),
-    ]
+    angle, curvature = (max(x[key] for x in contacts) for key in ("angle_degrees", "curvature_jump_relative"))
+    return [f"{gap:.0e}", f"{angle:.0e}", f"{curvature:.0e}"]
 
 
 def _answer(rows: Sequence[Row]) -> Iterator[str]:
@@ -139,8 +137,10 @@ Made by `make reach`; do not edit. How many places of real files `semispline ble
 nothing chosen. A *place* is a face that is no plane, with one wire of four edges, and a pair of opposite ones beyond
 which lie two other faces; a face may be two places, and none is left out for being hard.
 
-- *half holes*: places whose face turns by more than 150 degrees, so that its two sides look straight at each other
-- *hull*: patches of one smooth surface: curvature does not jump at the contacts
+- *half holes*: places whose face turns by more than 150 degrees along its contacts, as the wall of half a hole or of a
+  pin between parallel planes: the two sides look straight at each other
+- *hull*: places whose face goes on in both faces beyond without a jump of curvature: patches of one smooth hull, and
+  pieces of a chain of fillets from end to end
 - *free*: at least one contact is a free curve, and is met through a band
 - *no error*, *no warning*: blended; blended and nothing to be looked at
 - *fillets*: of the places that `--pairs` proposes as fillets those without a warning
