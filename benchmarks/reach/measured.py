@@ -7,18 +7,17 @@ from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 from typing import Any
 
-from semispline import Base, SemisplineError, blend
+from semispline import Base, SemisplineError
 from semispline.solver.io import LoadedSurface
 from semispline.solver.judge import FOLD_DEGREES, measure_face_contact
+from semispline.solver.topology import blend_edges
 from semispline.solver.topology.between import Between
-from semispline.solver.topology.fillets import Fillets
+from semispline.solver.topology.fillets import MOST_TURN, Fillets
 from semispline.solver.topology.half_edges import NONE, EdgeGraph
 from semispline.solver.topology.measuring import MeasuredEdges
 from semispline.solver.topology.relations import Relations
 from semispline.solver.topology.replacing import pair_of, resolved_pair, rows_beyond
 
-# Half a hole, or a pin, turns by more than this.
-_HALF = 150.0
 # Below this jump of curvature at a contact both sides of it are one smooth surface.
 _ONE_SURFACE = 0.4
 
@@ -58,7 +57,7 @@ def outcome(
         "kind": graph.faces.kind[place.face],
         "default": {between.a.uses, between.b.uses} == {taken.a.uses, taken.b.uses},
         "fillet": accepted is not None and {accepted.a.uses, accepted.b.uses} == {between.a.uses, between.b.uses},
-        "half_hole": between.turn > _HALF,
+        "half_hole": place.face in fillets.round_ends or between.turn > MOST_TURN,
         "hull": _is_of_a_hull(between),
         "turn": between.turn,
         "width": between.width,
@@ -71,21 +70,24 @@ def outcome(
         pair = resolved_pair(measured, between, [surfaces[face] for face in beyond])
         row["names"] = [pair.a.edge, pair.b.edge]
         row["bases"] = [one.entry.kind for one in (pair.a, pair.b) if one.entry is not None]
-        result = blend(Base(pair.a.surface, pair.a.edge), Base(pair.b.surface, pair.b.edge))
+        results = blend_edges(pair.a, pair.b)
     except SemisplineError as error:
         return row | {"error": f"{type(error).__name__}: {error}", "seconds": time.process_time() - started}
     except Exception as error:
         return row | {"error": f"FAULT {type(error).__name__}: {error}", "seconds": time.process_time() - started}
     contacts = [
         measure_face_contact(Base(result.surface, edge), surfaces[face].surface)
+        for result in results
         for edge, face in zip(("u0", "u1"), beyond, strict=True)
     ]
+    turn = max(result.shape.turn.degrees for result in results)
     return row | {
-        "warnings": result.warnings,
-        "turn_of_blend": result.shape.turn.degrees,
-        "folds": result.shape.turn.degrees > FOLD_DEGREES,
+        "parts": len(results),
+        "warnings": [warning for result in results for warning in result.warnings],
+        "turn_of_blend": turn,
+        "folds": turn > FOLD_DEGREES,
         "contacts": [{k: v for k, v in asdict(contact).items() if k != "at"} for contact in contacts],
-        "points": result.rows_stored,
+        "points": sum(result.rows_stored for result in results),
         "seconds": time.process_time() - started,
     }
 

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from semispline.solver.errors import FileError, InputError, SemisplineError
+from semispline.solver.errors import FileError, InputError
 from semispline.solver.io import (
     MILLIMETRES,
     OCC_SUFFIXES,
