@@ -29,6 +29,7 @@ from .edge_normals import check_regular_edge as check_regular_edge
 from .face_contact import FaceContact as FaceContact
 from .face_contact import measure_face_contact as measure_face_contact
 from .face_contact import measure_face_profile as measure_face_profile
+from .face_contact import surface_feet as surface_feet
 from .fairness import Fairness as Fairness
 from .fairness import measure_fairness as measure_fairness
 from .limits import cad_measures as cad_measures

@@ -118,7 +118,7 @@ def measure_face_profile(base: Base, face: BSplineSurface, *, order: int = 2, sa
     at = edge_curves(base.surface, base.side, order, origin).points(s, order)
     points = at[0, 0]
     length = chord_lengths(points)
-    feet = _feet(moved, points)
+    feet = surface_feet(moved, points)
     away = np.linalg.norm(points - surface_points(moved, feet[:, 0], feet[:, 1]), axis=1)
     if away.max() > _NOT_ON_IT * length[-1]:
         k = int(away.argmax())
@@ -146,8 +146,11 @@ def _places(breaks: FloatArray) -> FloatArray:
     return np.concatenate([breaks[:1], inside.ravel(), breaks[-1:]])
 
 
-def _feet(face: BSplineSurface, points: FloatArray) -> FloatArray:
-    """Return the parameters of feet, shape (K, 2): Gauss-Newton steps from the nearest of many points, each halved."""
+def surface_feet(face: BSplineSurface, points: FloatArray) -> FloatArray:
+    """Return the parameters of the feet of points on a face, shape (K, 2).
+
+    Source: Gauss-Newton steps from the nearest of many points of the face, halved where they lead away.
+    """
     grids = []
     for breaks in face.breakpoints:
         each = -(-_GRID // (len(breaks) - 1))

@@ -1,5 +1,6 @@
 from .drawn_faces import DrawnFace as DrawnFace
 from .drawn_faces import read_drawn as read_drawn
+from .drawn_faces import read_true_face as read_true_face
 from .edge_listing import edge_lines as edge_lines
 from .edge_listing import edges_record as edges_record
 from .face_edges import FaceEdge as FaceEdge
