@@ -15,12 +15,12 @@ import typer
 from semispline.solver.options import Continuity
 
 if TYPE_CHECKING:
-    from semispline.solver.blending import BlendResult, LinearInV
+    from semispline.solver.blending import BandContact, BlendResult, LinearInV
     from semispline.solver.io import SurfaceEntry
     from semispline.solver.judge import Contact, Meets, ShapeReport
 
 
-def contact_record(contact: Contact) -> dict[str, Any]:
+def contact_record(contact: Contact | BandContact) -> dict[str, Any]:
     """Return what a JSON file holds of a measured contact: nothing of what was not asked for."""
     return {name: finite(value) for name, value in asdict(contact).items() if value is not None}
 
@@ -34,8 +34,19 @@ def finite(value: Any) -> Any:
     return None if isinstance(value, float) and not isfinite(value) else value
 
 
+def reports_record(results: Sequence[BlendResult]) -> dict[str, Any]:
+    """Return what `blend --report` writes: of one blend, or of those of the parts of an edge."""
+    if len(results) == 1:
+        return report_record(results[0])
+    return {
+        "format": "semispline/1",
+        "kind": "blend_reports",
+        "parts": [report_record(result) for result in results],
+    }
+
+
 def report_record(result: BlendResult) -> dict[str, Any]:
-    """Return what `blend --report` writes."""
+    """Return what `blend --report` writes of one blend."""
     record: dict[str, Any] = {
         "format": "semispline/1",
         "kind": "blend_report",
@@ -80,6 +91,11 @@ def report_record(result: BlendResult) -> dict[str, Any]:
         "seconds": result.seconds,
         "contact_a": contact_record(result.contact_a),
         "contact_b": contact_record(result.contact_b),
+        **{
+            name: contact_record(contact)
+            for name, contact in (("band_a", result.band_a), ("band_b", result.band_b))
+            if contact is not None
+        },
     }
 
 
@@ -166,6 +182,8 @@ def print_result(result: BlendResult) -> None:
     at_a, at_b = result.continuity
     rows.append(("contact A", ", ".join(_figures(result.contact_a, at_a))))
     rows.append(("contact B", ", ".join(_figures(result.contact_b, at_b))))
+    for name, band in zip("AB", (result.band_a, result.band_b), strict=True):
+        rows += [] if band is None else _band_rows(name, band)
     if result.seam is not None:
         rows.append(("seam", ", ".join(_figures(result.seam, None))))
     if (worst := worst_inside(result.creases)) is not None:
@@ -173,6 +191,35 @@ def print_result(result: BlendResult) -> None:
     rows += _shape_rows(result.shape)
     print_table(rows)
     print_warnings(result.warnings)
+
+
+def _band_rows(name: str, band: BandContact) -> Iterator[tuple[str, str]]:
+    """Yield how a blend meets the face of a band, and of which curve that is one."""
+    figures = [
+        f"{words} {value:.2g}{unit} ({band.allowed[measure]:.2g} allowed)"
+        for measure, words, unit in (
+            ("gap", "gap to the face", ""),
+            ("off", "off the trim curve", ""),
+            ("angle_degrees", "angle", " degrees"),
+            ("curvature", "relative curvature jump", ""),
+            ("rate", "relative jump of its rate", ""),
+            ("second_rate", "relative jump of its second rate", ""),
+        )
+        if (value := getattr(band, measure)) is not None
+    ]
+    yield f"face at {name}", f"{', '.join(figures)}; {band.limits} limits"
+    of = "feet of the edge in space" if band.source == "foot" else "curve in the face's parameters"
+    apart = [
+        f"edge {distance:.2g} from the {other}"
+        for other, distance in (("face", band.edge_to_face), ("curve in the parameters", band.edge_to_pcurve))
+        if distance is not None
+    ]
+    notes = [
+        *apart,
+        *([f"moved by {band.smoothed_by:.2g} to be smooth"] if band.smoothed_by else []),
+        *([f"{band.left_out:.2g} of {band.length:.4g} left out at ends without a normal"] if band.left_out else []),
+    ]
+    yield f"band at {name}", "; ".join([f"{band.edge}, {band.control_points} points along the {of}", *notes])
 
 
 def _shape_rows(shape: ShapeReport) -> Iterator[tuple[str, str]]:

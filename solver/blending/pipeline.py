@@ -36,6 +36,8 @@ from semispline.solver.judge import (
     Correspondence,
     ShapeReport,
     check_regular_edge,
+    edge_length,
+    in_cad_limits,
     measure_contact,
     measure_creases,
     measure_regularity,
@@ -326,6 +328,10 @@ def _checked_contacts(
     order = max(2, *options.orders)
     contact_a = measure_contact(a, Base(surface, "u0"), correspondence=Correspondence(flipped=False), order=order)
     contact_b = measure_contact(Base(surface, "u1"), b, correspondence=matched, order=order)
+    if options.limits == "cad":
+        contact_a, contact_b = (
+            in_cad_limits(contact, edge_length(base)) for contact, base in ((contact_a, a), (contact_b, b))
+        )
     for index, (name, base, contact, wanted, shape) in enumerate(
         (
             ("a", a, contact_a, continuity[0], float(np.min(found.a))),

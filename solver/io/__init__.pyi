@@ -12,6 +12,7 @@ from .faces import MILLIMETRES as MILLIMETRES
 from .faces import Model as Model
 from .faces import SurfaceEntry as SurfaceEntry
 from .faces import counted as counted
+from .faces import without_equal_weights as without_equal_weights
 from .faces import without_surfaces as without_surfaces
 from .foreign import read_apart as read_apart
 from .json_files import StoredProblem as StoredProblem

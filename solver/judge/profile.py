@@ -115,6 +115,11 @@ def chord_lengths(points: FloatArray) -> FloatArray:
     return np.append(0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1)))
 
 
+def edge_length(base: Base) -> float:
+    """Return the length of an edge, as that of chords."""
+    return float(chord_lengths(base.derivative(_places(base.breakpoints_along()), 0, 0))[-1])
+
+
 def with_worse(contact: Contact, profile: Profile) -> Contact:
     """Return the contact with what its profile shows to be worse: rounding, which is another at each place."""
     worse: dict[str, Any] = {}

@@ -1,6 +1,12 @@
+from .bases import EdgeBase as EdgeBase
+from .bases import edge_bases as edge_bases
+from .bases import paired_bases as paired_bases
+from .cuts import parse_cut as parse_cut
 from .drawn_faces import DrawnFace as DrawnFace
 from .drawn_faces import read_drawn as read_drawn
 from .drawn_faces import read_true_face as read_true_face
+from .edge_blends import blend_bases as blend_bases
+from .edge_blends import blend_edges as blend_edges
 from .edge_listing import edge_lines as edge_lines
 from .edge_listing import edges_record as edges_record
 from .face_edges import FaceEdge as FaceEdge
@@ -12,8 +18,11 @@ from .face_edges import resolve_edge as resolve_edge
 from .face_edges import resolve_edges as resolve_edges
 from .face_meshes import EdgeLine as EdgeLine
 from .face_meshes import FaceMesh as FaceMesh
+from .free_contact import FreeContact as FreeContact
+from .free_contact import measure_free_contact as measure_free_contact
 from .listing import place_lines as place_lines
 from .listing import places_record as places_record
+from .moved_edges import moved_edges as moved_edges
 from .place import Place as Place
 from .place import Places as Places
 from .place import PlaceSide as PlaceSide

@@ -49,14 +49,11 @@ def edges_of_3dm(model: Model) -> EdgeGraph:
             continue
         known = _projected(surface, face.curves or (), far)
         times = Counter(trim[0] for loop in face.trims[1] for trim in loop)
-        k = 0
-        for wire, loop in enumerate(face.trims[1]):
-            # Loops run as the surface looks; faces that look the other way are walked backwards.
-            for edge, place, against in reversed(loop) if face.trims[0] else loop:
-                turned = bool(against) != face.trims[0]
-                rows.append((number, wire, k, edge, turned, edge >= 0 and times[edge] == 2, edge < 0))
-                records.append((0.0, *_NOTHING) if edge < 0 else known[place])
-                k += 1
+        wires = [wire for wire, loop in enumerate(face.trims[1]) for _ in loop]
+        for k, (wire, (edge, place, against)) in enumerate(zip(wires, edges_in_order(face), strict=True)):
+            turned = bool(against) != face.trims[0]
+            rows.append((number, wire, k, edge, turned, edge >= 0 and times[edge] == 2, edge < 0))
+            records.append((0.0, *_NOTHING) if edge < 0 else known[place])
     numbers = np.arange(len(faces))
     table = Faces(
         kind=tuple(face.kind for face in faces),
@@ -68,6 +65,19 @@ def edges_of_3dm(model: Model) -> EdgeGraph:
         walked=np.ones(len(faces), dtype=bool),
     )
     return EdgeGraph(model.path, model.unit, table, uses_of(table, rows, records), dict(model.others))
+
+
+def edges_in_order(face: RhinoFace) -> list[tuple[int, int, bool]]:
+    """Return what `RhinoFace` holds of each trim, as edges are numbered: in walking order, loop by loop."""
+    if face.trims is None:
+        return []
+    # Loops run as the surface looks; faces that look the other way are walked backwards.
+    return [trim for loop in face.trims[1] for trim in (reversed(loop) if face.trims[0] else loop)]
+
+
+def distance_from(surface: BSplineSurface, curve: Curve) -> float:
+    """Return how far a curve is from a surface, by samples."""
+    return float(_projected(surface, [curve], np.inf)[0][0])
 
 
 def _size(curves: Sequence[Curve]) -> float:
