@@ -22,8 +22,9 @@ SETTLED, _NOTHING = 0.01, 1e-8
 # whether the first settled it: the integrand is no polynomial. Along v, where a span has few points, the second has
 # twice as many: two and three points may be off alike. Then the second on spans halved again and again.
 _FIRST, _SECOND = ((24, 10), (6, 3)), ((32, 20), (9, 6))
-# How often every span is halved before the meter gives up; what a grid may hold in all, and what is worked on at once.
-_HALVINGS, _MOST, _AT_ONCE = 5, 2**21, 2**13
+# How often every span is halved before the meter gives up, and at which change between two of these grids it does at
+# once: what folds is infinite in truth. What a grid may hold in all, and what is worked on at once.
+_HALVINGS, _WILD, _MOST, _AT_ONCE = 5, 10.0, 2**21, 2**13
 # Spans of a cluster of knots along v are below this fraction of the mean one, and the cluster is narrower than the
 # second figure, in gaps: over it H may change as much as over a jump. A gap is at least so large, in windows: the ends
 # of a surface that closes across have none.
@@ -85,7 +86,8 @@ def measure_fairness(surface: ParametricSurface) -> Fairness:
     seams = closed_directions(surface)
     wide = _wide_spans(surface.breakpoints[1], _length_along(scaled), _CLUSTER * max(_gap(scaled), _LEAST_GAP))
     before: Fairness | None = None
-    for rules in (_rules(surface, wide, *grid) for grid in _GRIDS):
+    for points, halvings in _GRIDS:
+        rules = _rules(surface, wide, points, halvings)
         if before is not None and rules[0].points.size * rules[1].points.size > _MOST:
             return before
         gradient, area = _smooth_part(scaled, rules)
@@ -94,8 +96,9 @@ def measure_fairness(surface: ParametricSurface) -> Fairness:
         if not np.isfinite(value):
             return Fairness(np.inf, np.inf, np.inf, settled=False)
         settled = before is not None and abs(value - before.value) <= max(SETTLED * value, _NOTHING)
+        is_wild = before is not None and halvings > 0 and not before.value / _WILD <= value <= before.value * _WILD
         before = Fairness(value, smooth, jumps, settled)
-        if settled:
+        if settled or is_wild:
             break
     assert before is not None
     return before

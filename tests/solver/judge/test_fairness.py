@@ -324,6 +324,41 @@ def test_the_meter_gives_up_after_five_finer_grids(monkeypatch):
     assert (found.settled, found.value, taken) == (False, 32.0, 6)
 
 
+@pytest.mark.parametrize(
+    ("values", "count"),
+    [
+        # Tenfold where spans are halved, up or down; not where the first rule has fewer points than the second.
+        ((1.0, 99.0, 989.0, 989.0), 4),
+        ((1.0, 99.0, 991.0, 991.0), 3),
+        ((1.0, 0.05, 0.0051, 0.0051), 4),
+        ((1.0, 0.05, 0.0049, 0.0049), 3),
+        ((1.0, 2.0, 4.0, 41.0, 41.0), 4),
+    ],
+)
+def test_what_changes_tenfold_is_given_up_at_once(monkeypatch, values, count):
+    found, taken = measured_as(monkeypatch, *values)
+    assert (found.settled, found.value, taken) == (count == 4 and len(values) == 4, values[count - 1], count)
+
+
+@pytest.mark.parametrize("slope", [0.0, 0.1])
+def test_a_cuspidal_edge_is_given_up_and_a_sharp_bend_is_not(monkeypatch, slope):
+    """(t^2, t^3 + slope t) along x: |grad H|^2 dA is about dt / t^5, so infinite, where the slope is 0."""
+    taken = []
+    smooth_part = fairness._smooth_part
+    monkeypatch.setattr(fairness, "_smooth_part", lambda *of: taken.append(smooth_part(*of)) or taken[-1])
+    t = np.polynomial.Polynomial([-0.37, 1.0])
+    y, z = ((t**k).coef for k in (2, 3))
+    y, z = np.append(y, 0.0), z + slope * np.append(t.coef, [0.0, 0.0])
+    # Monomials to Bernstein coefficients, by blossoms.
+    points = [
+        [0.0, *(c[0] + k * c[1] / 3 + comb(k, 2) * c[2] / 3 + comb(k, 3) * c[3] for c in (y, z))] for k in range(4)
+    ]
+    net = np.array([points, np.add(points, [1.0, 0.0, 0.0])])
+    found = measure_fairness(BSplineSurface(1, 3, [0, 0, 1, 1], [0] * 4 + [1] * 4, net))
+    assert found.settled == (slope > 0)
+    assert found.settled or len(taken) == 3
+
+
 @pytest.mark.parametrize(("points", "count"), [(2**11, 3), (2**11 + 1, 2)])
 def test_no_grid_holds_more_than_two_million_points(monkeypatch, points, count):
     sizes = iter([(10, 10), (100, 100), (2**10, points), (4, 4), (4, 4), (4, 4)])
