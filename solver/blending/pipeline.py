@@ -360,8 +360,8 @@ def _unwarned(a: Base, b: Base, said: BlendOptions, result: BlendResult) -> Blen
 
     A little fairness is not worth a warning. A U-turn keeps one.
     """
-    taken = said.middle_curves == "auto" and bool(result.options.middle_curves)
-    if not (taken and result.warnings) or result.shape.exits.is_u_turn:
+    left = next((one for one in result.candidates if one.verdict == "chosen" and one.middle_curves), None)
+    if left is None or said.middle_curves != "auto" or not result.warnings or result.shape.exits.is_u_turn:
         return result
     try:
         flip: Flip = "yes" if result.flipped else "no"
@@ -370,7 +370,6 @@ def _unwarned(a: Base, b: Base, said: BlendOptions, result: BlendResult) -> Blen
         return result
     if plain.warnings:
         return result
-    (left,) = (candidate for candidate in result.candidates if candidate.verdict == "chosen")
     left = replace(left, verdict=f"fairness {left.fairness:.4g} is less, but {result.warnings[0]}")
     return replace(plain, candidates=(*plain.candidates, left), seconds=result.seconds + plain.seconds)
 
