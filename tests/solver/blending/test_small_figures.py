@@ -135,8 +135,12 @@ def test_a_grid_of_more_than_2000_nodes_has_one_between(monkeypatch, spans, acro
         cosines.append(objective.table.least_cosine)
         return start
 
+    def abreast(objective, starts, tolerance):
+        return [descended(objective, start, tolerance) for start in starts]
+
     monkeypatch.setattr(fair_search, "across", told)
     monkeypatch.setattr(fair_search, "_descended", descended)
+    monkeypatch.setattr(fair_search, "_descended_abreast", abreast)
     # Smooth rows: no line is crossed.
     knots = clamped(np.arange(1, spans) / spans, 3, 0.0, 1.0)
     y = [knots[i : i + 3].mean() for i in range(1, spans + 4)]
@@ -223,7 +227,8 @@ class Wells:
 def test_of_the_ends_of_two_starts_the_finer_grid_says_which_is_best(monkeypatch):
     found = []
     monkeypatch.setattr(fair_search, "FairObjective", Wells)
-    monkeypatch.setattr(fair_search, "_descended", lambda objective, start, tolerance: start)
+    for name in ("_descended", "_descended_abreast"):
+        monkeypatch.setattr(fair_search, name, lambda objective, start, tolerance: start)
 
     def solution(problem, unknowns, point, *_):
         found.append(point.x)
