@@ -239,6 +239,35 @@ def test_of_the_ends_of_two_starts_the_finer_grid_says_which_is_best(monkeypatch
     assert found[0][0] > 1
 
 
+@pytest.mark.parametrize(("settled_at", "is_taken"), [(0.9, True), (1.1, False)])
+def test_what_is_known_is_taken_where_what_looked_better_ends_worse(monkeypatch, settled_at, is_taken):
+    found = []
+
+    def known_start(problem, unknowns, known):
+        return unknowns.high.copy()
+
+    def settled(at, start, *_):
+        return replace(at, value=settled_at if start[0] > 1.3 else 1.0), True
+
+    def solution(problem, unknowns, point, *_):
+        found.append(point)
+        return known
+
+    known = fair_search.FairSolution(1.0, 1.0, (0.0, 0.0), 0.0, 0.0, 1, {})
+    for name, stub in {
+        "FairObjective": Wells,
+        "_descended": lambda objective, start, tolerance: start,
+        "_refined": lambda end, start, levels: end,
+        "_known_start": known_start,
+        "_settled": settled,
+        "_solution": solution,
+    }.items():
+        monkeypatch.setattr(fair_search, name, stub)
+    fair_search.solve_fair(state_problem(*strips()).problem, known)
+    assert bool(found[0].x[0] > 1.3) is is_taken
+    assert found[0].value == (settled_at if is_taken else 1.0)
+
+
 @pytest.mark.parametrize(("orders", "least", "most"), [((2, 2), 2, 5), ((1, 0), 2, 5), ((3, 2), 4, 6), ((4, 4), 5, 9)])
 def test_a_degree_that_does_not_fit_is_told_what_would(orders, least, most):
     for degree in (1, most + 1):
