@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -48,7 +49,8 @@ class TrueFace:
 
     def __init__(self, face: DrawnFace) -> None:
         surface = face.surface
-        self.name, self.unit = face.spec, face.loaded.unit
+        # The name of the file, without its folders.
+        self.name, self.unit = Path(face.spec).name, face.loaded.unit
         whole = surface.to_bspline() if isinstance(surface, SemiStructuredSurface) else surface
         self.origin = local_origin(whole)
         self.surface: BSplineSurface = transform(whole, np.eye(3), -self.origin)
