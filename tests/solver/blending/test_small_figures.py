@@ -257,6 +257,7 @@ def test_what_is_known_is_taken_where_what_looked_better_ends_worse(monkeypatch,
     for name, stub in {
         "FairObjective": Wells,
         "_descended": lambda objective, start, tolerance: start,
+        "_descended_abreast": lambda objective, starts, tolerance: starts,
         "_refined": lambda end, start, levels: end,
         "_known_start": known_start,
         "_settled": settled,
