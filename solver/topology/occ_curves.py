@@ -9,7 +9,6 @@ import numpy as np
 
 # Loaded before the limits of the process count.
 import OCP  # noqa: F401
-from scipy.interpolate import make_interp_spline
 
 from semispline.solver.arrays import FloatArray
 from semispline.solver.errors import FileError, InputError
@@ -124,6 +123,9 @@ def _taken_over(pcurve: Content, face: Any, converted: BSplineSurface) -> Conten
     x = spread(breaks, _PLACES, _DEGREE + 1)
     points = [surface.Value(float(s), float(t)) for s, t, _ in curve.evaluate(x)]
     at = parameters_on(Face(converted), np.array([(p.X(), p.Y(), p.Z()) for p in points]))
+    # Can wait: few surfaces are converted to others.
+    from scipy.interpolate import make_interp_spline
+
     ends = np.searchsorted(x, breaks[counts >= curve.degree])
     parts = [make_interp_spline(x[i : j + 1], at[i : j + 1], _DEGREE) for i, j in pairwise(ends)]
     # One spline of them all: where two meet there is one point.
