@@ -205,7 +205,8 @@ def test_bad_words_say_what_would_be_right(cut, far, tmp_path):
         (f"{cut}#0", "e99", EdgeError, ["face #0", "e0 to e3"]),
         (f"{cut}#1", "e0", FileError, ["#1: no such surface"]),
         (box, "e0", FileError, ["holds 6 surfaces", "#N"]),
-        (disc, "e0", EdgeError, ["e0 of", "is a free curve", "--edges 0"]),
+        (disc, "e0[0,1]", EdgeError, ["'e0[0,1]'", "u0, u1, v0, v1"]),
+        (cut, "e0[0]", EdgeError, ["e0 of", "only free curves are cut into parts; name e0"]),
         (far, "e0", FileError, ["cannot be read from '.json'"]),
         (cut, "near=1,2", EdgeError, ["'near=1,2'", "near=x,y,z"]),
         (cut, "near=1,2,nan", EdgeError, ["near=x,y,z"]),
@@ -243,13 +244,10 @@ def test_points_in_the_middle_of_edges_find_them(tmp_path):
             beside = np.array(edge.middle) + 0.01 * edge.length * rng.uniform(-0.5, 0.5, 3)
             for point in (edge.middle, beside):
                 word = "near=" + ",".join(map(repr, map(float, point)))
-                if edge.edge is None:
-                    with pytest.raises(EdgeError, match=f": {edge.name} of .* free curve"):
-                        resolve_edge(f"{path}#{n}", word)
-                else:
-                    found = resolve_edge(f"{path}#{n}", word)
-                    assert found.entry.name == edge.name
-                    assert f"{edge.name}, " in found.said
+                found = resolve_edge(f"{path}#{n}", word)
+                assert found.entry.name == edge.name
+                assert found.is_free == (edge.edge is None)
+                assert f"{edge.name}, " in found.said
 
 
 @pytest.mark.usefixtures("read_here")
