@@ -63,7 +63,7 @@ def converted_parameters(kind: ParameterKind, breaks: FloatArray, values: FloatA
     --------
     >>> turn = 2 * np.pi
     >>> converted_parameters("angle", np.array([0, turn / 3, 2 * turn / 3, turn]), np.array([0, turn / 6, 1.0]))
-    array([0.        , 1.04719755, 1.00345763])
+    array([0.        , 1.04719755, 1.00438616])
     """
     values = np.asarray(values, dtype=np.float64)
     if kind == "same":

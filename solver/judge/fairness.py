@@ -47,7 +47,7 @@ class Fairness:
     jumps : float
         What lines where H jumps contribute: as much as if the jump were spread over one window of turn.
     settled : bool
-        The last refinement of the samples changed the value by at most 1 %.
+        The last refinement of the samples changed what the spans along v add by at most 1 % of the value altogether.
     """
 
     value: float
@@ -85,23 +85,26 @@ def measure_fairness(surface: ParametricSurface) -> Fairness:
     scaled = _Scaled(surface, turn_window(surface))
     seams = closed_directions(surface)
     wide = _wide_spans(surface.breakpoints[1], _length_along(scaled), _CLUSTER * max(_gap(scaled), _LEAST_GAP))
-    before: Fairness | None = None
+    before: FloatArray | None = None
+    found: Fairness | None = None
     for points, halvings in _GRIDS:
         rules = _rules(surface, wide, points, halvings)
-        if before is not None and rules[0].points.size * rules[1].points.size > _MOST:
-            return before
-        gradient, area = _smooth_part(scaled, rules)
-        smooth, jumps = area * gradient, area * _jumps(scaled, rules, seams, wide)
+        if found is not None and rules[0].points.size * rules[1].points.size > _MOST:
+            return found
+        gradients, area = _smooth_part(scaled, rules)
+        parts = area * np.append(gradients.reshape(int(wide.sum()), -1).sum(axis=1), _jumps(scaled, rules, seams, wide))
+        smooth, jumps = float(parts[:-1].sum()), float(parts[-1])
         value = smooth + jumps
         if not np.isfinite(value):
             return Fairness(np.inf, np.inf, np.inf, settled=False)
-        settled = before is not None and abs(value - before.value) <= max(SETTLED * value, _NOTHING)
-        is_wild = before is not None and halvings > 0 and not before.value / _WILD <= value <= before.value * _WILD
-        before = Fairness(value, smooth, jumps, settled)
+        # Span by span: what one gains another may lose.
+        settled = before is not None and np.abs(parts - before).sum() <= max(SETTLED * value, _NOTHING)
+        is_wild = found is not None and halvings > 0 and not found.value / _WILD <= value <= found.value * _WILD
+        before, found = parts, Fairness(value, smooth, jumps, bool(settled))
         if settled or is_wild:
             break
-    assert before is not None
-    return before
+    assert found is not None
+    return found
 
 
 @dataclass(frozen=True, eq=False)
@@ -187,15 +190,15 @@ def _rules(
     return rule(u_breaks, everywhere, totals[0], least[0]), rule(v_breaks, wide, totals[1], least[1])
 
 
-def _smooth_part(surface: _Scaled, rules: _Rules) -> tuple[float, float]:
-    """Return the integral of |grad H|^2 and the area, lengths in windows."""
+def _smooth_part(surface: _Scaled, rules: _Rules) -> tuple[FloatArray, float]:
+    """Return what each point of v adds to the integral of |grad H|^2, and the area, lengths in windows."""
     (u, of_u), (v, of_v) = ((rule.points, rule.weights) for rule in rules)
-    gradient = area = 0.0
+    gradients, area = np.empty(len(v)), 0.0
     for part in _parts(len(u), len(v)):
         density, element = _gradient_density(surface, u, v[part])
-        gradient += float(of_u @ density @ of_v[part])
+        gradients[part] = (of_u @ density) * of_v[part]
         area += float(of_u @ element @ of_v[part])
-    return gradient, area
+    return gradients, area
 
 
 def _parts(n_u: int, n_v: int) -> Iterator[slice]:

@@ -44,7 +44,7 @@ SHORT_NAMES = {
 }
 
 _SMOOTH_SHARE = 0.6
-_LEAST_TURN, _MOST_TURN = 8.0, 150.0
+_LEAST_TURN, MOST_TURN = 8.0, 150.0
 _EVEN = 0.25
 # Half of a side that is an end of another candidate makes the side one.
 _END_SHARE = 0.5
@@ -210,7 +210,7 @@ def _refusal(between: Between) -> tuple[int, Refusal | None]:
     certain = k > 10 * kn and jump > 0.5
     rules: tuple[tuple[str, Callable[[], bool]], ...] = (
         (FLAT, lambda: turn < _LEAST_TURN),
-        (ROUND_END, lambda: turn > _MOST_TURN),
+        (ROUND_END, lambda: turn > MOST_TURN),
         (BENT_NEIGHBOUR, lambda: k < 1.5 * kn),
         (ONE_HULL, lambda: jump < 0.4 and (turn < 30 or k < 3 * kn)),
         (TOO_SHORT, lambda: between.length < (0.05 if certain else 0.5) * between.width),

@@ -288,17 +288,26 @@ def test_a_cluster_at_an_end_is_left_out():
 
 
 def measured_as(monkeypatch, *values):
-    """A flat surface whose finer and finer grids give these values, and how many of them were taken."""
-    taken = []
+    """A flat surface whose finer and finer grids give these values, and how many of them were taken.
 
-    def smooth_part(*_):
-        taken.append(values[len(taken)])
-        return taken[-1], 1.0
+    A value may be a pair: of the two halves of the surface.
+    """
+    taken = []
+    halves = isinstance(values[0], tuple)
+
+    def smooth_part(_, rules):
+        value = values[len(taken)]
+        taken.append(value)
+        gradients = np.zeros(len(rules[1].points))
+        # At the first point, or at the first and the last.
+        gradients[[0, -1] if halves else [0]] = value
+        return gradients, 1.0
 
     monkeypatch.setattr(fairness, "_smooth_part", smooth_part)
     monkeypatch.setattr(fairness, "_jumps", lambda *_: 0.0)
-    k = [0, 0, 1, 1]
-    return measure_fairness(BSplineSurface(1, 1, k, k, [[[0, 0, 0], [0, 1, 0]], [[1, 0, 0], [1, 1, 0]]])), len(taken)
+    k, y = [0, 0, 1, 1], [0, 0.5, 1] if halves else [0, 1]
+    flat = BSplineSurface(1, 1, k, [0, *y, 1], [[[x, at, 0] for at in y] for x in (0, 1)])
+    return measure_fairness(flat), len(taken)
 
 
 @pytest.mark.parametrize(
@@ -317,6 +326,20 @@ def measured_as(monkeypatch, *values):
 def test_a_change_of_a_hundredth_settles(monkeypatch, values, count):
     found, taken = measured_as(monkeypatch, *values)
     assert (found.settled, found.value, taken) == (True, values[count - 1], count)
+
+
+@pytest.mark.parametrize(
+    ("values", "count"),
+    [
+        # What one half gains the other loses: the sum alone would settle at once.
+        (((1.0, 3.0), (3.0, 1.0), (3.0, 1.0)), 3),
+        (((0.98, 1.02), (1.0, 1.0), (1.0, 1.0)), 3),
+        (((0.991, 1.009), (1.0, 1.0), (1.0, 1.0)), 2),
+    ],
+)
+def test_each_span_settles(monkeypatch, values, count):
+    found, taken = measured_as(monkeypatch, *values)
+    assert (found.settled, found.value, taken) == (True, sum(values[count - 1]), count)
 
 
 def test_the_meter_gives_up_after_five_finer_grids(monkeypatch):
