@@ -120,6 +120,8 @@ from .solver.topology.face_edges import FaceEdges as FaceEdges
 from .solver.topology.face_edges import ResolvedEdge as ResolvedEdge
 from .solver.topology.face_edges import list_edges as list_edges
 from .solver.topology.face_edges import resolve_edge as resolve_edge
+from .solver.topology.free_contact import FreeContact as FreeContact
+from .solver.topology.free_contact import measure_free_contact as measure_free_contact
 from .solver.topology.place import Place as Place
 from .solver.topology.place import Places as Places
 from .solver.topology.place import PlaceSide as PlaceSide

@@ -92,7 +92,7 @@ def blend_command(
     print_resolved(ends)
     for k, result in enumerate(results):
         if len(results) > 1:
-            typer.echo(f"part {k + 1} of {len(results)}, {files[k % len(files)]}:")
+            typer.echo(f"part {k + 1} of {len(results)}, in {files[k] if len(files) > 1 else out}:")
         print_result(result)
 
 

@@ -7,6 +7,7 @@ from .disk import shown as shown
 from .disk import write_files as write_files
 from .disk import write_text as write_text
 from .disk import write_texts as write_texts
+from .face_boundary import distances as distances
 from .faces import MILLIMETRES as MILLIMETRES
 from .faces import Model as Model
 from .faces import SurfaceEntry as SurfaceEntry
@@ -18,9 +19,12 @@ from .json_files import StoredProblem as StoredProblem
 from .json_files import read_problem as read_problem
 from .json_files import write_problem as write_problem
 from .json_text import to_text as to_text
+from .meshes import INSIDE as INSIDE
+from .meshes import grid_triangles as grid_triangles
 from .meshes import pyvista_module as pyvista_module
 from .meshes import sampled as sampled
 from .meshes import triangle_mesh as triangle_mesh
+from .meshes import with_normals as with_normals
 from .occ import read_occ as read_occ
 from .occ_kernel import require_kernel as require_kernel
 from .occ_parameters import ParameterKind as ParameterKind
@@ -36,7 +40,6 @@ from .surface_files import check_surface_output as check_surface_output
 from .surface_files import face_warnings as face_warnings
 from .surface_files import in_one_unit as in_one_unit
 from .surface_files import list_file as list_file
-from .surface_files import read_all as read_all
 from .surface_files import read_surfaces as read_surfaces
 from .surface_files import relative_spec as relative_spec
 from .surface_files import split_spec as split_spec

@@ -15,7 +15,7 @@ from warnings import warn
 import numpy as np
 
 from semispline.solver.arrays import FloatArray
-from semispline.solver.errors import FileError, InputError, TrimError
+from semispline.solver.errors import FileError, TrimError
 from semispline.solver.io.disk import atomic_path, check_output, require_file, shown
 from semispline.solver.io.face_boundary import FaceBoundary, edge_offset
 from semispline.solver.io.faces import MILLIMETRES, Face, Model, SurfaceEntry, describe, picked, without_equal_weights
@@ -187,39 +187,6 @@ def face_warnings(*edges: tuple[str | Path, str, LoadedSurface], strict: bool = 
             remedy = "make the face a B-spline where it was drawn, or leave out strict"
         raise TrimError(f"{'; '.join(found)}; {remedy}")
     return found
-
-
-def read_all(specs: Sequence[str | Path]) -> tuple[list[LoadedSurface], list[str]]:
-    """Read, of each file, the surface PATH#N or, without a number, all surfaces; in the units of the files.
-
-    Returns
-    -------
-    list of LoadedSurface
-    list of str
-        Why faces of a file without a number were left out.
-
-    Raises
-    ------
-    FileError, KnotError, ControlPointError
-        As `read_surface`; also where no face of a file can be read out.
-    """
-    loaded: list[LoadedSurface] = []
-    problems: list[str] = []
-    for spec in specs:
-        path, number = split_spec(spec)
-        model = open_model(path)
-        if number is not None or len(model.faces) < 2:
-            loaded.append(_loaded(picked(model, number), model.unit))
-            continue
-        before = len(loaded)
-        for face in model.faces:
-            try:
-                loaded.append(_loaded(face, model.unit))
-            except InputError as error:
-                problems.append(str(error))
-        if len(loaded) == before:
-            raise FileError(f"{path}: none of its {len(model.faces)} surfaces can be used; the first: {problems[-1]}")
-    return loaded, problems
 
 
 def in_one_unit(loaded: Sequence[LoadedSurface]) -> list[LoadedSurface]:

@@ -30,6 +30,7 @@ from .edge_normals import check_regular_edge as check_regular_edge
 from .face_contact import FaceContact as FaceContact
 from .face_contact import measure_face_contact as measure_face_contact
 from .face_contact import measure_face_profile as measure_face_profile
+from .face_contact import surface_feet as surface_feet
 from .face_contact import worst_of_face as worst_of_face
 from .face_limits import exact_face_limits as exact_face_limits
 from .face_limits import face_shortfalls as face_shortfalls

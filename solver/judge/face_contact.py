@@ -187,7 +187,9 @@ def _edge_side(edge: FreeEdge, order: int) -> _Side:
     feet = surface_feet(edge.face, points)
     normal = _normal(_face_jet(edge.face, feet, np.zeros_like(points), 1))
     into = np.cross(normal, slope) * (1.0 if edge.keep == "left" else -1.0)
-    return _Side(s, _face_jet(edge.face, feet, into, order), _unit(slope), into)
+    # Beside a knot line derivatives are those of the kept side, and the points are still on the edge.
+    jet = _face_jet(edge.face, feet, into, order) | {(0, 0): surface_points(edge.face, feet[:, 0], feet[:, 1])}
+    return _Side(s, jet, _unit(slope), into)
 
 
 def _at_an_end(face: BSplineSurface, feet: FloatArray) -> NDArray[np.bool_]:

@@ -13,6 +13,7 @@ from semispline.solver.judge import Profile
 _PLOTS = (
     ("gap.png", "gap", "gap, {unit}"),
     ("off.png", "off", "off the trim curve, {unit}"),
+    ("off.png", "off", "off the trim curve, {unit}"),
     ("angle.png", "angle_degrees", "angle, degrees"),
     ("curvature.png", "curvature_jump_relative", "jump of curvature, relative"),
     ("rate.png", "rate_jump_relative", "jump of its rate, relative"),

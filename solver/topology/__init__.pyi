@@ -4,6 +4,7 @@ from .bases import paired_bases as paired_bases
 from .cuts import parse_cut as parse_cut
 from .drawn_faces import DrawnFace as DrawnFace
 from .drawn_faces import read_drawn as read_drawn
+from .drawn_faces import read_true_face as read_true_face
 from .edge_blends import blend_bases as blend_bases
 from .edge_blends import blend_edges as blend_edges
 from .edge_listing import edge_lines as edge_lines

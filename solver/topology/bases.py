@@ -45,15 +45,15 @@ class EdgeBase:
 
 
 def edge_bases(
-    ends: Sequence[ResolvedEdge], continuity: Sequence[Continuity] = ("G2", "G2")
+    ends: Sequence[ResolvedEdge], continuity: Continuity | Sequence[Continuity] = "G2"
 ) -> list[tuple[EdgeBase, ...]]:
     """Return the bases along each edge, in its own direction: one, or more where a free curve has to be cut.
 
     Parameters
     ----------
     ends : sequence of ResolvedEdge
-    continuity : sequence of str
-        That each is to be met with.
+    continuity : str or sequence of str
+        That all, or each, is to be met with.
 
     Raises
     ------
@@ -65,9 +65,10 @@ def edge_bases(
         As `read_trim_curves`.
     """
     curves = free_curves(ends)
+    orders = [continuity] * len(ends) if isinstance(continuity, str) else continuity
     return [
         (EdgeBase(end.edge, Base(end.surface, end.edge)),) if curve is None else bases_along(curve, wanted, end.part)
-        for end, curve, wanted in zip(ends, curves, continuity, strict=True)
+        for end, curve, wanted in zip(ends, curves, orders, strict=True)
     ]
 
 

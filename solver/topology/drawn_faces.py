@@ -59,6 +59,11 @@ class DrawnFace:
         return self.loaded.surface
 
     @property
+    def path(self) -> str:
+        """The file."""
+        return split_spec(self.spec)[0]
+
+    @property
     def number(self) -> int | None:
         """N of `PATH#N`."""
         return split_spec(self.spec)[1]
@@ -96,6 +101,19 @@ def read_drawn(specs: Sequence[str]) -> tuple[list[DrawnFace], list[str]]:
         if not any(split_spec(item.spec)[0] == path for item in found):
             raise FileError(f"{path}: none of its surfaces can be used; the first: {said[-1]}")
     return _in_one_unit(found), said
+
+
+def read_true_face(spec: str, others: Sequence[LoadedSurface] = ()) -> DrawnFace:
+    """Read one face with its border, in the unit of others.
+
+    Raises
+    ------
+    FileError, KnotError, ControlPointError, ComputationError
+        As `read_surfaces` and `read_drawn`.
+    """
+    (loaded,) = read_surfaces([spec])
+    (face,), _ = read_drawn([spec])
+    return replace(face, loaded=in_one_unit([*others, loaded])[-1])
 
 
 def _in_one_unit(faces: Sequence[DrawnFace]) -> list[DrawnFace]:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
 # Loaded before the limits of the process count.
 import OCP  # noqa: F401
-from scipy.interpolate import make_interp_spline
 
 from semispline.solver.arrays import FloatArray
 from semispline.solver.errors import FileError, InputError
@@ -112,15 +112,26 @@ def edge_curve(
 
 
 def _taken_over(pcurve: Content, face: Any, converted: BSplineSurface) -> Content:
-    """Return a curve in the parameters of a converted surface, through the feet of many of its points."""
+    """Return a curve in the parameters of a converted surface, through the feet of many of its points.
+
+    Each piece between corners has points of its own: what goes through a corner would swing.
+    """
     from OCP.BRepAdaptor import BRepAdaptor_Surface
 
     curve, surface = BSplineCurve(*pcurve), BRepAdaptor_Surface(face, False)
-    x = spread(np.unique(curve.knots), _PLACES)
+    breaks, counts = np.unique(curve.knots, return_counts=True)
+    x = spread(breaks, _PLACES, _DEGREE + 1)
     points = [surface.Value(float(s), float(t)) for s, t, _ in curve.evaluate(x)]
     at = parameters_on(Face(converted), np.array([(p.X(), p.Y(), p.Z()) for p in points]))
-    through = make_interp_spline(x, at, _DEGREE)
-    return _DEGREE, through.t, through.c, None
+    # Can wait: few surfaces are converted to others.
+    from scipy.interpolate import make_interp_spline
+
+    ends = np.searchsorted(x, breaks[counts >= curve.degree])
+    parts = [make_interp_spline(x[i : j + 1], at[i : j + 1], _DEGREE) for i, j in pairwise(ends)]
+    # One spline of them all: where two meet there is one point.
+    knots = [*(part.t[: -_DEGREE - 1][k > 0 :] for k, part in enumerate(parts)), parts[-1].t[-_DEGREE - 1 :]]
+    net = [part.c[k > 0 :] for k, part in enumerate(parts)]
+    return _DEGREE, np.concatenate(knots), np.concatenate(net), None
 
 
 def _content(spline: Any, coordinates: Any) -> Content:

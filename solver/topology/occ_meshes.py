@@ -19,7 +19,7 @@ from semispline.solver.topology.face_meshes import EdgeLine, FaceMesh
 from semispline.solver.topology.occ_edges import wires
 
 # The triangles keep to the face within this fraction of the part's diagonal, and turn by no more than this, in radians.
-_DEFLECTION, _TURN = 5e-4, 0.2
+_DEFLECTION, _TURN = 2e-4, 0.1
 # Points on an edge that bounds no triangles.
 _ON_EDGE = 48
 

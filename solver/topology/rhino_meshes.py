@@ -7,15 +7,18 @@ import numpy as np
 from semispline.solver.arrays import FloatArray
 from semispline.solver.errors import SemisplineError
 from semispline.solver.io import RhinoFace, curve_evaluator
-from semispline.solver.topology.face_curves import parameters_on
+from semispline.solver.topology.face_curves import unwrapped
 from semispline.solver.topology.face_jets import Face
 from semispline.solver.topology.face_meshes import EdgeLine, FaceMesh, grid_within
 from semispline.solver.topology.half_edges import Flags
+from semispline.solver.topology.rhino_edges import FAR, feet_on
 
 # Points of each span of an edge, and of an edge at the least.
 _PER_SPAN, _LEAST = 4, 40
 # Derivatives below this fraction of the largest along a loop vanish: it runs through a pole.
 _POLE = 1e-6
+# An edge that is further from its surface than this, of its size, is not on it; files keep to much less, but not all.
+_OFF = 0.02
 # A loop whose ends are further apart than this, of the domain, was not found on the surface.
 _OPEN = 1e-3
 
@@ -70,8 +73,11 @@ def _points(face: RhinoFace, place: int) -> FloatArray:
 
 
 def _in_parameters(face: Face, points: FloatArray) -> FloatArray | None:
-    """Return a loop in the parameters, or None where it does not close there."""
-    at = parameters_on(face, points)
+    """Return a loop in the parameters, or None where it is not on the surface, or does not close there."""
+    at, away = feet_on(face.surface, points, FAR * face.size)
+    if away.max() > _OFF * face.size:
+        return None
+    at = unwrapped(at, face)
     for axis, orders in enumerate(((1, 0), (0, 1))):
         speed = np.linalg.norm(face.jet(at, 1)[orders], axis=1)
         at = _through_poles(at, speed <= _POLE * speed.max(), axis, face.widths[axis] if face.closed[axis] else None)
@@ -86,8 +92,11 @@ def _through_poles(at: FloatArray, in_pole: Flags, axis: int, period: float | No
     first = int(np.flatnonzero(~in_pole & np.roll(in_pole, 1))[0])
     at, in_pole = np.roll(at, -first, axis=0), np.roll(in_pole, -first)
     kept: list[FloatArray] = []
+    turns = []
     for k in range(len(at)):
         beside = [j % len(at) for j in (k - 1, k + 1) if not in_pole[j % len(at)]] if in_pole[k] else [k]
+        # Entered at one of its points and left at another, or both at one.
+        turns += [len(kept) + 1] if in_pole[k] and (k - 1) % len(at) in beside else []
         for j in beside:
             point = at[k].copy()
             point[axis] = at[j, axis]
@@ -97,4 +106,7 @@ def _through_poles(at: FloatArray, in_pole: Flags, axis: int, period: float | No
         loop[:, axis] = np.unwrap(loop[:, axis], period=period)
         # In the last pole the loop may turn by any part of a turn, and where it ends is known.
         loop[-2:, axis] -= np.round((loop[-1, axis] - loop[0, axis]) / period) * period
+        # Up and down one seam from pole to pole: all the way round lies between.
+        if len(turns) == 2 and np.ptp(loop[:, axis]) <= _OPEN * period:
+            loop[turns[0] : turns[1], axis] += period
     return loop

@@ -43,7 +43,7 @@ def drilled_part(kind):
 
 
 def hole(path, kind):
-    """Face and entry of the longest free edge of a hole in a face of that kind, at the side where the tool comes out."""
+    """Face and entry of the longest free edge of a hole in a face of that kind, where the tool comes out."""
     found = []
     for face in range(len(list_surfaces(path))):
         edges = list_edges(path, face)
@@ -53,7 +53,7 @@ def hole(path, kind):
 
 
 def beyond(path, entry, kind):
-    """A file with what a hole is blended to, its edge v0 nearest: a tube about the axis, or a sheet for an open edge."""
+    """A file with what a hole is blended to, its edge v0 nearest: a tube about the axis, a sheet for an open edge."""
     way = np.array(TILT) / np.linalg.norm(TILT)
     base = np.array([*WHOLE[kind][1], -50.0])
     start, end = np.array(entry.start), np.array(entry.end)

@@ -90,6 +90,24 @@ def loop(rng, points=201):
     return round_curve(0.5 + r[:, None] * np.stack([np.cos(t), np.sin(t)], axis=1))
 
 
+WAVE = cubic((0.2, 0.2), (0.4, 0.7), (0.6, 0.2), (0.85, 0.8))
+
+
+def bent_face(jump):
+    """A cylinder of curvature 1/10 about, whose curvature across x = 0 jumps by a fraction."""
+    knots = np.array([-1, -1, -1, -1, 0, 0, 1, 1, 1, 1])
+    x = np.array([-3, -2, -1, 1, 2, 3.0])
+    # z = x^2 / 20 for x < 0 and (1 + jump) x^2 / 20 for x > 0, with x = 3 s: Bezier points of a parabola.
+    left = np.array([9, 3, 0]) / 20
+    right = (1 + jump) * np.array([0, 3, 9]) / 20
+    z = np.concatenate([left, right])
+    y = np.linspace(-3, 3, 4)
+    net = np.stack(
+        [np.repeat(x[:, None], 4, 1), np.repeat(y[None], 6, 0), np.repeat(z[:, None], 4, 1) + y**2 / 40], axis=-1
+    )
+    return BSplineSurface(3, 3, knots, [0, 0, 0, 0, 1, 1, 1, 1], net)
+
+
 # By name: a face, Open CASCADE's own surface of that kind, and a curve on it, of its parameters or in space.
 ELEMENTARY = {
     "plane": (plane([0, 0, 0], [10, 0, 0], [0, 10, 0]), Geom_Plane(AXES), loop(np.random.default_rng(0))),

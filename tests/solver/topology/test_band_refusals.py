@@ -7,7 +7,18 @@ from math import comb
 import numpy as np
 import pytest
 
-from helpers.free_curves import cone, cubic, cylinder, ellipse_on_cylinder, free_form, line, loop, sphere
+from helpers.free_curves import (
+    WAVE,
+    bent_face,
+    cone,
+    cubic,
+    cylinder,
+    ellipse_on_cylinder,
+    free_form,
+    line,
+    loop,
+    sphere,
+)
 from semispline import (
     BandError,
     Base,
@@ -28,24 +39,6 @@ from semispline.solver.topology.bands import band_along
 from semispline.solver.topology.curve_pieces import pieces
 from semispline.solver.topology.face_curves import curve_on_face, edge_on_face
 from semispline.solver.topology.face_jets import Face
-
-WAVE = cubic((0.2, 0.2), (0.4, 0.7), (0.6, 0.2), (0.85, 0.8))
-
-
-def bent_face(jump):
-    """A cylinder of curvature 1/10 about, whose curvature across x = 0 jumps by a fraction."""
-    knots = np.array([-1, -1, -1, -1, 0, 0, 1, 1, 1, 1])
-    x = np.array([-3, -2, -1, 1, 2, 3.0])
-    # z = x^2 / 20 for x < 0 and (1 + jump) x^2 / 20 for x > 0, with x = 3 s: Bezier points of a parabola.
-    left = np.array([9, 3, 0]) / 20
-    right = (1 + jump) * np.array([0, 3, 9]) / 20
-    z = np.concatenate([left, right])
-    y = np.linspace(-3, 3, 4)
-    net = np.stack(
-        [np.repeat(x[:, None], 4, 1), np.repeat(y[None], 6, 0), np.repeat(z[:, None], 4, 1) + y**2 / 40], axis=-1
-    )
-    return BSplineSurface(3, 3, knots, [0, 0, 0, 0, 1, 1, 1, 1], net)
-
 
 ACROSS = cubic((-0.8, 0.2), (-0.3, 0.8), (0.3, 0.3), (0.8, 0.7))
 

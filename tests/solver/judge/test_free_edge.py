@@ -1,0 +1,164 @@
+"""Contacts measured along a free edge of a face: off it, folded back over it, and of two faces at their edge."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from helpers.free_curves import cubic, cylinder, ellipse_on_cylinder, free_form, line
+from semispline import Base, blend, extrude, plane
+from semispline.solver.judge import (
+    FreeEdge,
+    exact_face_limits,
+    face_shortfalls,
+    measure_face_contact,
+    model_size,
+    required_face_measures,
+)
+from semispline.solver.judge.face_contact import FaceContact
+
+FLOOR = plane([0, 0, 0], [10, 0, 0], [0, 10, 0])
+# Along x = y; the floor is kept above it, where y > x.
+DIAGONAL = FreeEdge(FLOOR, line([1, 1, 0], [9, 9, 0]), True, "left")
+
+
+def ramp(step, rise=1.0, way=(1.0, -1.0)):
+    """A sheet off the diagonal by `step` across, that runs on in a direction of the floor and rises."""
+    across = np.array([1, -1, 0]) / np.sqrt(2)
+    away = np.array([*way, 0.0]) / np.linalg.norm(way) + [0, 0, rise]
+    return Base(plane(np.array([1, 1, 0]) + step * across, away, [8, 8, 0]), "u0")
+
+
+@given(st.floats(-0.3, 0.3), st.floats(0, 5))
+def test_off_and_angle_are_what_they_are(step, rise):
+    found = measure_face_contact(ramp(step, rise), DIAGONAL)
+    assert found.gap <= 1e-14
+    # Rounding of coordinates of size 10.
+    assert found.off == pytest.approx(abs(step), abs=1e-13)
+    assert found.angle_degrees == pytest.approx(np.degrees(np.arctan(rise)), abs=1e-5)
+
+
+@given(st.floats(0, 5))
+def test_what_folds_back_over_the_kept_part_turns_by_more_than_a_right_angle(rise):
+    back = measure_face_contact(ramp(0.0, rise, (-1.0, 1.0)), DIAGONAL)
+    assert back.angle_degrees == pytest.approx(180 - np.degrees(np.arctan(rise)), abs=1e-5)
+    # Of a band that is right.
+    assert measure_face_contact(ramp(0.0, rise, (-1.0, 1.0)), DIAGONAL, same_side=True).angle_degrees <= 90
+    other_side = FreeEdge(DIAGONAL.face, DIAGONAL.curve, True, "right")
+    assert measure_face_contact(ramp(0.0, rise, (-1.0, 1.0)), other_side).angle_degrees <= 90
+
+
+def test_a_curve_in_the_parameters_is_the_same_edge():
+    flat = FreeEdge(FLOOR, line((0.1, 0.1), (0.9, 0.9)), False, "left")
+    a, b = (measure_face_contact(ramp(0.2, 0.5), edge) for edge in (flat, DIAGONAL))
+    assert (a.off, a.angle_degrees) == pytest.approx((b.off, b.angle_degrees), abs=1e-12)
+    assert flat.length == pytest.approx(np.sqrt(128))
+    up = FreeEdge(FLOOR, line([1, 1, 0.25], [9, 9, 0.25]), True, "left")
+    # The edge in space may be off its face: what is square to the face does not count as off the edge.
+    assert measure_face_contact(ramp(0.2), up).off == pytest.approx(0.2, abs=1e-12)
+
+
+def test_beyond_the_end_of_an_edge_is_off_it():
+    short = FreeEdge(FLOOR, line([1, 1, 0], [5, 5, 0]), True, "left")
+    assert measure_face_contact(ramp(0.0), short).off == pytest.approx(np.sqrt(32))
+
+
+@given(st.floats(0, 1), st.integers(1, 2000))
+def test_the_ends_of_a_closed_edge_are_no_ends(turn, count):
+    edge = FreeEdge(cylinder(), ellipse_on_cylinder(), True, "left")
+    x = np.mod(turn + np.linspace(-1e-3, 1e-3, count), 1.0)
+    points = edge.curve.evaluate(x)
+    # Newton ends within rounding of coordinates of size 10.
+    assert np.linalg.norm(edge.nearest(points)[0] - points, axis=1).max() <= 1e-12
+
+
+def test_a_curve_that_runs_on_over_the_seam_of_a_face():
+    edge = FreeEdge(cylinder(), line((0.8, 0.5), (1.2, 0.6)), False, "left")
+    points, slope = edge.at(np.array([0.25, 0.75]))
+    assert np.hypot(points[:, 0], points[:, 1]) == pytest.approx([10, 10])
+    assert points[0, 1] < 0 < points[1, 1]
+    assert (slope[:, 2] > 0).all()
+
+
+def test_two_faces_at_the_edge_that_they_share():
+    # Up along x = y, seen from the floor; both run away from the edge.
+    wall = plane([1, 1, 0], [8, 8, 0], [0, 0, 3])
+    at_wall = FreeEdge(wall, line([1, 1, 0], [9, 9, 0]), True, "left")
+    found = measure_face_contact(DIAGONAL, at_wall)
+    assert (found.gap, found.off) == pytest.approx((0, 0), abs=1e-12)
+    assert found.angle_degrees == pytest.approx(90)
+    face = free_form(np.random.default_rng(3))
+    curve = line((0.2, 0.3), (0.8, 0.6))
+    kept, rest = (FreeEdge(face, curve, False, side) for side in ("left", "right"))
+    found = measure_face_contact(kept, rest, order=3)
+    assert max(found.gap, found.off) <= 1e-12
+    # One face on both sides, looked at 1e-9 of its size of 10 to either side of a knot line: it bends by 1 at the most.
+    assert found.angle_degrees <= 1e-6
+    assert found.curvature_jump_relative <= 1e-6
+    # The same part twice folds back.
+    assert measure_face_contact(kept, kept).angle_degrees == pytest.approx(180)
+
+
+def test_exact_limits_are_those_of_contacts_with_rounding_by_the_size_of_the_face():
+    small = Base(extrude(cubic([0, 0, 0], [1, 0, 0], [2, 0, 0], [3, 0, 1]), [0, 8, 0]), "v0")
+    limits = exact_face_limits(small, FLOOR, 3)
+    assert set(limits) == {"gap", "angle_degrees", "curvature_jump_relative", "rate_jump_relative"}
+    # 1e-11 of the size and 1e-9; little more, since the sheet is at the origin.
+    assert 1e-11 * model_size(small.surface) <= limits["gap"] <= 2e-11 * model_size(small.surface)
+    assert 1e-9 <= limits["angle_degrees"] <= 2e-9
+    wide = plane([-5e3, -5e3, 0], [1e4, 0, 0], [0, 1e4, 0])
+    wider = exact_face_limits(small, wide, 3)
+    assert wider["gap"] == limits["gap"]
+    grown = (wider["curvature_jump_relative"] - 1e-9) / (limits["curvature_jump_relative"] - 1e-9)
+    # The floor is of size 10, more than the sheet's.
+    assert grown == pytest.approx(1e4 / 10, rel=1e-6)
+    # Where rounding is more than a checker allows that stands.
+    far = Base(plane([1e9, 1e9, 0], [1e-3, -1e-3, 0], [8e-3, 8e-3, 0]), "u0")
+    assert exact_face_limits(far, wide)["angle_degrees"] == 0.01
+
+
+def test_a_blend_to_a_plane_is_exact_in_a_face_of_any_size():
+    """A natural edge of the blend on planes from its own size to 1e4 times that: curvature counts over their sizes."""
+    other = plane([3, 0, 4], [0, 0, 2], [0, 8, 0])
+    result = blend(Base(plane([-2, 0, 0], [2, 0, 0], [0, 8, 0]), "u1"), Base(other, "u0"))
+    own = Base(result.surface, "u0")
+    for size in (16.0, 160.0, 1.6e5):
+        face = plane([-size / 2, -size / 2, 0], [size, 0, 0], [0, size, 0])
+        found = measure_face_contact(own, face)
+        limits = exact_face_limits(own, face) | {"off": 0.0}
+        misses = [name for name, _, _ in face_shortfalls(found, limits, "G2") if name != "off"]
+        assert misses == []
+
+
+@pytest.mark.parametrize(
+    ("continuity", "names"),
+    [
+        ("G0", ("gap", "off")),
+        ("C1", ("gap", "off", "angle_degrees")),
+        ("G2", ("gap", "off", "angle_degrees", "curvature_jump_relative")),
+        ("G3", ("gap", "off", "angle_degrees", "curvature_jump_relative", "rate_jump_relative")),
+    ],
+)
+def test_each_measure_counts_from_both_sides_of_its_limit(continuity, names):
+    assert required_face_measures(continuity) == names
+    measures = [*names, *{"angle_degrees", "curvature_jump_relative", "rate_jump_relative"} - set(names)]
+    allowed = dict.fromkeys(measures, 1.0)
+
+    def missed(**values):
+        contact = FaceContact(
+            **{"gap": 1.0, "off": 1.0, "angle_degrees": 1.0, "curvature_jump_relative": 1.0, "rate_jump_relative": 1.0,
+               "second_rate_jump_relative": None, "length": 1.0, "at": {}} | values
+        )  # fmt: skip
+        return [name for name, _, _ in face_shortfalls(contact, allowed, continuity)]
+
+    assert missed() == []
+    for name in measures:
+        assert missed(**{name: 1.0 + 1e-12}) == ([name] if name in names else [])
+        assert missed(**{name: float("nan")}) == ([name] if name in names else [])
+
+
+def test_a_wrong_call_is_refused():
+    with pytest.raises(Exception, match="base: found a BSplineSurface, expected a Base or a FreeEdge"):
+        measure_face_contact(FLOOR, DIAGONAL)
+    with pytest.raises(Exception, match=r"face: the edge is .* away from it at"):
+        measure_face_contact(Base(plane([0, 0, 9], [1, 0, 0], [0, 1, 0]), "u0"), DIAGONAL)
