@@ -74,6 +74,7 @@ def test_bases_are_written_beside_the_blend(tmp_path):
         (["part.brep", "--replace", "0"], "--replace: found a second file 'part.brep'"),
         (["--replace", "0", "--edge-a", "u0", "--edge-b", "e1"], "found 'u0', expected an edge of face 0, as e1"),
         (["--replace", "0", "--edge-a", "e1"], "found one of them, expected none or two edges of face #0"),
+        (["--replace", "0", "--surfaces", "--with-bases"], "--surfaces: found it together with --with-bases"),
         (["--replace", "99"], "#99: no such surface; the file holds 18"),
         ([], "blend: B, --edge-a, --edge-b missing, expected A B --edge-a EDGE --edge-b EDGE, FILE --replace FACE"),
         (["part.brep#1", "--cut-a", "-1"], "--cut-a: found '-1', expected a distance above 0"),
