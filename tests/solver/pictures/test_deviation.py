@@ -27,7 +27,7 @@ def true_face(path):
 
 @pytest.fixture(scope="module")
 def block(tmp_path_factory):
-    """A block of 8 with a round hole of radius 1 through the middles of its top and its bottom; the number of its top."""
+    """A block of 8 with a round hole of radius 1 through its middle, upright; and the number of its top."""
     shape = drilled(BRepPrimAPI_MakeBox(gp_Pnt(-4, -4, -4), gp_Pnt(4, 4, 4)).Shape(), tilt=(0, 0, 1))
     path = written(shape, tmp_path_factory.mktemp("block") / "block.brep")
     faces, _ = read_drawn([str(path)])

@@ -135,6 +135,15 @@ def test_large_faces_come_first():
     assert labels[0].box[0] >= labels[1].box[2] or labels[0].box[1] != labels[1].box[1]
 
 
+def test_names_of_edges_lie_on_the_side_of_their_face():
+    edges = [Anchor(k, "e1", (200.0, 150.0), 0.0, (-1.0, 0.0), of_edge=True) for k in range(4)]
+    found = [label.box for label in placed(edges, SIZE, HEIGHT)]
+    assert len(found) == 4
+    # The first beside the point, the others around it, none beyond.
+    assert found[0][2] <= 200
+    assert all((left + right) / 2 <= 200 for left, _, right, _ in found)
+
+
 def test_names_are_drawn_in_their_boxes():
     image = Image.new("RGB", SIZE, "#404040")
     near, far = Anchor(0, "#888", (60.0, 50.0), 3.0), Anchor(1, "e8", (300.0, 200.0), 0.0, of_edge=True)
