@@ -17,7 +17,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import cache
 
-from sympy import Derivative, Expr, Function, Matrix, Rational, Symbol, diff, expand, factorial, simplify, sqrt, sympify
+from sympy import Derivative, Expr, Function, Matrix, Symbol, diff, expand, factorial, simplify, sqrt, sympify
 
 V = Symbol("v", real=True)
 # Curvatures along the curve and of the section across it, as functions of v.
@@ -124,17 +124,18 @@ def _first_order() -> dict[str, Expr]:
     ]
     b_v = _plus((sympify(1), sympify(0), sympify(0)), frame_derivative(rows[0]))
     b_vv, b_vw, b_w, b_ww = frame_derivative(b_v), frame_derivative(rows[1]), rows[1], rows[2]
-    cross = tuple(Matrix(b_v).cross(Matrix(b_w)))
-    normal = tuple(x / _length(cross) for x in cross)
-    speed = _length(b_v)
-    tangent = tuple(x / speed for x in b_v)
+    # Cut at every step: products of whole expressions take seconds to differentiate.
+    cross = tuple(_cut(x) for x in Matrix(b_v).cross(Matrix(b_w)))
+    area, speed = _cut(_length(cross)), _cut(_length(b_v))
+    normal = tuple(_cut(x / area) for x in cross)
+    tangent = tuple(_cut(x / speed) for x in b_v)
     # B_w = p D_b + q T_b in the band's own frame.
-    p, q = _length(cross) / speed, _dot(b_w, tangent)
-    along = _dot(normal, b_vv) / speed**2
-    mixed = (_dot(normal, b_vw) / speed - q * along) / p
-    across = (_dot(normal, b_ww) - 2 * p * q * mixed - q**2 * along) / p**2
+    p, q = _cut(area / speed), _cut(_dot(b_w, tangent))
+    along = _cut(_dot(normal, b_vv) / speed**2)
+    mixed = _cut((_dot(normal, b_vw) / speed - q * along) / p)
+    across = _cut((_dot(normal, b_ww) - 2 * p * q * mixed - q**2 * along) / p**2)
     # The face's own form for the same directions.
-    inward = tuple(Matrix(normal).cross(Matrix(tangent)))
+    inward = tuple(_cut(x) for x in Matrix(normal).cross(Matrix(tangent)))
     found = {
         "gap": small * e["c", 0],
         "angle_along": -normal[0],
@@ -144,6 +145,11 @@ def _first_order() -> dict[str, Expr]:
         "along": along - second_form(tangent, tangent),
     }
     return {name: expand(diff(value, small).subs(small, 0).doit()) for name, value in found.items()}
+
+
+def _cut(value: Expr) -> Expr:
+    """Leave out what is of second order in the errors."""
+    return expand(value.subs(_EPSILON, 0).doit() + _EPSILON * diff(value, _EPSILON).subs(_EPSILON, 0).doit())
 
 
 def _leading(value: Expr) -> Expr:
@@ -205,15 +211,25 @@ def section_heights(
     tangent = tangent / sqrt(tangent.dot(tangent))
     metric = jacobian.T * jacobian
     steps = [metric.inv() * jacobian.T * normal.cross(tangent)]
+    taylor = shifted.applyfunc(lambda x: _taylor(x, s, t, order))
     heights = []
     for k in range(2, order + 1):
         path = [sum((step[d] * _W ** (m + 1) for m, step in enumerate(steps)), sympify(0)) for d in range(2)]
-        known = shifted.subs({s: path[0], t: path[1]}, simultaneous=True)
-        coefficient = known.applyfunc(lambda x, k=k: diff(x, _W, k).subs(_W, 0) * Rational(1, factorial(k)))
+        known = taylor.subs({s: path[0], t: path[1]}, simultaneous=True)
+        coefficient = known.applyfunc(lambda x, k=k: expand(x).coeff(_W, k))
         height = expand(factorial(k) * normal.dot(coefficient))
         heights.append(height if height.is_Rational else simplify(height))
         steps.append(-(metric.inv() * jacobian.T * coefficient))
     return heights
+
+
+def _taylor(value: Expr, s: Symbol, t: Symbol, order: int) -> Expr:
+    """Return the terms of a power series about the origin up to an order."""
+    powers = [(i, k - i) for k in range(order + 1) for i in range(k + 1)]
+    at = {s: 0, t: 0}
+    return sum(
+        (diff(value, s, i, t, j).subs(at) * s**i * t**j / (factorial(i) * factorial(j)) for i, j in powers), sympify(0)
+    )
 
 
 def _plus(a: Frame, b: Frame) -> Frame:

@@ -187,3 +187,12 @@ def test_help_of_the_commands_loads_no_sympy():
     modules = loaded("import semispline.derivations.cli")
     assert "typer" in modules
     assert modules & {"sympy", "numpy", "casadi"} == set()
+
+
+def test_processes_that_read_files_load_no_scipy():
+    """They start for every file; the kernel, which takes a second itself, is left out here."""
+    workers = [path for path in (ROOT / "solver").rglob("*.py") if re.search(r"^def work\(", path.read_text(), re.M)]
+    names = [module_name(path) for path in workers]
+    assert len(names) >= 5
+    modules = loaded(f"import sys, types\nsys.modules['OCP'] = types.ModuleType('OCP')\nimport {', '.join(names)}")
+    assert modules & {"scipy", "casadi", "sympy"} == set()

@@ -7,9 +7,10 @@ from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 from typing import Any
 
-from semispline import Base, SemisplineError, blend
+from semispline import Base, SemisplineError
 from semispline.solver.io import LoadedSurface
 from semispline.solver.judge import FOLD_DEGREES, measure_face_contact
+from semispline.solver.topology import blend_edges
 from semispline.solver.topology.between import Between
 from semispline.solver.topology.fillets import Fillets
 from semispline.solver.topology.half_edges import NONE, EdgeGraph
@@ -71,21 +72,24 @@ def outcome(
         pair = resolved_pair(measured, between, [surfaces[face] for face in beyond])
         row["names"] = [pair.a.edge, pair.b.edge]
         row["bases"] = [one.entry.kind for one in (pair.a, pair.b) if one.entry is not None]
-        result = blend(Base(pair.a.surface, pair.a.edge), Base(pair.b.surface, pair.b.edge))
+        results = blend_edges(pair.a, pair.b)
     except SemisplineError as error:
         return row | {"error": f"{type(error).__name__}: {error}", "seconds": time.process_time() - started}
     except Exception as error:
         return row | {"error": f"FAULT {type(error).__name__}: {error}", "seconds": time.process_time() - started}
     contacts = [
         measure_face_contact(Base(result.surface, edge), surfaces[face].surface)
+        for result in results
         for edge, face in zip(("u0", "u1"), beyond, strict=True)
     ]
+    turn = max(result.shape.turn.degrees for result in results)
     return row | {
-        "warnings": result.warnings,
-        "turn_of_blend": result.shape.turn.degrees,
-        "folds": result.shape.turn.degrees > FOLD_DEGREES,
+        "parts": len(results),
+        "warnings": [warning for result in results for warning in result.warnings],
+        "turn_of_blend": turn,
+        "folds": turn > FOLD_DEGREES,
         "contacts": [{k: v for k, v in asdict(contact).items() if k != "at"} for contact in contacts],
-        "points": result.rows_stored,
+        "points": sum(result.rows_stored for result in results),
         "seconds": time.process_time() - started,
     }
 

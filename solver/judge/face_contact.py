@@ -133,7 +133,8 @@ def measure_face_profile(
     own = _edge_side(base.moved(-origin), order) if isinstance(base, FreeEdge) else _base_side(base, order, origin)
     points, length = own.jet[0, 0], chord_lengths(own.jet[0, 0])
     feet = surface_feet(moved, points)
-    away = np.linalg.norm(points - surface_points(moved, feet[:, 0], feet[:, 1]), axis=1)
+    to_foot = points - surface_points(moved, feet[:, 0], feet[:, 1])
+    away = np.linalg.norm(to_foot, axis=1)
     if away.max() > _NOT_ON_IT * length[-1]:
         k = int(away.argmax())
         x, y, z = points[k] + origin
@@ -152,6 +153,9 @@ def measure_face_profile(
         edge = face.moved(-origin)
         nearest, slope = edge.nearest(points)
         apart = points - nearest
+        # An edge that touches the end of its surface is as far beyond it as it is off: that is no gap.
+        at_end = _at_an_end(moved, feet)
+        values["gap"] = np.where(at_end, np.abs(np.sum(to_foot * normal, axis=1)), away)
         values["off"] = np.linalg.norm(apart - np.sum(apart * normal, axis=1)[:, None] * normal, axis=1)
         ahead = np.sum(np.cross(normal, slope) * own.into, axis=1) * (1.0 if edge.keep == "left" else -1.0)
         values["angle_degrees"] = np.where((ahead > 0) == same_side, angle, 180.0 - angle)
@@ -184,6 +188,11 @@ def _edge_side(edge: FreeEdge, order: int) -> _Side:
     normal = _normal(_face_jet(edge.face, feet, np.zeros_like(points), 1))
     into = np.cross(normal, slope) * (1.0 if edge.keep == "left" else -1.0)
     return _Side(s, _face_jet(edge.face, feet, into, order), _unit(slope), into)
+
+
+def _at_an_end(face: BSplineSurface, feet: FloatArray) -> NDArray[np.bool_]:
+    """Tell which feet lie at an end of the surface, shape (K,)."""
+    return np.asarray((feet[:, :, None] == np.array(face.domain)).any(axis=(1, 2)))
 
 
 def _unit(vectors: FloatArray) -> FloatArray:

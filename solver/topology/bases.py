@@ -76,7 +76,9 @@ def free_curves(ends: Sequence[ResolvedEdge]) -> list[TrimCurve | None]:
     found: list[TrimCurve | None] = [None] * len(ends)
     paths: dict[str, list[int]] = {}
     for k, end in enumerate(ends):
-        if end.is_free:
+        if end.curve is not None:
+            found[k] = end.curve.in_unit(end.loaded.unit)
+        elif end.is_free:
             paths.setdefault(split_spec(end.spec)[0], []).append(k)
     for path, which in paths.items():
         asked = [(split_spec(ends[k].spec)[1] or 0, int(split_part(ends[k].edge)[0][1:])) for k in which]

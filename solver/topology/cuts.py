@@ -11,7 +11,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from math import isfinite
-from typing import Literal
 
 import numpy as np
 from scipy.integrate import fixed_quad
@@ -21,11 +20,10 @@ from scipy.optimize import brentq
 from semispline.solver.arrays import FloatArray
 from semispline.solver.errors import EdgeError, OptionError
 from semispline.solver.splines import BSplineCurve, BSplineSurface, EdgeName, parse_edge
-from semispline.solver.topology.band_search import Continuity
-from semispline.solver.topology.bands import Band, band_along
 from semispline.solver.topology.face_jets import Face
 from semispline.solver.topology.outlines import Outline
 from semispline.solver.topology.parallels import Paths, crossings, focal_distance, paths_from
+from semispline.solver.topology.trim_curves import TrimCurve
 
 _PARAMETER = re.compile(r"([uv])=(.+)")
 # Paths of which the face's limits are told; places of a free contact between which it is interpolated.
@@ -89,13 +87,13 @@ class MovedContact:
     ----------
     name : EdgeName or None
         A line of constant parameter.
-    bands : tuple of Band
-        Of a free curve, one for each part of it.
+    curve : TrimCurve or None
+        Where it is none: a free curve in the face.
     said : str
     """
 
     name: EdgeName | None
-    bands: tuple[Band, ...]
+    curve: TrimCurve | None
     said: str
 
 
@@ -106,7 +104,8 @@ def moved_contact(
     outline: Outline,
     tolerance: float,
     title: str,
-    continuity: Continuity = "G2",
+    word: str,
+    millimetres: float | None = None,
 ) -> MovedContact:
     """Return a contact moved into its face.
 
@@ -122,15 +121,15 @@ def moved_contact(
         The length within which a contact is a line of constant parameter.
     title : str
         How messages begin.
-    continuity : str
-        That bands are to be met with.
+    word : str
+        What the edge is called.
+    millimetres : float, optional
+        In a model unit, where that is known.
 
     Raises
     ------
     EdgeError
         The face does not reach so far: the largest possible distance or parameter is said.
-    BandError
-        As `band_along`.
     """
     name = None if edge is None else parse_edge(edge)
     if cut.parameter is not None:
@@ -148,11 +147,22 @@ def moved_contact(
         last = paths.at[-1]
         speed = np.linalg.norm(face.jet(last, 1)[(1, 0) if axis == 0 else (0, 1)], axis=1)
         if (np.abs(last[:, axis] - last[_PATHS // 2, axis]) * speed).max() <= tolerance:
-            at = _exactly(face, paths, axis, cut.distance)
-            moved = _line(surface, name, at, float(last[_PATHS // 2, 1 - axis]), outline, title)
-            return MovedContact(moved, (), f"{moved}, {cut.distance:g} inside")
-    bands = _bands(surface, curve, cut.distance, outline, title, continuity)
-    return MovedContact(None, bands, f"a curve {cut.distance:g} inside")
+            value = _exactly(face, paths, axis, cut.distance)
+            moved = _line(surface, name, value, float(last[_PATHS // 2, 1 - axis]), outline, title)
+            return MovedContact(moved, None, f"{moved}, {cut.distance:g} inside")
+    x, at = _places_inside(face, curve, cut.distance, outline)
+    through = make_interp_spline(x, at, _DEGREE)
+    points = np.column_stack([through.c, np.zeros(len(through.c))])
+    moved_curve = TrimCurve(
+        name=f"edge {word} moved {cut.distance:g} into its face",
+        surface=surface,
+        edge=None,
+        pcurve=BSplineCurve(_DEGREE, through.t, points),
+        keep="left" if curve.sign > 0 else "right",
+        tolerance=0.0,
+        millimetres=millimetres,
+    )
+    return MovedContact(None, moved_curve, f"a free curve, {cut.distance:g} inside")
 
 
 @dataclass(frozen=True, eq=False)
@@ -242,7 +252,7 @@ def _to_parameter(surface: BSplineSurface, name: EdgeName, cut: Cut, outline: Ou
             f"{last:.6g}"
         )
     moved = _line(surface, name, at, middle, outline, title)
-    return MovedContact(moved, (), str(moved))
+    return MovedContact(moved, None, str(moved))
 
 
 def _exactly(face: Face, paths: Paths, axis: int, distance: float) -> float:
@@ -296,31 +306,19 @@ def _met(lines: Sequence[FloatArray], axis: int, at: float, start: float, sign: 
     return nearest
 
 
-def _bands(
-    surface: BSplineSurface, curve: _Curve, distance: float, outline: Outline, title: str, continuity: Continuity
-) -> tuple[Band, ...]:
-    """Return bands along the curve at a distance, as far as the edges of the face at both its ends."""
-    face = Face(surface)
+def _places_inside(face: Face, curve: _Curve, distance: float, outline: Outline) -> tuple[FloatArray, FloatArray]:
+    """Return places of an edge, and the parameters at a distance from them, as far as the edges at both its ends."""
     start, end = curve.ends
     if not curve.closed:
         inside = start + (np.arange(_PATHS) + 0.5) / _PATHS * (end - start)
-        ran_out = [curve.runs_out(face, float(x), distance, outline) for x in inside]
-        kept = np.flatnonzero(~np.array(ran_out))
-        start = curve.end_inside(face, float(inside[kept[0]]), start, distance, outline)
-        end = curve.end_inside(face, float(inside[kept[-1]]), end, distance, outline)
+        ran_out = crossings(curve.paths(face, inside, distance), outline.ends).min(axis=0, initial=np.inf) <= distance
+        kept = inside[~ran_out]
+        start = curve.end_inside(face, float(kept[0]), start, distance, outline)
+        end = curve.end_inside(face, float(kept[-1]), end, distance, outline)
     x = np.linspace(start, end, _PLACES)
     at = curve.paths(face, x, distance).at[-1]
     if curve.closed:
-        at[-1] = at[0] + (curve.spline.evaluate(x[[0, -1]])[1, :2] - curve.spline.evaluate(x[[0, -1]])[0, :2])
-    through = make_interp_spline(x, at, _DEGREE)
-    points = np.column_stack([through.c, np.zeros(len(through.c))])
-    keep: Literal["left", "right"] = "left" if curve.sign > 0 else "right"
-    millimetres = None if outline.trim is None else outline.trim.millimetres
-    return band_along(
-        surface,
-        BSplineCurve(_DEGREE, through.t, points),
-        keep,
-        millimetres=millimetres,
-        continuity=continuity,
-        name=f"{title}: the curve {distance:g} inside",
-    )
+        # The curve ends where it began, perhaps a turn later.
+        ends = curve.spline.evaluate(x[[0, -1]])[:, :2]
+        at[-1] = at[0] + ends[1] - ends[0]
+    return x, at

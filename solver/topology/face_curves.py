@@ -12,7 +12,7 @@ from functools import cached_property
 from typing import Literal, TypeAlias
 
 import numpy as np
-from scipy.spatial import KDTree
+from numpy.typing import NDArray
 
 from semispline.solver.arrays import FloatArray, require
 from semispline.solver.errors import EdgeError
@@ -169,7 +169,7 @@ def edge_on_face(face: Face, edge: BSplineCurve, pcurve: FaceCurve | None, toler
         guess = _near(face, points)
     else:
         x = pcurve.places
-        nearest = KDTree(pcurve.tangents(x)[0]).query(points)[1]
+        nearest = _nearest(pcurve.tangents(x)[0], points)
         guess = pcurve.at(x[nearest])[0]
         to_pcurve = _distance(pcurve.tangents(spread(pcurve.breaks, _NODES))[0], edge)
     at, _, away = face.feet(points, guess, None, 2)
@@ -189,7 +189,7 @@ def _distance(points: FloatArray, edge: BSplineCurve) -> float:
     """Return the largest distance of points near an edge from it: feet from the nearest of many of its points."""
     start, end = float(edge.knots[0]), float(edge.knots[-1])
     nodes = spread(np.unique(edge.knots), 400)
-    x = nodes[KDTree(edge.evaluate(nodes)).query(points)[1]]
+    x = nodes[_nearest(edge.evaluate(nodes), points)]
     for _ in range(8):
         tangent = edge.evaluate(x, 1)
         step = dot(points - edge.evaluate(x), tangent) / np.maximum(dot(tangent, tangent), 1e-300)
@@ -220,12 +220,20 @@ def parameters_on(face: Face, points: FloatArray) -> FloatArray:
     return unwrapped(face.feet(points, _near(face, points), None, 2)[0], face)
 
 
+def _nearest(some: FloatArray, points: FloatArray) -> NDArray[np.int64]:
+    """Return which of some points is the nearest to each of others."""
+    # SciPy waits: the process that reads a file has no use for it.
+    from scipy.spatial import KDTree
+
+    return np.asarray(KDTree(some).query(points)[1])
+
+
 def _near(face: Face, points: FloatArray) -> FloatArray:
     """Return the parameters of the nearest of many points of the face, shape (K, 2)."""
     # Middles of intervals: from a pole no step leads away.
     ends = [spread(breaks, _GRID, 3) for breaks in face.surface.breakpoints]
     grids = [(x[:-1] + x[1:]) / 2 for x in ends]
     grid = face.surface.evaluate_grid(grids[0], grids[1]).reshape(-1, 3)
-    nearest = KDTree(grid).query(points)[1]
+    nearest = _nearest(grid, points)
     i, j = np.divmod(nearest, len(grids[1]))
     return np.stack([grids[0][i], grids[1][j]], axis=1)

@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from semispline.solver.errors import EdgeError, FileError
 from semispline.solver.io import LoadedSurface, in_one_unit, read_surfaces, split_spec
@@ -15,6 +16,9 @@ from semispline.solver.topology.half_edges import NONE, EdgeGraph
 from semispline.solver.topology.measuring import MeasuredEdges, measured_edges
 from semispline.solver.topology.near import NEAR, nearest_edge
 from semispline.solver.topology.relations import relate
+
+if TYPE_CHECKING:
+    from semispline.solver.topology.trim_curves import TrimCurve
 
 _OF_A_FACE = re.compile(r"e([0-9]{1,9})")
 # A part of a free curve, where that was cut: e3[0].
@@ -115,6 +119,8 @@ class ResolvedEdge:
         What is known of the edge of the face.
     said : str
         What was taken, in words; "" where nothing was resolved.
+    curve : TrimCurve or None
+        A free curve in the face to which the contact was moved.
     """
 
     spec: str
@@ -123,6 +129,7 @@ class ResolvedEdge:
     asked: str | None = None
     entry: FaceEdge | None = None
     said: str = ""
+    curve: TrimCurve | None = None
 
     @property
     def surface(self) -> Surface:
@@ -132,7 +139,7 @@ class ResolvedEdge:
     @property
     def is_free(self) -> bool:
         """No parameter of the surface is constant along it: `edge_bases` makes bands, which `Base` takes."""
-        return self.entry is not None and self.entry.kind == "free"
+        return self.curve is not None or (self.entry is not None and self.entry.kind == "free")
 
     @property
     def part(self) -> int | None:

@@ -8,7 +8,6 @@ import numpy as np
 
 # Loaded before the limits of the process count.
 import OCP  # noqa: F401
-from scipy.interpolate import make_interp_spline
 
 from semispline.solver.arrays import FloatArray
 from semispline.solver.errors import FileError, InputError
@@ -119,6 +118,9 @@ def _taken_over(pcurve: Content, face: Any, converted: BSplineSurface) -> Conten
     x = spread(np.unique(curve.knots), _PLACES)
     points = [surface.Value(float(s), float(t)) for s, t, _ in curve.evaluate(x)]
     at = parameters_on(Face(converted), np.array([(p.X(), p.Y(), p.Z()) for p in points]))
+    # Can wait: few surfaces are converted to others.
+    from scipy.interpolate import make_interp_spline
+
     through = make_interp_spline(x, at, _DEGREE)
     return _DEGREE, through.t, through.c, None
 

@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
 from semispline.solver.arrays import FloatArray
-from semispline.solver.io import converted_parameters, split_spec
+from semispline.solver.io import converted_parameters
 from semispline.solver.splines import BSplineSurface, EdgeName
 from semispline.solver.topology.face_curves import spread
 from semispline.solver.topology.face_jets import Face
 from semispline.solver.topology.half_edges import EdgeGraph
-from semispline.solver.topology.trim_curves import TrimCurve, read_trim_curves
+from semispline.solver.topology.trim_curves import TrimCurve
 
 # Points of an edge that is not straight in the parameters.
 _POINTS = 120
@@ -37,29 +38,28 @@ class Outline:
     others: list[FloatArray]
 
 
-def outline_of(graph: EdgeGraph, row: int, surface: BSplineSurface) -> Outline:
-    """Return the outline of the face of a use."""
-    uses, face = graph.uses, int(graph.uses.face[row])
-    rows = range(*uses.of_face(face).indices(len(uses)))
-    drawn = [x for x in rows if uses.pcurve[x] != "none" and not uses.degenerate[x]]
-    trims = _trims(graph, face, drawn)
-    near = {int(uses.previous[row]), int(uses.following[row])}
+def curved_edges(graph: EdgeGraph, row: int) -> list[int]:
+    """Return the edges of the face of a use, itself among them, of which samples do not tell all."""
+    uses = graph.uses
+    return [x for x in _drawn(graph, row) if uses.pcurve[x] != "line"]
+
+
+def outline_of(graph: EdgeGraph, row: int, surface: BSplineSurface, curves: Mapping[int, TrimCurve]) -> Outline:
+    """Return the outline of the face of a use; `curves` are those of `curved_edges`, as far as they are known."""
+    near = {int(graph.uses.previous[row]), int(graph.uses.following[row])}
     ends: list[FloatArray] = []
     others: list[FloatArray] = []
-    for x in drawn:
+    for x in _drawn(graph, row):
         if x != row:
-            line = _polyline(graph, x, surface, trims.get(x))
+            line = _polyline(graph, x, surface, curves.get(x))
             (ends if x in near or _touches(graph, x, row) else others).append(line)
-    return Outline(trims.get(row), ends, others)
+    return Outline(curves.get(row), ends, others)
 
 
-def _trims(graph: EdgeGraph, face: int, rows: list[int]) -> dict[int, TrimCurve]:
-    """Return the curves of edges where the reader of the file can tell them."""
-    if graph.path.lower().endswith(".3dm"):
-        return {}
-    path, _ = split_spec(graph.path)
-    found = read_trim_curves(path, face, [int(graph.uses.number[row]) for row in rows])
-    return dict(zip(rows, found, strict=True))
+def _drawn(graph: EdgeGraph, row: int) -> list[int]:
+    uses = graph.uses
+    rows = range(*uses.of_face(int(uses.face[row])).indices(len(uses)))
+    return [x for x in rows if uses.pcurve[x] != "none" and not uses.degenerate[x]]
 
 
 def _touches(graph: EdgeGraph, one: int, two: int) -> bool:
@@ -70,7 +70,7 @@ def _touches(graph: EdgeGraph, one: int, two: int) -> bool:
 
 def _polyline(graph: EdgeGraph, row: int, surface: BSplineSurface, trim: TrimCurve | None) -> FloatArray:
     samples = own_parameters(graph, row, surface)
-    if trim is None or trim.pcurve is None or graph.uses.pcurve[row] == "line":
+    if trim is None or trim.pcurve is None:
         return samples
     line = trim.pcurve.evaluate(spread(np.unique(trim.pcurve.knots), _POINTS))[:, :2]
     # It may have been taken over a turn beside the others.

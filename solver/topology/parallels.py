@@ -112,8 +112,13 @@ def crossings(paths: Paths, lines: list[FloatArray]) -> FloatArray:
 def focal_distance(paths: Paths) -> float:
     """Return the distance at which neighbouring paths begin to cross each other; infinite where they do not."""
     apart = np.sum(np.diff(paths.point, axis=1) * (paths.beside[:, 1:] + paths.beside[:, :-1]), axis=2)
-    crossed = (apart <= 0).any(axis=1)
-    return float(np.argmax(crossed)) * paths.step if crossed.any() else np.inf
+    crossed = apart <= 0
+    if not crossed.any():
+        return np.inf
+    last = int(np.argmax(crossed.any(axis=1))) - 1
+    before, after = apart[last], apart[last + 1]
+    share = np.where(crossed[last + 1], before / np.where(before > after, before - after, 1.0), 1.0)
+    return (last + float(share.min())) * paths.step
 
 
 def _cross(a: FloatArray, b: FloatArray) -> FloatArray:

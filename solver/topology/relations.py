@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from semispline.solver.arrays import FloatArray
 from semispline.solver.topology.half_edges import NONE, SAMPLES, EdgeGraph, Flags, Integers, Uses
@@ -142,6 +141,9 @@ def _matched(uses: Uses, length: FloatArray, size: float) -> Integers:
         return found
     middle = _middles(uses.points[rows])
     ends = uses.points[rows][:, [0, -1]]
+    # SciPy waits: a process that only reads a file has no use for it.
+    from scipy.spatial import cKDTree
+
     tree = cKDTree(middle)
     best: dict[int, int] = {}
     for i, row in enumerate(rows.tolist()):

@@ -23,6 +23,8 @@ from semispline.solver.topology.sides import Side, sides_of
 _FOUR = 4
 # Ends of an edge that are this near, in fractions of its length, are one point.
 _SAME_POINT = 1e-3
+# A face that turns by less, in degrees, does not turn.
+_STRAIGHT = 0.01
 
 
 @dataclass(frozen=True, eq=False)
@@ -132,7 +134,8 @@ def pair_of(
     found = list(opposite_pairs(graph, relations, face))
     if not found:
         raise EdgeError(_no_pair(graph, relations, face))
-    return max(found, key=lambda between: between.curvature)
+    # Where the face does not turn, as a chamfer, its long edges are the contacts.
+    return max(found, key=lambda x: (x.curvature if x.turn > _STRAIGHT else 0.0, -x.width))
 
 
 def opposite_pairs(graph: EdgeGraph, relations: Relations, face: int) -> Iterator[Between]:

@@ -28,6 +28,7 @@ from OCP.Geom import (
 from OCP.Geom2d import Geom2d_Line
 from OCP.GeomConvert import GeomConvert
 from OCP.gp import gp_Ax1, gp_Ax2, gp_Ax3, gp_Dir, gp_Dir2d, gp_Pln, gp_Pnt, gp_Pnt2d
+from scipy.spatial import cKDTree
 from typer.testing import CliRunner
 
 from semispline import BSplineSurface, FileError, list_surfaces, plane, read_surface, write_surface
@@ -260,10 +261,11 @@ def offset_extrusion():
     at = np.linspace(0, math.pi, 200_001)
     normal = np.stack([np.cos(at), 3 * np.sin(at)], axis=1) / np.hypot(np.cos(at), 3 * np.sin(at))[:, None]
     sampled = np.stack([3 * np.cos(at), np.sin(at)], axis=1) + 0.1 * normal
+    tree = cKDTree(sampled)
 
     def off(points):
         xy = points.reshape(-1, 3)[:, :2]
-        k = np.clip(np.array([np.argmin(((sampled - p) ** 2).sum(axis=1)) for p in xy]), 1, len(at) - 2)
+        k = np.clip(tree.query(xy)[1], 1, len(at) - 2)
         chord = sampled[k + 1] - sampled[k - 1]
         return np.abs(chord[:, 0] * (xy - sampled[k])[:, 1] - chord[:, 1] * (xy - sampled[k])[:, 0]) / np.linalg.norm(
             chord, axis=1

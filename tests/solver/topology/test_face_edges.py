@@ -40,14 +40,14 @@ def step(path, *faces):
 
 
 def listed(path):
-    """What `list_edges` says of every face; each process that reads a file takes a second."""
+    """What `list_edges` says of every face, of one reading of the file."""
     faces = read_occ(path).faces
     measured = measured_edges(path, range(len(faces)))
     return {n: _edges_of(measured, n, LoadedSurface(face.surface(), None)) for n, face in enumerate(faces)}
 
 
 @pytest.fixture
-def cut(tmp_path):
+def cut(tmp_path, read_here):
     """A file with a sheet cut at u = 0.7 of 40 mm."""
     return step(tmp_path / "cut.step", rectangle(sheet(height=5.0), 0.0, 0.7, 0.0, 1.0))
 
@@ -134,6 +134,7 @@ def test_two_files_in_two_units(tmp_path, cut):
     assert b.surface.evaluate([1.0], [1.0])[0, 0] == pytest.approx(40.0 / 25.4)
 
 
+@pytest.mark.usefixtures("read_here")
 def test_the_list_of_a_rounded_box(tmp_path):
     shape = rounded_box()
     path = written(shape, tmp_path / "box.brep")
@@ -155,6 +156,7 @@ def test_the_list_of_a_rounded_box(tmp_path):
     assert {round(edge.length, 9) for edge in arcs} == {round(r * np.pi / 2, 9) for r in (1.5, 3.0)}
 
 
+@pytest.mark.usefixtures("read_here")
 def test_unsewn_neighbours_are_found_by_their_place(tmp_path):
     path = written(unsewn(BRepPrimAPI_MakeBox(2.0, 3.0, 5.0).Shape()), tmp_path / "box.brep")
     face = list_edges(path, 0)
@@ -218,6 +220,7 @@ def test_bad_words_say_what_would_be_right(cut, far, tmp_path):
             assert part in str(error.value), (word, str(error.value))
 
 
+@pytest.mark.usefixtures("read_here")
 def test_a_seam_is_named_by_its_side(tmp_path):
     path = written(BRepPrimAPI_MakeCylinder(2.0, 5.0).Shape(), tmp_path / "c.brep")
     seams = [edge for edge in list_edges(path, 0).edges if edge.seam]
@@ -229,6 +232,7 @@ def test_a_seam_is_named_by_its_side(tmp_path):
         resolve_edge(f"{path}#0", "near=2,0,2.5")
 
 
+@pytest.mark.usefixtures("read_here")
 def test_points_in_the_middle_of_edges_find_them(tmp_path):
     """Every edge of every face of a rounded box by its middle, and by a point a hundredth of its length beside it."""
     shape = rounded_box()
@@ -248,6 +252,7 @@ def test_points_in_the_middle_of_edges_find_them(tmp_path):
                     assert f"{edge.name}, " in found.said
 
 
+@pytest.mark.usefixtures("read_here")
 def test_two_points_decide_which_face_lies_between(tmp_path):
     """An upright round of a box: its straight sides belong to it and to the walls."""
     shape = rounded_box(top=1.0)
@@ -274,6 +279,7 @@ def test_two_points_decide_which_face_lies_between(tmp_path):
     assert all(one.loaded.kind == "plane" for one in found)
 
 
+@pytest.mark.usefixtures("read_here")
 def test_edges_that_lie_on_each_other_are_a_tie(tmp_path):
     """Two boxes side by side in an assembly: the point does not say of which the edge is, the number of a face does."""
     box = BRepPrimAPI_MakeBox(2.0, 3.0, 5.0).Shape()
@@ -291,6 +297,7 @@ def test_points_are_numbers():
     assert point_of("near=1,-2.5,1e-3").tolist() == [1.0, -2.5, 1e-3]
 
 
+@pytest.mark.usefixtures("read_here")
 def test_a_small_edge_of_a_large_model_is_the_faces_own(tmp_path):
     """Within the tolerance of lines, which goes by the model, but not within those of the edge."""
     geometry = occ_surface(sheet())
