@@ -173,3 +173,11 @@ def test_what_rates_are_measured_by_on_a_flat_face(power, measure, expected):
     rising = BSplineSurface(power, 1, [0] * (power + 1) + [1] * (power + 1), K1, net)
     found = measure_face_contact(Base(rising, "u0"), FLOOR, order=power)
     assert getattr(found, measure) == pytest.approx(expected, rel=1e-6)
+
+
+def test_without_a_tangent_plane_there_is_no_normal_and_no_warning():
+    jet = {(1, 0): np.array([[0.0, 0, 0], [1, 0, 0]]), (0, 1): np.array([[0.0, 1, 0], [0, 1e-3, 0]])}
+    with np.errstate(all="raise"):
+        normals = face_contact._normal(jet)
+    assert np.isnan(normals[0]).all()
+    assert normals[1].tolist() == [0, 0, 1]
