@@ -162,7 +162,7 @@ def file_table(files: list[Path]) -> Iterator[str]:
         free &= graph.faces.repeat[uses.face] == uses.face
         for face in np.unique(uses.face[free]).tolist():
             numbers = uses.number[free & (uses.face == face)].tolist()
-            for curve in read_trim_curves(path, face, numbers):
+            for curve in read_trim_curves(path, [(face, number) for number in numbers]):
                 start = process_time()
                 try:
                     points[kinds[face]] += [band.points for band in curve.bands()]

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from PIL import Image
 
-from semispline.solver.pictures import BASE_COLOR, BLEND_COLOR, render
+from semispline.solver.pictures import BASE_COLOR, BLEND_COLOR, Drawn, render
 
 DOCS = Path(__file__).resolve().parent
 COLORS = 64
@@ -22,9 +22,12 @@ def main() -> None:
         os.chdir(folder)
         exec(example, names)
         render(
-            [names["pipe"], names["joint"].surface, names["elbow"]],
+            [
+                Drawn(names["pipe"], BASE_COLOR),
+                Drawn(names["joint"].surface, BLEND_COLOR),
+                Drawn(names["elbow"], BASE_COLOR),
+            ],
             "picture.png",
-            colors=[BASE_COLOR, BLEND_COLOR, BASE_COLOR],
             field="zebra",
             towards_eye=[-0.3, -1, 0.4],
             size=(1200, 700),

@@ -1,3 +1,4 @@
+from .solver.blending.band_contact import BandContact as BandContact
 from .solver.blending.measured_energy import thin_plate_energy as thin_plate_energy
 from .solver.blending.pipeline import blend as blend
 from .solver.blending.result import BlendResult as BlendResult
@@ -36,6 +37,7 @@ from .solver.judge.face_contact import FaceContact as FaceContact
 from .solver.judge.face_contact import measure_face_contact as measure_face_contact
 from .solver.judge.fairness import Fairness as Fairness
 from .solver.judge.fairness import measure_fairness as measure_fairness
+from .solver.judge.free_edge import FreeEdge as FreeEdge
 from .solver.judge.loops import Exits as Exits
 from .solver.judge.loops import Loop as Loop
 from .solver.judge.loops import measure_exits as measure_exits
@@ -110,6 +112,9 @@ from .solver.splines.surfaces import BSplineSurface as BSplineSurface
 from .solver.splines.surfaces import SemiStructuredSurface as SemiStructuredSurface
 from .solver.topology.bands import Band as Band
 from .solver.topology.bands import band_along as band_along
+from .solver.topology.bases import EdgeBase as EdgeBase
+from .solver.topology.bases import edge_bases as edge_bases
+from .solver.topology.edge_blends import blend_edges as blend_edges
 from .solver.topology.face_edges import FaceEdge as FaceEdge
 from .solver.topology.face_edges import FaceEdges as FaceEdges
 from .solver.topology.face_edges import ResolvedEdge as ResolvedEdge
@@ -119,5 +124,7 @@ from .solver.topology.place import Place as Place
 from .solver.topology.place import Places as Places
 from .solver.topology.place import PlaceSide as PlaceSide
 from .solver.topology.places import find_places as find_places
+from .solver.topology.replacing import ReplacedPair as ReplacedPair
+from .solver.topology.replacing import replaced_pair as replaced_pair
 
 __version__: str

@@ -19,6 +19,7 @@ Alpha: TypeAlias = float | tuple[float, float] | Literal["fair", "energy", "natu
 AlphaV: TypeAlias = Literal["auto", "constant", "linear"]
 VScale: TypeAlias = Literal["paper", "unit", "length", "stretched"]
 Auto: TypeAlias = Literal["auto"]
+Limits: TypeAlias = Literal["exact", "cad"]
 
 # Energies have the fourth power of alpha^2 and of the box: far from any blend, and far from where floats end.
 _MOST_ALPHA = 1e15
@@ -81,6 +82,9 @@ class BlendOptions:
         Inner knots of each middle curve, in v of a's edge: every fourth of both contacts', the paper's rule, or given.
     strict : bool
         Refuse a blend with warnings.
+    limits : {"auto", "exact", "cad"}
+        What contact is held to: exact, or as checkers of CAD systems have it. "auto" is exact, but for what is measured
+        on a face along a free curve of it, where that is no plane.
     search_meets : bool
         Search a mesh for places where the blend meets itself or a base, where no direction shows that there are none.
 
@@ -135,6 +139,9 @@ class BlendOptions:
         "K1,K2,...",
         "Inner knots of a middle curve, in v of edge A; once for each curve. Or fourth, or paper: by that rule.",
     )
+    limits: Limits | Auto = _option(
+        "auto", "text", "LIMITS", "What contact is held to: exact, cad, or auto: cad along free curves of curved faces."
+    )
     strict: bool = _option(False, "flag", "", "Refuse a blend with any warning.")
     search_meets: bool = _option(
         False,
@@ -155,6 +162,7 @@ class BlendOptions:
             "p2": _p2(self.p2),
             "bulge": tuple(map(_bulge, _pair(self.bulge, "bulge"))),
             "box": None if self.box is None else _box(self.box),
+            "limits": limits_name(self.limits),
             "v_scale": None if self.v_scale is None else _word(self.v_scale, "v_scale", get_args(VScale)),
             "u_knots": None if self.u_knots is None else _knots(self.u_knots, "u_knots"),
             "middle_knots": None if self.middle_knots is None else _middle_knots(self.middle_knots),
@@ -262,6 +270,7 @@ class BlendOptions:
             "degree_u": (3 if papers else across) if self.degree_u == "auto" else self.degree_u,
             "alpha_v": "constant" if papers or (self.alpha_v == "auto" and nothing_searched) else self.alpha_v,
             "p2": "zero" if self.p2 == "auto" and without_p2 else self.p2,
+            "limits": "exact" if self.limits == "auto" else self.limits,
             "v_scale": self.v_scale or ("paper" if papers else "stretched" if 1 in self.orders else "length"),
             "middle_knots": ("paper" if papers else "fourth") if self.middle_knots is None else self.middle_knots,
         }
@@ -305,6 +314,17 @@ def continuity_name(value: object, name: str = "continuity") -> Continuity:
     """
     upper = value.upper() if isinstance(value, str) else ""
     return cast("Continuity", upper if upper in get_args(Continuity) else _word(value, name, get_args(Continuity)))
+
+
+def limits_name(value: object, name: str = "limits") -> Limits | Auto:
+    """Return auto, exact or cad; messages call it `name`.
+
+    Raises
+    ------
+    OptionError
+        It is none of the three.
+    """
+    return cast("Limits | Auto", _word(value, name, ("auto", *get_args(Limits))))
 
 
 def _word(value: object, name: str, words: Sequence[str]) -> str:

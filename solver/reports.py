@@ -15,27 +15,38 @@ import typer
 from semispline.solver.options import Continuity
 
 if TYPE_CHECKING:
-    from semispline.solver.blending import BlendResult, LinearInV
+    from semispline.solver.blending import BandContact, BlendResult, LinearInV
     from semispline.solver.io import SurfaceEntry
     from semispline.solver.judge import Contact, Meets, ShapeReport
 
 
-def contact_record(contact: Contact) -> dict[str, Any]:
+def contact_record(contact: Contact | BandContact) -> dict[str, Any]:
     """Return what a JSON file holds of a measured contact: nothing of what was not asked for."""
-    return {name: _finite(value) for name, value in asdict(contact).items() if value is not None}
+    return {name: finite(value) for name, value in asdict(contact).items() if value is not None}
 
 
-def _finite(value: Any) -> Any:
+def finite(value: Any) -> Any:
     """Return a value or record for JSON, which knows neither NaN nor infinity: what cannot be told is null."""
     if isinstance(value, dict):
-        return {name: _finite(part) for name, part in value.items()}
+        return {name: finite(part) for name, part in value.items()}
     if isinstance(value, list):
-        return [_finite(part) for part in value]
+        return [finite(part) for part in value]
     return None if isinstance(value, float) and not isfinite(value) else value
 
 
+def reports_record(results: Sequence[BlendResult]) -> dict[str, Any]:
+    """Return what `blend --report` writes: of one blend, or of those of the parts of an edge."""
+    if len(results) == 1:
+        return report_record(results[0])
+    return {
+        "format": "semispline/1",
+        "kind": "blend_reports",
+        "parts": [report_record(result) for result in results],
+    }
+
+
 def report_record(result: BlendResult) -> dict[str, Any]:
-    """Return what `blend --report` writes."""
+    """Return what `blend --report` writes of one blend."""
     record: dict[str, Any] = {
         "format": "semispline/1",
         "kind": "blend_report",
@@ -80,11 +91,12 @@ def report_record(result: BlendResult) -> dict[str, Any]:
         "seconds": result.seconds,
         "contact_a": contact_record(result.contact_a),
         "contact_b": contact_record(result.contact_b),
+        **{
+            name: contact_record(contact)
+            for name, contact in (("band_a", result.band_a), ("band_b", result.band_b))
+            if contact is not None
+        },
     }
-
-
-# Surfaces that differ in lower order do so in these.
-_COUNTS_ONLY_WITH: dict[str, Continuity] = {"rate_jump_relative": "G2", "second_rate_jump_relative": "G3"}
 
 
 def shape_record(shape: ShapeReport) -> dict[str, Any]:
@@ -112,7 +124,7 @@ def shape_record(shape: ShapeReport) -> dict[str, Any]:
         },
         "meets": meets_record(shape.meets),
     }
-    return {name: _finite(value) for name, value in record.items()}
+    return {name: finite(value) for name, value in record.items()}
 
 
 def meets_record(meets: Meets) -> dict[str, Any]:
@@ -126,42 +138,6 @@ def meets_record(meets: Meets) -> dict[str, Any]:
         "seen_from": meets.seen_from,
         "seen_from_with_bases": meets.seen_from_with_bases,
     }
-
-
-def print_contact(contact: Contact, unit: str | None) -> None:
-    """Print what was measured of a contact, and where it is worst."""
-    from semispline.solver.judge import shortfalls
-
-    length = unit or "model units"
-    bend, rate, second_rate = (f"1/{unit or '(model units)'}{power}" for power in ("", "\u00b2", "\u00b3"))
-    rows = [("measure", "worst", "allowed", "unit", "at parameter", "at point")]
-    for name, measure, in_unit, place in (
-        ("gap", "gap", length, contact.gap_at),
-        ("angle", "angle_degrees", "degrees", contact.angle_at),
-        ("curvature jump", "curvature_jump", bend, contact.curvature_at),
-        ("curvature jump, relative", "curvature_jump_relative", "1", contact.curvature_at),
-        ("rate jump", "rate_jump", rate, contact.rate_at),
-        ("rate jump, relative", "rate_jump_relative", "1", contact.rate_at),
-        ("second rate jump", "second_rate_jump", second_rate, contact.second_rate_at),
-        ("second rate jump, relative", "second_rate_jump_relative", "1", contact.second_rate_at),
-    ):
-        if place is None:
-            continue
-        point = ", ".join(f"{x:.5g}" for x in place.point)
-        value, limit = getattr(contact, measure), contact.allowed.get(measure)
-        below = _COUNTS_ONLY_WITH.get(measure)
-        if below is not None and shortfalls(contact, below):
-            allowed = f"counts only with {below}"
-        else:
-            allowed = "see below" if limit is None else f"{limit:.3g}"
-        rows.append((name, f"{value:.3g}", allowed, in_unit, f"{place.parameter:.5g}", f"({point})"))
-    _print_table(rows)
-    if contact.corresponds == "foot points":
-        typer.echo(
-            "the edges are one curve with two parametrisations: each point is compared with its foot on the other"
-        )
-    for bare in contact.no_normal:
-        typer.echo(f"{bare.surface.upper()}: {bare}")
 
 
 def print_result(result: BlendResult) -> None:
@@ -206,13 +182,44 @@ def print_result(result: BlendResult) -> None:
     at_a, at_b = result.continuity
     rows.append(("contact A", ", ".join(_figures(result.contact_a, at_a))))
     rows.append(("contact B", ", ".join(_figures(result.contact_b, at_b))))
+    for name, band in zip("AB", (result.band_a, result.band_b), strict=True):
+        rows += [] if band is None else _band_rows(name, band)
     if result.seam is not None:
         rows.append(("seam", ", ".join(_figures(result.seam, None))))
     if (worst := worst_inside(result.creases)) is not None:
         rows.append(("inside", str(worst)))
     rows += _shape_rows(result.shape)
-    _print_table(rows)
+    print_table(rows)
     print_warnings(result.warnings)
+
+
+def _band_rows(name: str, band: BandContact) -> Iterator[tuple[str, str]]:
+    """Yield how a blend meets the face of a band, and of which curve that is one."""
+    figures = [
+        f"{words} {value:.2g}{unit} ({band.allowed[measure]:.2g} allowed)"
+        for measure, words, unit in (
+            ("gap", "gap to the face", ""),
+            ("off", "off the trim curve", ""),
+            ("angle_degrees", "angle", " degrees"),
+            ("curvature", "relative curvature jump", ""),
+            ("rate", "relative jump of its rate", ""),
+            ("second_rate", "relative jump of its second rate", ""),
+        )
+        if (value := getattr(band, measure)) is not None
+    ]
+    yield f"face at {name}", f"{', '.join(figures)}; {band.limits} limits"
+    of = "feet of the edge in space" if band.source == "foot" else "curve in the face's parameters"
+    apart = [
+        f"edge {distance:.2g} from the {other}"
+        for other, distance in (("face", band.edge_to_face), ("curve in the parameters", band.edge_to_pcurve))
+        if distance is not None
+    ]
+    notes = [
+        *apart,
+        *([f"moved by {band.smoothed_by:.2g} to be smooth"] if band.smoothed_by else []),
+        *([f"{band.left_out:.2g} of {band.length:.4g} left out at ends without a normal"] if band.left_out else []),
+    ]
+    yield f"band at {name}", "; ".join([f"{band.edge}, {band.control_points} points along the {of}", *notes])
 
 
 def _shape_rows(shape: ShapeReport) -> Iterator[tuple[str, str]]:
@@ -312,14 +319,15 @@ def print_entries(entries: Sequence[SurfaceEntry], others: Mapping[str, int]) ->
         if entry.deviation is not None:
             off = f"about {entry.deviation:.3g} off at worst, in the unit of the file"
             notes.append(f"#{entry.number} has no exact B-spline form: the surface taken for it is {off}")
-    _print_table(rows)
+    print_table(rows)
     for note in notes:
         typer.echo(note)
     if others:
         typer.echo(f"cannot be used: {counted(others)}")
 
 
-def _print_table(rows: Sequence[Sequence[str]]) -> None:
+def print_table(rows: Sequence[Sequence[str]]) -> None:
+    """Print rows with their columns aligned."""
     widths = [max(len(row[k]) for row in rows) for k in range(len(rows[0]))]
     for row in rows:
         typer.echo("  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip())

@@ -17,7 +17,7 @@ from semispline import SemisplineError, blend
 from semispline.papers.reproduction.families.suite import shape_problem
 from semispline.papers.reproduction.shape_measures import ENERGY_SET, FAIR_SET, Refused
 from semispline.papers.reproduction.shape_suite import Row
-from semispline.solver.pictures import BASE_COLOR, BLEND_COLOR, render
+from semispline.solver.pictures import BASE_COLOR, BLEND_COLOR, Drawn, render
 
 WORST, RANDOM, COLUMNS = 12, 12, 4
 TILE = (480, 400)
@@ -59,13 +59,9 @@ def sheet(rows: Sequence[Row], shared: Path, path: Path, *, energy: bool) -> Non
             with suppress(SemisplineError):
                 surfaces.append(blend(problem.a, problem.b, **options).surface)
             picture = Path(folder) / "tile.png"
-            render(
-                surfaces,
-                picture,
-                colors=[BASE_COLOR, BASE_COLOR, BLEND_COLOR][: len(surfaces)],
-                field="zebra",
-                size=TILE,
-            )
+            colors = BASE_COLOR, BASE_COLOR, BLEND_COLOR
+            drawn = [Drawn(surface, color) for surface, color in zip(surfaces, colors, strict=False)]
+            render(drawn, picture, field="zebra", size=TILE)
             axis.imshow(plt.imread(picture))
     figure.tight_layout()
     figure.savefig(path, dpi=110)

@@ -19,7 +19,7 @@ from semispline.papers.reproduction import Comparison, Comparisons, Drawing, Exa
 from semispline.solver.blending import blend
 from semispline.solver.io import read_surfaces
 from semispline.solver.judge import Base
-from semispline.solver.pictures import BASE_COLOR, BLEND_COLOR, render
+from semispline.solver.pictures import BASE_COLOR, BLEND_COLOR, Drawn, render
 
 IMPELLER_FACES = (102, 131)
 # From where both blades and the whole blend are seen.
@@ -126,8 +126,8 @@ def draw_pair(name: str, zebra: bool, path: Path) -> None:
     if zebra:
         render(surfaces, path, field="zebra", towards_eye=view)
     else:
-        colors = [BASE_COLOR, BASE_COLOR, BLEND_COLOR]
-        render(surfaces, path, colors=colors, control_points=[False, False, True], towards_eye=view)
+        bases = [Drawn(surface, BASE_COLOR) for surface in surfaces[:2]]
+        render([*bases, Drawn(result.surface, BLEND_COLOR, control_points=True)], path, towards_eye=view)
 
 
 _TABLE_1_HEAD = (

@@ -1,3 +1,4 @@
+from .band_contact import BandContact as BandContact
 from .linear_alpha import LinearInV as LinearInV
 from .measured_energy import thin_plate_energy as thin_plate_energy
 from .nlp import ConstrainedProblem as ConstrainedProblem

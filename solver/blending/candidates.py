@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 from typing import cast
 
 from semispline.solver.blending.fair_search import MOST_CONDONED, AllRefusedError, FairSolution
-from semispline.solver.blending.linear_problem import WIDER, gap_ratio, try_linear_alpha
+from semispline.solver.blending.linear_problem import TRIED_RATIO, WIDER, gap_ratio, try_linear_alpha
 from semispline.solver.blending.problem import BlendProblem, make_problem
 from semispline.solver.blending.shape_parameters import Found, alpha_bounds, find_shape_parameters, found_fair
 from semispline.solver.blending.sides import Side
@@ -25,6 +25,9 @@ from semispline.solver.options import AlphaV, BlendOptions
 WITHOUT_P2 = 1.1
 # A middle curve is taken where fairness falls to this share: it has a sixth as many control points again.
 MIDDLE_SHARE = 0.95
+# At an end of its window the best one falls by a third at most in a lower window: a middle curve with this share of it
+# needs no such search beside it.
+MUCH_FAIRER = 0.5
 QUINTIC = 5
 # Where it wins seldom it is tried where gap / |R_w| varies by this factor along a contact, alpha constant all the same.
 MIDDLE_RATIO = 2.0
@@ -113,10 +116,19 @@ def find_layout(a: Side, b: Side, said: BlendOptions) -> tuple[Layout, tuple[Can
     best = attempt(replace(first, alpha_v="constant") if "fair" in first.alphas else first)
     if best is not None and not _is_searched(best.problem, first):
         return best, ()
+    with_middle = replace(first, middle_curves=1, alpha_v="constant")
+    middle: Layout | None = None
+    is_early = False
+    if said.middle_curves == "auto" and best is not None and _wants_a_middle_curve_first(best, first.alpha_v):
+        is_early, middle = True, attempt(with_middle)
+        if middle is not None and _pays_with_a_middle_curve(middle, best, MUCH_FAIRER):
+            best = _away_from_ends(middle, search)
+            return best, tuple(_candidate(one, best) for one in tried)
     # The quartic suits U-turns that want little alpha, whatever becomes of the quintic in a lower window.
     doubtful = best is None or (best.problem.exits.u_turn and _is_doubtful(best))
     best = None if best is None else _away_from_ends(best, search)
-    if (doubtful or _is_doubtful(cast("Layout", best))) and said.degree_u == "auto" and first.degree_u == QUINTIC:
+    doubtful = doubtful or _is_doubtful(cast("Layout", best), of_refusals=False)
+    if doubtful and said.degree_u == "auto" and first.degree_u == QUINTIC:
         quartic = attempt(replace(first, degree_u=4, alpha_v="constant"))
         best = _fairer(best, quartic)
         best = _away_from_ends(best, search) if best is not None and best is quartic else best
@@ -125,7 +137,7 @@ def find_layout(a: Side, b: Side, said: BlendOptions) -> tuple[Layout, tuple[Can
     best, linear = _with_linear_alpha(best, first.alpha_v)
     # What a linear alpha would follow, a middle curve follows less well.
     if said.middle_curves == "auto" and _may_want_a_middle_curve(best):
-        middle = attempt(replace(first, middle_curves=1, alpha_v="constant"))
+        middle = middle if is_early else attempt(with_middle)
         if middle is not None and _fairness(middle) < _fairness(best):
             middle = _away_from_ends(middle, search)
         best = middle if middle is not None and _pays_with_a_middle_curve(middle, best) else best
@@ -162,10 +174,13 @@ def _wants_less(layout: Layout) -> bool:
     return any("lower" in name for name in alpha_bounds(layout.problem, layout.found))
 
 
-def _is_doubtful(layout: Layout) -> bool:
-    """Tell whether another layout is worth a search: for what was let pass, an end that was met, or a refusal."""
+def _is_doubtful(layout: Layout, *, of_refusals: bool = True) -> bool:
+    """Tell whether another degree is worth a search: for what was let pass, an end that was met, or a refusal.
+
+    Beside a refusal the quartic is the fairer one on U-turns alone: elsewhere it meets the same.
+    """
     found = layout.found
-    return bool(found.condoned or found.stopped_by or alpha_bounds(layout.problem, found))
+    return bool(found.condoned or (found.stopped_by and of_refusals) or alpha_bounds(layout.problem, found))
 
 
 def _may_want_a_middle_curve(layout: Layout) -> bool:
@@ -181,12 +196,19 @@ def _may_want_a_middle_curve(layout: Layout) -> bool:
     return is_usual or bool(layout.found.stopped_by) or gap_ratio(problem) >= MIDDLE_RATIO
 
 
-def _pays_with_a_middle_curve(middle: Layout, best: Layout) -> bool:
+def _wants_a_middle_curve_first(layout: Layout, alpha_v: AlphaV) -> bool:
+    """Tell whether a middle curve is tried before a lower window: at an end, and where no linear alpha is tried."""
+    follows = alpha_v == "linear" or (alpha_v == "auto" and gap_ratio(layout.problem) >= TRIED_RATIO)
+    is_free = not (follows or layout.found.stopped_by or layout.found.condoned or layout.problem.exits.u_turn)
+    return is_free and any(_at_end(layout)) and _may_want_a_middle_curve(layout)
+
+
+def _pays_with_a_middle_curve(middle: Layout, best: Layout, least_share: float = MIDDLE_SHARE) -> bool:
     """Tell whether a middle curve is worth its points: there is less to let pass, or it is fairer by enough."""
     let_pass = len(middle.found.condoned) - len(best.found.condoned)
     if let_pass:
         return let_pass < 0
-    share = 1.0 if best.found.stopped_by and not middle.found.stopped_by else MIDDLE_SHARE
+    share = 1.0 if best.found.stopped_by and not middle.found.stopped_by else least_share
     is_sound = sum(_at_end(middle)) <= sum(_at_end(best)) and _is_settled(middle) >= _is_settled(best)
     return is_sound and _fairness(middle) < share * _fairness(best)
 

@@ -106,18 +106,18 @@ class FairObjective:
         measured = self.table.measure(self.unknowns.monomials(y)[0])
         return self._counted(measured.values + self._tie(y), measured.refused)
 
-    def gradients(self, y: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Return values and gradients of candidates, shape (B, n)."""
+    def gradients(self, y: FloatArray, *, everywhere: bool = True) -> tuple[FloatArray, FloatArray]:
+        """Return values and gradients of candidates, shape (B, n); gradients where they are refused, too, if wanted."""
         monomials, slopes = self.unknowns.monomials(y)
-        measured, by_monomials = self.table.with_gradient(monomials)
+        measured, by_monomials = self.table.with_gradient(monomials, everywhere=everywhere)
         total = measured.values + self._tie(y)
         by_y = np.einsum("bnk,bk->bn", slopes, by_monomials) + 2 * _TIE * self._drawn * self._off(y)
         with np.errstate(invalid="ignore"):
             return self._counted(total, measured.refused), by_y / total[:, None]
 
     def __call__(self, y: FloatArray) -> tuple[float, FloatArray]:
-        """Return value and gradient of one candidate."""
-        values, gradients = self.gradients(y[None])
+        """Return value and gradient of one candidate; where it is refused the value is infinite, whatever the slope."""
+        values, gradients = self.gradients(y[None], everywhere=False)
         return float(values[0]), gradients[0]
 
     def point(self, y: FloatArray) -> Point:

@@ -27,7 +27,7 @@ from semispline.solver.blending.fairness_grid import (
 from semispline.solver.blending.fairness_table import FOLDS, LEAST_COSINE, LOOPS, FairnessTable, narrow_width
 from semispline.solver.blending.linear_alpha import LinearInV
 from semispline.solver.blending.problem import BlendProblem
-from semispline.solver.blending.projected import MOST_STEPS, Point, descend, unbound
+from semispline.solver.blending.projected import MOST_STEPS, Point, descend, descend_abreast, unbound
 from semispline.solver.errors import ComputationError
 
 # Cells of the scan in each direction, at least, and for U-turns; one more for each factor of 2 by which the ends of the
@@ -45,10 +45,11 @@ MOST_CONDONED = len(_CONDONED)
 _STEPS_AMONG_FOLDS = 12
 # Parts of the way back to a start, where a finer grid refuses.
 _BACK = (0.0, 0.02, 0.05, 0.1, 0.2, 0.4, 0.7, 1.0)
-# A grid of more nodes is not gone to without one between.
-_LARGE = 2000
+# A grid of more nodes is not gone to without one between; where folds are let pass one of more than the second is not
+# gone to at all.
+_LARGE, _MOST_AMONG_FOLDS = 2000, 10_000
 # Numbers in a block that is large for the C library.
-_WORKSPACE = 2**21
+_WORKSPACE = 2**22 - 2**12
 # Longest steps of log alpha^2 and of p2 in its natural size.
 _STEP, _STEP_P2 = 0.35, 2.0
 # J on a finer grid agrees to this fraction, or the search goes on there; where it is off by more than the second,
@@ -169,23 +170,26 @@ def _solved(problem: BlendProblem, refusable: tuple[int, ...], known: FairSoluti
         raise AllRefusedError(refused)
     # Among folds one start will do: which of their valleys is deepest means little.
     count = _STARTS if FOLDS in refusable else 1
-    starts = [*_starts(cells, values)[:count], *([] if known is None else [_known_start(problem, unknowns, known)])]
+    starts = list(_starts(cells, values)[:count])
+    # What is known of the same rows was found on finer grids: a rough one would only lead away from it, and what is no
+    # better there hardly leads to another place.
+    exact = None
+    if known is not None:
+        at = _known_start(problem, unknowns, known)
+        if problem.linear == (None, None):
+            starts = starts if known.condoned else _better(rough, starts, at)
+            exact = len(starts)
+        starts.append(at)
     points = [_with_finite_model(rough.point(start)) for start in starts]
-    ends = [_descended(rough, point, _NEAR) for point in points]
-    # What is known of the same rows was found on finer grids: a rough one would only lead away from it.
-    exact = len(starts) - 1 if known is not None and problem.linear == (None, None) else None
-    if exact is not None:
-        ends[exact] = points[exact]
+    ends = _descended_abreast(rough, points[:exact], _NEAR) + ([] if exact is None else points[exact:])
     nodes = HIGH_ORDER_NODES_U if max(problem.a.order, problem.b.order) > 2 else NODES_U
     search = grid(across(u, nodes), along(rows, 1, narrow))
-
-    # Where a surface folds J has no end: no grid would settle it.
-    times_v = _FINER if FOLDS in refusable else _FINER[:1]
 
     @cache
     def finer(times: int) -> FairObjective:
         return grid(across(u, 2 * nodes), along(rows, times, narrow))
 
+    times_v = _finer_times(search)
     between = grid(across(u, ROUGH_U), along(rows, 1, narrow)) if search.table.size > _LARGE else None
     levels = [(level, tolerance) for level, tolerance in ((between, _NEAR), (search, _END)) if level is not None]
     found = None
@@ -218,6 +222,13 @@ def _solved(problem: BlendProblem, refusable: tuple[int, ...], known: FairSoluti
     return replace(solution, settled=found[1], stopped_by=next(filter(None, shut), ""))
 
 
+def _finer_times(search: FairObjective) -> tuple[int, ...]:
+    """Return how many times the nodes in v finer grids have; where a surface folds J has no end that would settle."""
+    if FOLDS in search.table.refusable:
+        return _FINER
+    return _FINER[:1] if 4 * search.table.size <= _MOST_AMONG_FOLDS else ()
+
+
 def _cells(problem: BlendProblem) -> int:
     """Return how many cells a scan has in each direction: they are of one size in log alpha^2, however wide a window.
 
@@ -247,6 +258,12 @@ def _starts(cells: FloatArray, values: FloatArray) -> FloatArray:
     minima = np.flatnonzero((values <= around.min(axis=tuple(range(-values.ndim, 0)))) & np.isfinite(values))
     # Ties keep the order of the cells: the search is the same at every run.
     return np.asarray(cells[minima[np.argsort(values.ravel()[minima], kind="stable")][:_STARTS]])
+
+
+def _better(objective: FairObjective, starts: list[FloatArray], than: FloatArray) -> list[FloatArray]:
+    """Return the starts that are better than a place."""
+    limit, *values = objective.values(np.stack([than, *starts]))
+    return [start for start, value in zip(starts, values, strict=True) if value < limit]
 
 
 def _refined(end: Point, start: FloatArray, levels: list[tuple[FairObjective, float]]) -> Point | None:
@@ -300,10 +317,19 @@ def _admitted(objective: FairObjective, point: Point, start: FloatArray) -> Poin
 
 
 def _descended(objective: FairObjective, start: Point, tolerance: float) -> Point:
+    return descend(objective, start, *_limits(objective, tolerance))
+
+
+def _descended_abreast(objective: FairObjective, starts: list[Point], tolerance: float) -> list[Point]:
+    return descend_abreast(objective.gradients, starts, *_limits(objective, tolerance))
+
+
+def _limits(objective: FairObjective, tolerance: float) -> tuple[FloatArray, FloatArray, FloatArray, float, int]:
+    """Return bounds, longest steps, tolerance and most steps of a way down."""
     unknowns = objective.unknowns
     longest = np.where(unknowns.logarithmic, _STEP, _STEP_P2)
     most = MOST_STEPS if FOLDS in objective.table.refusable else _STEPS_AMONG_FOLDS
-    return descend(objective, start, unknowns.low, unknowns.high, longest, tolerance, most)
+    return unknowns.low, unknowns.high, longest, tolerance, most
 
 
 def _with_finite_model(point: Point) -> Point:

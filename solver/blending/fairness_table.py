@@ -103,15 +103,18 @@ class FairnessTable:
         return int(self._weights.size)
 
     def measure(self, monomials: FloatArray) -> Measured:
-        """Return J of candidates, monomials of shape (B, K)."""
+        """Return J of candidates, monomials of shape (B, K); it may be infinite where they are refused."""
         step = max(1, _AT_ONCE // self.size)
         parts = [self._measure(monomials[i : i + step]) for i in range(0, len(monomials), step)]
         return Measured(np.concatenate([p.values for p in parts]), np.concatenate([p.refused for p in parts]))
 
-    def with_gradient(self, monomials: FloatArray) -> tuple[Measured, FloatArray]:
-        """Return J of candidates and its gradients by the monomials, both of shape (B, K)."""
+    def with_gradient(self, monomials: FloatArray, *, everywhere: bool = True) -> tuple[Measured, FloatArray]:
+        """Return J of candidates and its gradients by the monomials, both of shape (B, K).
+
+        Unless it is wanted everywhere J may be infinite, and its gradient 0, where a candidate is refused.
+        """
         step = max(1, _AT_ONCE // self.size)
-        parts = [self._with_gradient(monomials[i : i + step]) for i in range(0, len(monomials), step)]
+        parts = [self._with_gradient(monomials[i : i + step], everywhere) for i in range(0, len(monomials), step)]
         measured = [part[0] for part in parts]
         return (
             Measured(np.concatenate([p.values for p in measured]), np.concatenate([p.refused for p in measured])),
@@ -123,19 +126,25 @@ class FairnessTable:
         with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
             if self._is_rational:
                 planes = list(quotient(planes))
-            return Measured(self._parts(fairness(planes)).value, self._refused(rows, planes))
+            refused = self._refused(rows, planes)
+            if refused.all():
+                return _unmeasured(refused)
+            return Measured(self._parts(fairness(planes)).value, refused)
 
-    def _with_gradient(self, monomials: FloatArray) -> tuple[Measured, FloatArray]:
+    def _with_gradient(self, monomials: FloatArray, everywhere: bool) -> tuple[Measured, FloatArray]:
         rows, planes = self._planes(monomials)
         with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
             if self._is_rational:
                 found, through_quotient = quotient_pullback(planes)
                 planes = list(found)
+            refused = self._refused(rows, planes)
+            if refused.all() and not everywhere:
+                return _unmeasured(refused), np.zeros_like(monomials)
             outputs, pullback = fairness_pullback(planes)
             parts = self._parts(outputs)
             adjoints = pullback(self._seeds(parts))
             gradient = self._gradient(through_quotient(adjoints) if self._is_rational else adjoints)
-        return Measured(parts.value, self._refused(rows, planes)), gradient
+        return Measured(parts.value, refused), gradient
 
     def _planes(self, monomials: FloatArray) -> tuple[FloatArray, list[FloatArray]]:
         """Return derivatives by v of the rows, and those of the surface, the homogeneous surface itself first.
@@ -227,6 +236,11 @@ class FairnessTable:
         if FOLDS in self.refusable:
             found = np.where(folds(normal, self.least_cosine), FOLDS, found)
         return found.astype(np.int8)
+
+
+def _unmeasured(refused: NDArray[np.int8]) -> Measured:
+    """Return that all are refused: to measure them all the same would take most of the time."""
+    return Measured(np.full(len(refused), np.inf), refused)
 
 
 @dataclass(frozen=True, eq=False)

@@ -36,6 +36,8 @@ from semispline.solver.judge import (
     Correspondence,
     ShapeReport,
     check_regular_edge,
+    edge_length,
+    in_cad_limits,
     measure_contact,
     measure_creases,
     measure_regularity,
@@ -114,7 +116,7 @@ def blend(
             failures[least.flip] = failure
             solved.remove(least)
         else:
-            return _strictly(result, said.strict)
+            return _strictly(_unwarned(a, b, said, result), said.strict)
     raise next(failures[flip] for flip in directions if flip in failures)
 
 
@@ -170,7 +172,7 @@ def _judged(a: Base, b: Base, solved: _Solved, seconds: float) -> BlendResult:
     warnings = (
         shape_warnings(shape, regularity, creases, options=chosen, cures=problem.cures)
         + bound_warnings(problem, layout.found)
-        + stopped_warning(layout.found)
+        + stopped_warning(layout.found, chosen)
         + (fairness_warning(found.fairness, shape.fairness.value) if chosen.bulges == (1.0, 1.0) else ())
         + rounding_warning(rounding, surface, energy)
         + seam_warning(a, b)
@@ -326,6 +328,10 @@ def _checked_contacts(
     order = max(2, *options.orders)
     contact_a = measure_contact(a, Base(surface, "u0"), correspondence=Correspondence(flipped=False), order=order)
     contact_b = measure_contact(Base(surface, "u1"), b, correspondence=matched, order=order)
+    if options.limits == "cad":
+        contact_a, contact_b = (
+            in_cad_limits(contact, edge_length(base)) for contact, base in ((contact_a, a), (contact_b, b))
+        )
     for index, (name, base, contact, wanted, shape) in enumerate(
         (
             ("a", a, contact_a, continuity[0], float(np.min(found.a))),
@@ -353,6 +359,25 @@ def _checked_contacts(
                     + (strained or "try fewer middle curves, or bases whose knots are not so close")
                 )
     return contact_a, contact_b
+
+
+def _unwarned(a: Base, b: Base, said: BlendOptions, result: BlendResult) -> BlendResult:
+    """Return the blend without the middle curve that was chosen, where that leaves nothing to be warned of.
+
+    A little fairness is not worth a warning. A U-turn keeps one.
+    """
+    left = next((one for one in result.candidates if one.verdict == "chosen" and one.middle_curves), None)
+    if left is None or said.middle_curves != "auto" or not result.warnings or result.shape.exits.is_u_turn:
+        return result
+    try:
+        flip: Flip = "yes" if result.flipped else "no"
+        plain = blend(a, b, replace(said, middle_curves=0, flip=flip, strict=False))
+    except ComputationError:
+        return result
+    if plain.warnings:
+        return result
+    left = replace(left, verdict=f"fairness {left.fairness:.4g} is less, but {result.warnings[0]}")
+    return replace(plain, candidates=(*plain.candidates, left), seconds=result.seconds + plain.seconds)
 
 
 def _seam(surface: SemiStructuredSurface, problem: BlendProblem) -> Contact | None:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Generator
 from dataclasses import dataclass, replace
+from typing import Any, TypeAlias, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +17,10 @@ MOST_STEPS, _MOST_HALVINGS, _MOST_REFUSALS = 60, 12, 5
 _ENOUGH = 1e-4
 # A model is at least so convex, in units of its most convex direction.
 _LEAST_CONVEX = 1e-6
+
+_T = TypeVar("_T")
+# Yields places, and is sent values and gradients there.
+_Way: TypeAlias = Generator[FloatArray, Any, _T]
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,6 +71,52 @@ def descend(
     >>> abs(end.x).round(6)
     array([1., 0.])
     """
+
+    def one(places: FloatArray) -> tuple[FloatArray, FloatArray]:
+        value, gradient = function(places[0])
+        return np.array([value]), gradient[None]
+
+    return descend_abreast(one, [start], low, high, longest, tolerance, most)[0]
+
+
+def descend_abreast(
+    function: Callable[[FloatArray], tuple[FloatArray, FloatArray]],
+    starts: list[Point],
+    low: FloatArray,
+    high: FloatArray,
+    longest: FloatArray,
+    tolerance: float,
+    most: int = MOST_STEPS,
+) -> list[Point]:
+    """Go down from several starts, each as `descend` does, but all step by step together.
+
+    Parameters
+    ----------
+    function : callable
+        Values, shape (B,), and gradients of places, shape (B, n): several may cost little more than one.
+    starts : list of Point
+    low, high, longest, tolerance, most
+        As for `descend`.
+    """
+    ways = [_way(start, low, high, longest, tolerance, most) for start in starts]
+    ends = list(starts)
+    answers: dict[int, Any] = dict.fromkeys(range(len(ways)))
+    while answers:
+        places = {}
+        for k, answer in answers.items():
+            try:
+                places[k] = ways[k].send(answer)
+            except StopIteration as ended:
+                ends[k] = ended.value
+        found = function(np.stack(list(places.values()))) if places else ()
+        answers = dict(zip(places, zip(*found, strict=True), strict=False))
+    return ends
+
+
+def _way(
+    start: Point, low: FloatArray, high: FloatArray, longest: FloatArray, tolerance: float, most: int
+) -> _Way[Point]:
+    """Go down from a start: places are asked for, and values and gradients there received; return the end."""
     at = replace(start, hessian=convex(start.hessian), shut=None)
     for _ in range(most):
         free = unbound(at.x, at.gradient, low, high)
@@ -74,7 +125,7 @@ def descend(
         step = np.zeros_like(at.x)
         step[free] = -np.linalg.solve(at.hessian[np.ix_(free, free)], at.gradient[free])
         step /= max(1.0, float((np.abs(step) / longest).max()))
-        following, shut = _stepped(function, at, step, low, high)
+        following, shut = yield from _stepped(at, step, low, high)
         if following is None:
             return replace(at, shut=shut)
         at = following
@@ -95,12 +146,8 @@ def convex(hessian: FloatArray) -> FloatArray:
 
 
 def _stepped(
-    function: Callable[[FloatArray], tuple[float, FloatArray]],
-    at: Point,
-    step: FloatArray,
-    low: FloatArray,
-    high: FloatArray,
-) -> tuple[Point | None, FloatArray | None]:
+    at: Point, step: FloatArray, low: FloatArray, high: FloatArray
+) -> _Way[tuple[Point | None, FloatArray | None]]:
     """Return the next place, the model of its Hessian updated; none where no part of the step goes down.
 
     Beside it where there was no value, if that is why there is none.
@@ -109,13 +156,13 @@ def _stepped(
     for _ in range(_MOST_HALVINGS):
         x = np.clip(at.x + step, low, high)
         moved = x - at.x
-        value, gradient = function(x)
+        value, gradient = yield x
         # Where there is no value the way is shut: what is left of a step is not worth many trials.
         refusals += not np.isfinite(value)
         if refusals > _MOST_REFUSALS:
             return None, x
         if value <= at.value + _ENOUGH * float(at.gradient @ moved):
-            return Point(x, value, gradient, _updated(at.hessian, moved, gradient - at.gradient)), None
+            return Point(x, float(value), gradient, _updated(at.hessian, moved, gradient - at.gradient)), None
         step = step / 2
     return None, None
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 
+from semispline.solver.blending.band_contact import BandContact
 from semispline.solver.blending.candidates import Candidate
 from semispline.solver.blending.linear_alpha import LinearInV
 from semispline.solver.blending.representative import Cure, Representative
@@ -116,6 +117,8 @@ class BlendResult:
         Rank of the constraint Jacobian at the solution, and its number of rows; only for method casadi.
     seconds : float
         For the solve, in both directions of b where both were tried, without the final checks.
+    band_a, band_b : BandContact or None
+        Where a base is a band along a free curve of a face: how the blend meets the face itself.
     """
 
     surface: SemiStructuredSurface
@@ -153,6 +156,8 @@ class BlendResult:
     p2: tuple[LinearInV, LinearInV]
     constraint_rank: tuple[int, int] | None
     seconds: float
+    band_a: BandContact | None = None
+    band_b: BandContact | None = None
 
     @property
     def rows_stored(self) -> int:

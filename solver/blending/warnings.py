@@ -47,13 +47,14 @@ def bound_warnings(problem: BlendProblem, found: Found) -> tuple[str, ...]:
     return tuple(warnings)
 
 
-def stopped_warning(found: Found) -> tuple[str, ...]:
+def stopped_warning(found: Found, options: BlendOptions) -> tuple[str, ...]:
     """Return a warning where a refusal stopped the search before the fairest shape was reached."""
     if not found.stopped_by:
         return ()
+    tries = ["alpha_v linear"] * (options.alpha_v != "linear") + ["a middle curve"] * (not options.middle_curves)
     return (
         f"the fairest shape was not reached: beside this blend lie fairer ones that {found.stopped_by}, which are "
-        "refused; try alpha_v linear, a middle curve, or edges that face each other more evenly",
+        f"refused; try {', '.join([*tries, 'or edges that face each other more evenly'])}",
     )
 
 

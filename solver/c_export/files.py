@@ -26,18 +26,19 @@ from semispline.solver.blending import (
     state_problem,
 )
 from semispline.solver.c_export.readme import readme
-from semispline.solver.errors import ComputationError, InputError
+from semispline.solver.errors import ComputationError, EdgeError, InputError
 from semispline.solver.io import (
+    StoredProblem,
     check_folder,
     check_outputs,
     face_warnings,
     read_problem,
-    read_surfaces,
     split_spec,
     write_texts,
 )
 from semispline.solver.judge import Base
 from semispline.solver.options import BlendOptions
+from semispline.solver.topology import ResolvedEdge, edge_bases, resolve_edges
 
 NAME = "blend"
 # Errors of the control points of exported code, as a fraction of the size: of the energy that is the square.
@@ -69,26 +70,54 @@ def write_c(folder: str | Path, problem_file: str | Path) -> tuple[list[Path], t
     """
     check_folder(folder)
     stored = read_problem(problem_file)
-    bases = [stored.a, stored.b]
-    # Both at once: surfaces of different files come in one unit.
-    specs = [base for base in bases if isinstance(base, str)]
-    loaded = read_surfaces(specs) if specs else []
-    read = iter(loaded)
-    surfaces = [next(read).surface if isinstance(base, str) else base for base in bases]
-    edges: list[Any] = [stored.edge_a, stored.edge_b]
-    named = [edge for base, edge in zip(bases, edges, strict=True) if isinstance(base, str)]
+    (a, b), ends = _bases(stored)
+    own = [asked for base, asked in ((stored.a, stored.asked_a), (stored.b, stored.asked_b)) if isinstance(base, str)]
     # An edge that was asked for as one of the face is its own.
-    own = [asked for base, asked in zip(bases, (stored.asked_a, stored.asked_b), strict=True) if isinstance(base, str)]
-    loaded = [item if asked is None else replace(item, boundary=None) for item, asked in zip(loaded, own, strict=True)]
-    warnings = face_warnings(*zip(specs, named, loaded, strict=True), strict=stored.options.strict)
-    a, b = (Base(surface, edge) for surface, edge in zip(surfaces, edges, strict=True))
+    edges = [
+        (end.spec, end.edge, end.loaded if asked is None else replace(end.loaded, boundary=None))
+        for end, asked in zip(ends, own, strict=True)
+    ]
+    warnings = face_warnings(*edges, strict=stored.options.strict)
     _require_polynomial(a, b, stored.options)
     texts = c_files(state_problem(a, b, stored.options.decided("generated C")))
     if Path(folder).is_dir():
         check_outputs(
-            {name: Path(folder) / name for name in texts}, [problem_file, *(split_spec(spec)[0] for spec in specs)]
+            {name: Path(folder) / name for name in texts}, [problem_file, *(split_spec(end.spec)[0] for end in ends)]
         )
     return write_texts(folder, texts), warnings
+
+
+def _bases(stored: StoredProblem) -> tuple[list[Base], list[ResolvedEdge]]:
+    """Return both bases, a band along a free curve, and what was read from files.
+
+    Raises
+    ------
+    EdgeError
+        A free curve that has to be cut, so that there are several problems.
+    """
+    sides = ((stored.a, stored.edge_a), (stored.b, stored.edge_b))
+    # Both at once: surfaces of different files come in one unit.
+    named = [(base, edge) for base, edge in sides if isinstance(base, str)]
+    ends = resolve_edges(
+        named, [f"edge_{name}" for name, (base, _) in zip("ab", sides, strict=True) if isinstance(base, str)]
+    )
+    orders = [
+        order for (base, _), order in zip(sides, stored.options.continuities, strict=True) if isinstance(base, str)
+    ]
+    read = iter(edge_bases(ends, orders))
+    found = []
+    for base, edge in sides:
+        if not isinstance(base, str):
+            found.append(Base(base, edge))
+            continue
+        parts = next(read)
+        if len(parts) > 1:
+            raise EdgeError(
+                f"{edge} of {base}: found {len(parts)} parts, {parts[0].name} to {parts[-1].name}, expected one for "
+                "generated C: name one of them in the problem"
+            )
+        found.append(parts[0].base)
+    return found, ends
 
 
 def _require_polynomial(a: Base, b: Base, options: BlendOptions) -> None:

@@ -5,13 +5,19 @@ Heavy imports wait inside the functions, so that `--help` answers fast.
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import replace
-from typing import Annotated
+from itertools import chain
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from semispline.solver.cli.wanted_bases import WantedBases
 from semispline.solver.cli.words import (
+    EDGE_HELP,
+    SURFACE_HELP,
     EdgeA,
     EdgeB,
     SurfaceA,
@@ -26,49 +32,101 @@ from semispline.solver.cli.words import (
 from semispline.solver.exit_status import reports_errors
 from semispline.solver.option_flags import takes_blend_options
 from semispline.solver.options import BlendOptions
-from semispline.solver.reports import print_result, report_record
+from semispline.solver.reports import print_result, reports_record
+
+if TYPE_CHECKING:
+    from semispline.solver.splines import Surface
+
+_CUT_HELP = (
+    "Move the contact from the edge into {}: a distance along the surface, square to the edge, or a parameter, u=0.3. "
+    "Two faces of one file that share an edge need no --edge."
+)
 
 
 @reports_errors
 @takes_blend_options
 def blend_command(
-    a: SurfaceA,
-    b: SurfaceB,
-    edge_a: EdgeA,
-    edge_b: EdgeB,
+    a: Annotated[str, typer.Argument(metavar="A", help=f"{SURFACE_HELP} With --replace the file alone.")],
     out: Annotated[str, typer.Option("-o", "--out", metavar="OUT", help="File to write; the suffix says the format.")],
     options: BlendOptions,
+    b: Annotated[str | None, typer.Argument(metavar="[B]", help="The same for the other surface.")] = None,
+    edge_a: Annotated[str | None, typer.Option(metavar="EDGE", help=EDGE_HELP.format("A, or of FACE"))] = None,
+    edge_b: Annotated[str | None, typer.Option(metavar="EDGE", help=EDGE_HELP.format("B, or another of FACE"))] = None,
+    replace_face: Annotated[
+        int | None,
+        typer.Option("--replace", metavar="FACE", min=0, help="Blend the faces beside this one, as if it were away."),
+    ] = None,
+    cut_a: Annotated[str | None, typer.Option(metavar="D", help=_CUT_HELP.format("A"))] = None,
+    cut_b: Annotated[str | None, typer.Option(metavar="D", help=_CUT_HELP.format("B"))] = None,
+    with_bases: Annotated[
+        bool, typer.Option("--with-bases", help="Write the bases, cut to their edges, as surfaces beside the blend.")
+    ] = False,
     report: Annotated[str | None, typer.Option(metavar="FILE", help="JSON with all that is known of it.")] = None,
 ) -> None:
     """Join an edge of A and an edge of B by a semi-structured surface of fairest shape, or as the options say."""
-    from semispline.solver.io import (
-        atomic_path,
-        check_surface_output,
-        face_warnings,
-        to_text,
-        write_surface,
-    )
+    from semispline.solver.io import check_surface_output, face_warnings
 
-    check_words(edge_a, edge_b)
-    check_surface_output(out)
-    check_outputs({"--out": out, "--report": report}, [a, b])
-    ends = resolved(a, edge_a, b, edge_b)
+    wanted = WantedBases(a, b, edge_a, edge_b, replace_face, (cut_a, cut_b))
+    wanted.check()
+    check_surface_output(out, 3 if with_bases else 1)
+    check_outputs({"--out": out, "--report": report}, wanted.specs)
+    with progress("reading"):
+        ends, said = wanted.resolved()
     trims = face_warnings(*((end.spec, end.edge, end.loaded) for end in ends), strict=options.strict)
     with progress("blending"):
-        from semispline.solver.blending import blend
-        from semispline.solver.judge import Base
+        from semispline.solver.topology import blend_bases, edge_bases, paired_bases
 
-        first, second = (Base(end.surface, end.edge) for end in ends)
-        result = blend(first, second, options)
-    result = replace(result, warnings=(*trims, *result.warnings))
-    with ExitStack() as stack:
-        # The report first, into its temporary file: neither file is touched unless both can be written.
-        if report is not None:
-            temporary = stack.enter_context(atomic_path(report))
-            temporary.write_text(to_text(report_record(result) | asked(ends)))
-        write_surface(out, result.surface, ends[0].loaded.unit)
+        pairs = paired_bases(*edge_bases(ends, options.continuities))
+        files = part_files(out, len(pairs))
+        check_outputs({f"--out {file}": file for file in files} | {"--report": report}, wanted.specs)
+        results = [blend_bases(*pair, options, several=len(pairs) > 1) for pair in pairs]
+    results[0] = replace(results[0], warnings=(*trims, *results[0].warnings))
+    record = reports_record(results) | asked(ends) | wanted.record
+    of_parts = [
+        [result.surface, *(side.base.surface for side in pair if with_bases)]
+        for result, pair in zip(results, pairs, strict=True)
+    ]
+    _write(files, of_parts, ends[0].loaded.unit, report, record)
+    if said:
+        typer.echo(said)
     print_resolved(ends)
-    print_result(result)
+    for k, result in enumerate(results):
+        if len(results) > 1:
+            typer.echo(f"part {k + 1} of {len(results)}, {files[k % len(files)]}:")
+        print_result(result)
+
+
+def _write(
+    files: Sequence[str],
+    surfaces: Sequence[Sequence[Surface]],
+    unit: str | None,
+    report: str | None,
+    record: Mapping[str, Any],
+) -> None:
+    """Write the surfaces of each part, into one file or each into its own, and the report: all of them or none."""
+    from semispline.solver.io import atomic_path, to_text, write_surfaces
+
+    in_files = [list(chain.from_iterable(surfaces))] if len(files) == 1 else surfaces
+    with ExitStack() as stack:
+        # Each lies in its temporary file before the first takes its place.
+        if report is not None:
+            stack.enter_context(atomic_path(report)).write_text(to_text(record))
+        for file, content in zip(files, in_files, strict=True):
+            write_surfaces(stack.enter_context(atomic_path(file)), content, unit)
+
+
+def part_files(out: str, parts: int) -> list[str]:
+    """Return the files for the blends of so many parts: one where the format holds several surfaces, else numbered.
+
+    Examples
+    --------
+    >>> part_files("blend.step", 3), part_files("a/blend.json", 2), part_files("blend.json", 1)
+    (['blend.step'], ['a/blend-0.json', 'a/blend-1.json'], ['blend.json'])
+    """
+    path = Path(out)
+    if parts == 1 or path.suffix.lower() != ".json":
+        return [out]
+    return [str(path.with_name(f"{path.stem}-{k}{path.suffix}")) for k in range(parts)]
 
 
 @reports_errors
@@ -88,8 +146,8 @@ def problem_command(
     check_words(edge_a, edge_b)
     check_outputs({"--out": out}, [a, b])
     ends = resolved(a, edge_a, b, edge_b)
-    # A name that the surface does not have is refused here.
-    first, second = (Base(end.surface, end.edge).edge for end in ends)
+    # A name that the surface does not have is refused here; a free curve has a name in its file alone.
+    first, second = (end.edge if end.is_free else Base(end.surface, end.edge).edge for end in ends)
     specs = [relative_spec(end.spec, out) for end in ends]
     write_problem(out, StoredProblem(specs[0], first, specs[1], second, options, ends[0].asked, ends[1].asked))
     print_resolved(ends)

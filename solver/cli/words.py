@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from semispline.solver.topology import ResolvedEdge
 
 SURFACE_HELP = "PATH, or PATH#N as `semispline list PATH` numbers it (JSON, STEP, IGES, BREP, 3dm)."
-_EDGE_HELP = (
+EDGE_HELP = (
     "Edge of {}: u0, u1, v0 or v1, the parameter that is constant along it and at which end; a part, u1[0.2,0.6]; a "
     "line inside, u=0.3+ (the side of larger u is kept) or u=0.3-; a part of it, u=0.3+[0.2,0.6]; e3, an edge of the "
     "face as `semispline list PATH --edges N` numbers it; near=x,y,z, its edge nearest to a point."
@@ -24,18 +24,23 @@ CONTINUITY_HELP = "C0, C1, C2, G0, G1, G2, G3 or G4."
 
 SurfaceA = Annotated[str, typer.Argument(metavar="A", help=SURFACE_HELP)]
 SurfaceB = Annotated[str, typer.Argument(metavar="B", help="The same for the other surface.")]
-EdgeA = Annotated[str, typer.Option("--edge-a", metavar="EDGE", help=_EDGE_HELP.format("A"))]
-EdgeB = Annotated[str, typer.Option("--edge-b", metavar="EDGE", help=_EDGE_HELP.format("B"))]
+EdgeA = Annotated[str, typer.Option("--edge-a", metavar="EDGE", help=EDGE_HELP.format("A"))]
+EdgeB = Annotated[str, typer.Option("--edge-b", metavar="EDGE", help=EDGE_HELP.format("B"))]
 
 
 def check_words(edge_a: str, edge_b: str) -> None:
     """Refuse what names no edge before a file is read."""
+    check_word(edge_a, "--edge-a")
+    check_word(edge_b, "--edge-b")
+
+
+def check_word(word: str, name: str) -> None:
+    """Refuse what names no edge; messages call it `name`."""
     from semispline.solver.splines import parse_edge
     from semispline.solver.topology import is_of_a_face
 
-    for word, name in ((edge_a, "--edge-a"), (edge_b, "--edge-b")):
-        if not is_of_a_face(word):
-            parse_edge(word, name)
+    if not is_of_a_face(word):
+        parse_edge(word, name)
 
 
 def resolved(a: str, edge_a: str, b: str, edge_b: str) -> list[ResolvedEdge]:

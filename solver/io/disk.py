@@ -169,6 +169,17 @@ def check_folder(path: str | Path) -> Path:
 
 
 def write_texts(path: str | Path, texts: Mapping[str, str]) -> list[Path]:
+    """Write texts in UTF-8 as `write_files` does.
+
+    Raises
+    ------
+    FileError
+        As `write_files`.
+    """
+    return write_files(path, {name: text.encode() for name, text in texts.items()})
+
+
+def write_files(path: str | Path, files: Mapping[str, bytes]) -> list[Path]:
     """Write files by name into a folder, made if missing; all of them or none.
 
     Raises
@@ -181,16 +192,16 @@ def write_texts(path: str | Path, texts: Mapping[str, str]) -> list[Path]:
     try:
         folder.mkdir(exist_ok=True)
         with ExitStack() as stack:
-            # Every text lies in its temporary file before the first takes its place.
-            for name, text in texts.items():
-                stack.enter_context(atomic_path(folder / name)).write_bytes(text.encode())
+            # Each lies in its temporary file before the first takes its place.
+            for name, data in files.items():
+                stack.enter_context(atomic_path(folder / name)).write_bytes(data)
     except (OSError, FileError) as error:
         if is_new:
             shutil.rmtree(folder, ignore_errors=True)
         if isinstance(error, FileError):
             raise
         raise FileError(f"{shown(path)}: cannot be written: {error.strerror or error}") from error
-    return [folder / name for name in texts]
+    return [folder / name for name in files]
 
 
 def read_bytes(path: str | Path) -> bytes:

@@ -8,6 +8,7 @@ which is the highest.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -37,6 +38,8 @@ _Text: TypeAlias = Annotated[str, Strict()]
 _Points: TypeAlias = list[list[_Number]]
 
 
+# A free curve of a face in a file, or a part of it.
+_FREE = re.compile(r"e[0-9]{1,9}(\[[0-9]{1,9}\])?")
 # Knots beyond it are for the surface to refuse.
 _HUGE = 1e300
 
@@ -87,7 +90,7 @@ class StoredProblem:
     a, b : BSplineSurface, SemiStructuredSurface or str
         A surface, or "PATH#N" with PATH relative to the folder of the file.
     edge_a, edge_b : str
-        As `Base` takes them: "u1", "u=0.3+[0.2,0.6]".
+        As `Base` takes them: "u1", "u=0.3+[0.2,0.6]"; of "PATH#N" also "e3" or "e3[0]", a free curve of the face.
     options : BlendOptions
     asked_a, asked_b : str, optional
         What was asked for where that is another word, "e3" or "near=1,2,3": an edge of the face in the file.
@@ -111,8 +114,13 @@ class StoredProblem:
     def __post_init__(self) -> None:
         if not isinstance(self.options, BlendOptions):
             raise OptionError(f"options: found a {type(self.options).__name__}, expected a BlendOptions")
-        for name in ("edge_a", "edge_b"):
-            object.__setattr__(self, name, str(parse_edge(getattr(self, name), name)))
+        for name in "ab":
+            word, of_file = getattr(self, f"edge_{name}"), isinstance(getattr(self, name), str)
+            object.__setattr__(self, f"edge_{name}", _edge_word(word, f"edge_{name}", of_file))
+
+
+def _edge_word(word: str, name: str, of_file: bool) -> str:
+    return word if of_file and _FREE.fullmatch(word) else str(parse_edge(word, name))
 
 
 def read_json_surface(path: str | Path) -> Surface:
@@ -157,12 +165,11 @@ def read_problem(path: str | Path) -> StoredProblem:
         return str(folder / value) if isinstance(value, str) else surface_from_record(value, f"{where}: {name}")
 
     a, b = base(record.a, "a"), base(record.b, "b")
+    options = _options(record.options, where)
     try:
-        edge_a, edge_b = parse_edge(record.edge_a, "edge_a"), parse_edge(record.edge_b, "edge_b")
+        return StoredProblem(a, record.edge_a, b, record.edge_b, options, record.asked_a, record.asked_b)
     except EdgeError as error:
         raise EdgeError(f"{where}: {error}") from None
-    options = _options(record.options, where)
-    return StoredProblem(a, str(edge_a), b, str(edge_b), options, record.asked_a, record.asked_b)
 
 
 def _options(record: dict[str, Any], where: str) -> BlendOptions:

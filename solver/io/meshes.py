@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from semispline.solver.arrays import FloatArray
 from semispline.solver.errors import FileError
@@ -17,10 +19,12 @@ from semispline.solver.splines import Surface
 _SAMPLES = 160
 # Twice the area of a triangle, over the square of the extent, that is rounding of three points in a line.
 _NO_AREA = 1e-15
+# Where there is no normal, that so far towards the middle of the domain is taken.
+INSIDE = 1e-3
 
 
-def write_mesh(path: Path, surface: Surface) -> None:
-    """Write a triangle mesh; the suffix is .obj, .stl, .ply, .gltf or .glb.
+def write_mesh(path: Path, surfaces: Sequence[Surface]) -> None:
+    """Write one triangle mesh of all surfaces; the suffix is .obj, .stl, .ply, .gltf or .glb.
 
     Raises
     ------
@@ -28,7 +32,12 @@ def write_mesh(path: Path, surface: Surface) -> None:
         pyvista is not installed, or VTK could not write the file.
     """
     pyvista = pyvista_module(path.suffix)
-    mesh = triangle_mesh(*sampled(surface, _SAMPLES))
+    meshes = []
+    for surface in surfaces:
+        geometry, normal = sampled(surface, _SAMPLES)
+        triangles = grid_triangles(*normal.shape[:2])
+        meshes.append(triangle_mesh(geometry.point.reshape(-1, 3), normal.reshape(-1, 3), triangles))
+    mesh = meshes[0] if len(meshes) == 1 else pyvista.merge(meshes, merge_points=False)
     with silenced(1, 2):
         if path.suffix.lower() in (".gltf", ".glb"):
             _write_gltf(path, pyvista.MultiBlock([pyvista.MultiBlock([mesh])]))
@@ -63,23 +72,30 @@ def sampled(surface: Surface, count: int) -> tuple[LocalGeometry, FloatArray]:
     """
     u, v = (_samples(breaks, count) for breaks in surface.breakpoints)
     geometry = local_geometry_grid(surface, u, v)
-    normal = geometry.normal.copy()
+    normal = geometry.normal
     missing = ~geometry.regular
     if missing.any():
-        inside = [x + 1e-3 * ((x[0] + x[-1]) / 2 - x) for x in (u, v)]
-        nearby = local_geometry_grid(surface, *inside).normal
-        normal[missing] = np.where(np.isfinite(nearby[missing]), nearby[missing], (0.0, 0.0, 1.0))
+        inside = [x + INSIDE * ((x[0] + x[-1]) / 2 - x) for x in (u, v)]
+        normal = with_normals(normal, missing, local_geometry_grid(surface, *inside).normal)
     return geometry, normal
 
 
-def triangle_mesh(geometry: LocalGeometry, normal: FloatArray) -> Any:
-    """Return the `pyvista.PolyData` of a sampled surface, without triangles of no area."""
-    pyvista = pyvista_module("mesh")
-    n_u, n_v = geometry.point.shape[:2]
-    points = geometry.point.reshape(-1, 3)
+def with_normals(normal: FloatArray, missing: NDArray[np.bool_], nearby: FloatArray) -> FloatArray:
+    """Return normals, where they are missing those nearby; up where there is none either."""
+    filled = np.where(np.isfinite(nearby), nearby, (0.0, 0.0, 1.0))
+    return np.where(missing[..., None], filled, normal)
+
+
+def grid_triangles(n_u: int, n_v: int) -> NDArray[np.int64]:
+    """Return the triangles of a grid, shape (T, 3)."""
     corner = np.arange(n_u * n_v).reshape(n_u, n_v)
     a, b, c, d = (x.ravel() for x in (corner[:-1, :-1], corner[1:, :-1], corner[1:, 1:], corner[:-1, 1:]))
-    triangles = np.concatenate([np.stack([a, b, c], axis=1), np.stack([a, c, d], axis=1)])
+    return np.concatenate([np.stack([a, b, c], axis=1), np.stack([a, c, d], axis=1)])
+
+
+def triangle_mesh(points: FloatArray, normals: FloatArray, triangles: NDArray[np.int64]) -> Any:
+    """Return the `pyvista.PolyData` of triangles, without those of no area."""
+    pyvista = pyvista_module("mesh")
     sides = points[triangles[:, 1:]] - points[triangles[:, :1]]
     area = np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1)
     triangles = triangles[area > _NO_AREA * np.ptp(points, axis=0).max() ** 2]
@@ -87,7 +103,7 @@ def triangle_mesh(geometry: LocalGeometry, normal: FloatArray) -> Any:
         raise FileError("surface: has no area, so there is no mesh of it; write .json, .step or .3dm")
     faces = np.hstack([np.full((len(triangles), 1), 3), triangles])
     mesh = pyvista.PolyData(points, faces.ravel())
-    mesh.point_data["Normals"] = normal.reshape(-1, 3)
+    mesh.point_data["Normals"] = normals
     mesh.point_data.active_normals_name = "Normals"
     return mesh
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import io
 from collections.abc import Sequence
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -24,16 +25,17 @@ _REAL = "%.16E"
 _HIGHEST = 25
 
 
-def occ_bytes(surface: BSplineSurface, suffix: str, unit: str) -> bytes:
-    """Return the content of a STEP, IGES or BREP file with one face, untrimmed, in that unit.
+def occ_bytes(surfaces: Sequence[BSplineSurface], suffix: str, unit: str) -> bytes:
+    """Return the content of a STEP, IGES or BREP file with a face for each surface, untrimmed, in that unit.
 
     Raises
     ------
     FileError
-        Open CASCADE refuses the surface, or the extra `cad` is not installed.
+        Open CASCADE refuses a surface, or the extra `cad` is not installed.
     """
     require_kernel(suffix)
-    for name, degree in (("u", surface.degree_u), ("v", surface.degree_v)):
+    for surface, name in product(surfaces, ("u", "v")):
+        degree = surface.degree_u if name == "u" else surface.degree_v
         if degree > _HIGHEST:
             raise FileError(
                 f"{suffix}: the surface has degree {degree} in {name}, and Open CASCADE takes at most {_HIGHEST}; "
@@ -42,7 +44,7 @@ def occ_bytes(surface: BSplineSurface, suffix: str, unit: str) -> bytes:
     write = _step_bytes if suffix in (".step", ".stp") else _iges_bytes if suffix in (".iges", ".igs") else _brep_bytes
     try:
         with silenced(1, 2):
-            return write(_face(surface), unit)
+            return write([_face(surface) for surface in surfaces], unit)
     except SemisplineError:
         raise
     except Exception as error:
@@ -92,21 +94,22 @@ def _face(surface: BSplineSurface) -> Any:
     return maker.Face()
 
 
-def _step_bytes(face: Any, unit: str) -> bytes:
+def _step_bytes(faces: Sequence[Any], unit: str) -> bytes:
     from OCP.STEPControl import STEPControl_StepModelType, STEPControl_Writer
     from OCP.StepData import StepData_StepWriter
     from OCP.STEPEdit import STEPEdit
 
     with system_unit(unit):
         writer = STEPControl_Writer()
-        writer.Transfer(face, STEPControl_StepModelType.STEPControl_AsIs)
+        for face in faces:
+            writer.Transfer(face, STEPControl_StepModelType.STEPControl_AsIs)
         text = StepData_StepWriter(writer.Model())
         text.FloatWriter().SetFormat(_REAL)
         text.SendModel(STEPEdit.Protocol_s())
         return _printed(text)
 
 
-def _iges_bytes(face: Any, unit: str) -> bytes:
+def _iges_bytes(faces: Sequence[Any], unit: str) -> bytes:
     from OCP.IGESControl import IGESControl_Writer
     from OCP.IGESData import IGESData_IGESWriter
     from OCP.IGESSelect import IGESSelect_WorkLibrary
@@ -120,7 +123,7 @@ def _iges_bytes(face: Any, unit: str) -> bytes:
     # The kernel would enter the login name of whoever runs this.
     header.SetAuthorName(TCollection_HAsciiString("semispline"))
     model.SetGlobalSection(header)
-    if not writer.AddShape(face):
+    if not all(writer.AddShape(face) for face in faces):
         raise FileError("Open CASCADE cannot translate the surface to IGES; try .step, .json or .3dm")
     writer.ComputeModel()
     text = IGESData_IGESWriter(model)
@@ -129,11 +132,19 @@ def _iges_bytes(face: Any, unit: str) -> bytes:
     return _printed(text)
 
 
-def _brep_bytes(face: Any, unit: str) -> bytes:
+def _brep_bytes(faces: Sequence[Any], unit: str) -> bytes:
+    from OCP.BRep import BRep_Builder
     from OCP.BRepTools import BRepTools
+    from OCP.TopoDS import TopoDS_Compound
 
+    shape = faces[0]
+    if len(faces) > 1:
+        shape, builder = TopoDS_Compound(), BRep_Builder()
+        builder.MakeCompound(shape)
+        for face in faces:
+            builder.Add(shape, face)
     stream = io.BytesIO()
-    BRepTools.Write_s(face, stream)
+    BRepTools.Write_s(shape, stream)
     return stream.getvalue()
 
 

@@ -155,8 +155,8 @@ def _model(path: str | Path, found: tuple[str, Sequence[Any], Mapping[str, int]]
     return Model(str(path), _UNITS.get(unit), faces, others)
 
 
-def write_3dm(path: Path, surface: BSplineSurface, unit: str) -> None:
-    """Write a 3dm file with one surface to a path of that suffix.
+def write_3dm(path: Path, surfaces: Sequence[BSplineSurface], unit: str) -> None:
+    """Write a 3dm file with some surfaces to a path of that suffix.
 
     Raises
     ------
@@ -164,6 +164,16 @@ def write_3dm(path: Path, surface: BSplineSurface, unit: str) -> None:
         openNURBS refuses, or the extra `cad` is not installed.
     """
     rhino3dm = _library(path.suffix)
+    file = rhino3dm.File3dm()
+    name = next(name for name, known in _UNITS.items() if known == unit)
+    file.Settings.ModelUnitSystem = getattr(rhino3dm.UnitSystem, name)
+    for surface in surfaces:
+        file.Objects.AddSurface(_nurbs_surface(rhino3dm, surface))
+    if not file.Write(str(path), 0):
+        raise FileError("3dm: openNURBS could not write the file; check the disk, or try .json or .step")
+
+
+def _nurbs_surface(rhino3dm: Any, surface: BSplineSurface) -> Any:
     n_u, n_v = surface.control_points.shape[:2]
     rational = surface.weights is not None
     spline = rhino3dm.NurbsSurface.Create(3, rational, surface.degree_u + 1, surface.degree_v + 1, n_u, n_v)
@@ -178,12 +188,7 @@ def write_3dm(path: Path, surface: BSplineSurface, unit: str) -> None:
             w = float(weights[i, j])
             x, y, z = (float(c) * w for c in surface.control_points[i, j])
             spline.Points[(i, j)] = rhino3dm.Point4d(x, y, z, w)
-    file = rhino3dm.File3dm()
-    name = next(name for name, known in _UNITS.items() if known == unit)
-    file.Settings.ModelUnitSystem = getattr(rhino3dm.UnitSystem, name)
-    file.Objects.AddSurface(spline)
-    if not file.Write(str(path), 0):
-        raise FileError("3dm: openNURBS could not write the file; check the disk, or try .json or .step")
+    return spline
 
 
 def _library(what: str | Path) -> Any:

@@ -15,7 +15,7 @@ from warnings import warn
 import numpy as np
 
 from semispline.solver.arrays import FloatArray
-from semispline.solver.errors import FileError, InputError, TrimError
+from semispline.solver.errors import FileError, TrimError
 from semispline.solver.io.disk import atomic_path, check_output, require_file, shown
 from semispline.solver.io.face_boundary import FaceBoundary, edge_offset
 from semispline.solver.io.faces import MILLIMETRES, Face, Model, SurfaceEntry, describe, picked, without_equal_weights
@@ -25,6 +25,7 @@ OCC_SUFFIXES = (".step", ".stp", ".iges", ".igs", ".brep", ".brp")
 _READABLE = (".json", *OCC_SUFFIXES, ".3dm")
 _MESHES = (".obj", ".stl", ".ply", ".gltf", ".glb")
 _WRITABLE = (*_READABLE, *_MESHES)
+_SEVERAL = (*OCC_SUFFIXES, ".3dm", *_MESHES)
 # Formats that name a unit get this one for a surface whose own is not known.
 _DEFAULT_UNIT = "mm"
 # What writing and reading back may change: rounding of a few products (weights, units of length).
@@ -188,39 +189,6 @@ def face_warnings(*edges: tuple[str | Path, str, LoadedSurface], strict: bool = 
     return found
 
 
-def read_all(specs: Sequence[str | Path]) -> tuple[list[LoadedSurface], list[str]]:
-    """Read, of each file, the surface PATH#N or, without a number, all surfaces; in the units of the files.
-
-    Returns
-    -------
-    list of LoadedSurface
-    list of str
-        Why faces of a file without a number were left out.
-
-    Raises
-    ------
-    FileError, KnotError, ControlPointError
-        As `read_surface`; also where no face of a file can be read out.
-    """
-    loaded: list[LoadedSurface] = []
-    problems: list[str] = []
-    for spec in specs:
-        path, number = split_spec(spec)
-        model = open_model(path)
-        if number is not None or len(model.faces) < 2:
-            loaded.append(_loaded(picked(model, number), model.unit))
-            continue
-        before = len(loaded)
-        for face in model.faces:
-            try:
-                loaded.append(_loaded(face, model.unit))
-            except InputError as error:
-                problems.append(str(error))
-        if len(loaded) == before:
-            raise FileError(f"{path}: none of its {len(model.faces)} surfaces can be used; the first: {problems[-1]}")
-    return loaded, problems
-
-
 def in_one_unit(loaded: Sequence[LoadedSurface]) -> list[LoadedSurface]:
     """Return the surfaces in the unit of the first that names one; those that name none are taken as they are.
 
@@ -287,32 +255,43 @@ def write_surface(path: str | Path, surface: Surface, unit: str | None = None) -
         Unknown suffix, the file cannot be written, the format cannot hold the surface (what was written is read back
         and compared), or an extra that is not installed.
     """
-    suffix = check_surface_output(path)
+    write_surfaces(path, [surface], unit)
+
+
+def write_surfaces(path: str | Path, surfaces: Sequence[Surface], unit: str | None = None) -> None:
+    """Write some surfaces into one file, in their order, as `write_surface` does one; of .json there can be one only.
+
+    Raises
+    ------
+    FileError
+        As `write_surface`.
+    """
+    suffix = check_surface_output(path, len(surfaces))
     if suffix == ".json":
         from semispline.solver.io.json_files import write_json_surface
 
-        write_json_surface(path, surface)
+        write_json_surface(path, surfaces[0])
         return
     with atomic_path(path) as temporary:
         if suffix in _MESHES:
             from semispline.solver.io.meshes import write_mesh
 
-            write_mesh(temporary, surface)
+            write_mesh(temporary, surfaces)
             return
-        spline = surface.to_bspline() if isinstance(surface, SemiStructuredSurface) else surface
+        splines = [x.to_bspline() if isinstance(x, SemiStructuredSurface) else x for x in surfaces]
         if suffix == ".3dm":
             from semispline.solver.io.rhino import write_3dm
 
-            write_3dm(temporary, spline, unit or _DEFAULT_UNIT)
+            write_3dm(temporary, splines, unit or _DEFAULT_UNIT)
         else:
             from semispline.solver.io.occ_writing import occ_bytes
 
-            temporary.write_bytes(occ_bytes(spline, suffix, unit or _DEFAULT_UNIT))
-        _check_written(temporary, spline, str(path))
+            temporary.write_bytes(occ_bytes(splines, suffix, unit or _DEFAULT_UNIT))
+        _check_written(temporary, splines, str(path))
 
 
-def check_surface_output(path: str | Path) -> str:
-    """Return the suffix if a surface can be written to `path`; long work calls this first.
+def check_surface_output(path: str | Path, count: int = 1) -> str:
+    """Return the suffix if so many surfaces can be written to `path`; long work calls this first.
 
     Raises
     ------
@@ -324,6 +303,8 @@ def check_surface_output(path: str | Path) -> str:
         raise FileError(
             f"{shown(path)}: suffix {shown(suffix)!r} cannot be written, expected one of {' '.join(_WRITABLE)}"
         )
+    if suffix == ".json" and count > 1:
+        raise FileError(f"{shown(path)}: .json holds one surface, expected {' '.join(_SEVERAL)} for {count}")
     check_output(path)
     return suffix
 
@@ -438,7 +419,7 @@ def _scaled(surface: Surface, factor: float) -> Surface:
     return replace(surface, control_curves=tuple(curves))
 
 
-def _check_written(written: Path, surface: BSplineSurface, where: str) -> None:
+def _check_written(written: Path, surfaces: Sequence[BSplineSurface], where: str) -> None:
     """Read a CAD file back: kernels drop or merge what is small against their tolerances, and do not say so."""
     from semispline.solver.io.occ import read_occ
     from semispline.solver.io.rhino import read_3dm
@@ -446,8 +427,10 @@ def _check_written(written: Path, surface: BSplineSurface, where: str) -> None:
     try:
         # What this process wrote, it can read without a process of its own.
         read = read_occ if written.suffix.lower() in OCC_SUFFIXES else read_3dm
-        found = picked(read(written), None).surface()
-        same = isinstance(found, BSplineSurface) and _agree(found, surface)
+        found = [face.surface() for face in read(written).faces]
+        same = len(found) == len(surfaces) and all(
+            isinstance(one, BSplineSurface) and _agree(one, other) for one, other in zip(found, surfaces, strict=True)
+        )
     except FileError:
         same = False
     if not same:

@@ -3,6 +3,7 @@ from .base import local_origin as local_origin
 from .confirmed_meetings import Meeting as Meeting
 from .contact import Contact as Contact
 from .contact import NoNormal as NoNormal
+from .contact import Place as Place
 from .continuity import corresponding_points as corresponding_points
 from .continuity import measure_contact as measure_contact
 from .continuity import model_size as model_size
@@ -28,10 +29,18 @@ from .de_boor import surface_points as surface_points
 from .edge_normals import check_regular_edge as check_regular_edge
 from .face_contact import FaceContact as FaceContact
 from .face_contact import measure_face_contact as measure_face_contact
+from .face_contact import measure_face_profile as measure_face_profile
+from .face_contact import surface_feet as surface_feet
+from .face_contact import worst_of_face as worst_of_face
+from .face_limits import exact_face_limits as exact_face_limits
+from .face_limits import face_shortfalls as face_shortfalls
+from .face_limits import required_face_measures as required_face_measures
 from .fairness import Fairness as Fairness
 from .fairness import measure_fairness as measure_fairness
+from .free_edge import FreeEdge as FreeEdge
 from .limits import cad_measures as cad_measures
 from .limits import doubtful as doubtful
+from .limits import in_cad_limits as in_cad_limits
 from .limits import required_limits as required_limits
 from .limits import shortfalls as shortfalls
 from .limits import untold as untold
@@ -45,6 +54,10 @@ from .meets import measure_meets as measure_meets
 from .parametric import ParametricSurface as ParametricSurface
 from .parametric import geometry as geometry
 from .parametric import geometry_grid as geometry_grid
+from .profile import Profile as Profile
+from .profile import edge_length as edge_length
+from .profile import measure_profile as measure_profile
+from .profile import with_worse as with_worse
 from .regularity import Regularity as Regularity
 from .regularity import measure_regularity as measure_regularity
 from .rounding import RoundingCauses as RoundingCauses

@@ -19,6 +19,9 @@ from numpy.typing import ArrayLike
 from semispline.solver.arrays import FloatArray
 from semispline.solver.splines import BSplineCurve, BSplineSurface, NaturalEdge, SemiStructuredSurface
 
+# Numbers that are worked on at once: what a processor's nearest memory holds.
+_AT_ONCE = 2**15
+
 
 def curve_points(
     degree: int, knots: FloatArray, control_points: FloatArray, x: FloatArray, derivative: int = 0
@@ -47,29 +50,32 @@ def curve_points(
     n, d = control_points.shape[-2:]
     if derivative > degree or not len(x):
         return np.zeros((len(x), d))
+    if len(x) > (most := max(1, _AT_ONCE // (d * (degree + 1)))):
+        parts = [slice(i, i + most) for i in range(0, len(x), most)]
+        own = control_points.ndim == 3
+        return np.concatenate(
+            [curve_points(degree, knots, control_points[i] if own else control_points, x[i], derivative) for i in parts]
+        )
     # The span k has t_k <= x < t_(k+1); the end of the domain belongs to the last span, which ends at t_n.
     k = np.clip(np.searchsorted(knots, x, side="right") - 1, degree, n - 1)
     # Only the control points that some parameter reads. Parameters are the last axis: there are many of them.
     low, high = int(k.min()) - degree, int(k.max()) + 1
     local = np.ascontiguousarray(np.moveaxis(control_points[..., low:high, :], -1, 0))
-    first = k - degree - low
-    if local.ndim == 2:
-        points = [np.take(local, first + j, axis=1) for j in range(degree + 1)]
-    else:
-        points = [local[:, np.arange(len(x)), first + j] for j in range(degree + 1)]
-    t = {i: knots[k + i] for i in range(1 - degree, degree + 1)}
+    read = k - degree - low + np.arange(degree + 1)[:, None]
+    # All points of a level at once, shape (d, points, K).
+    points = np.take(local, read, axis=1) if local.ndim == 2 else local[:, np.arange(len(x)), read]
+    # Row i holds t_(k + i + 1 - degree): the first `degree` rows begin spans, the others end them.
+    t = knots[k + np.arange(1 - degree, degree + 1)[:, None]]
     for s in range(1, derivative + 1):
-        for j in range(degree - s + 1):
-            width = t[j + 1] - t[j - degree + s]
-            points[j] = (degree - s + 1) * (points[j + 1] - points[j]) / width
-        points.pop()
-    p = degree - derivative
-    for level in range(1, p + 1):
-        for j in range(p, level - 1, -1):
-            left, right = t[j - p], t[j + 1 - level]
-            a = (x - left) / (right - left)
-            points[j] = (1 - a) * points[j - 1] + a * points[j]
-    return np.asarray(points[p].T)
+        widths = t[degree : 2 * degree + 1 - s] - t[s - 1 : degree]
+        points = (degree + 1 - s) * (points[:, 1:] - points[:, :-1]) / widths
+    for level in range(derivative + 1, degree + 1):
+        left, right = t[level - 1 : degree], t[degree : 2 * degree + 1 - level]
+        a = (x - left) / (right - left)
+        above = a * points[:, 1:]
+        points = (1 - a) * points[:, :-1]
+        points += above
+    return np.asarray(points[:, 0].T)
 
 
 def _homogeneous(surface: BSplineSurface, u: FloatArray, v: FloatArray, du: int, dv: int) -> FloatArray:

@@ -1,7 +1,8 @@
 """How an edge of a surface lies on a face that it meets along a free curve: by feet on the face itself.
 
 The face knows nothing of the curve, so each point of the edge belongs to its foot, and both sides are compared in the
-frame of the edge. That both run on at the same side cannot be seen by this: a face goes on beyond a curve on it.
+frame of the edge. Whether both run on at the same side can be seen only where the edge of the face is known: the face
+itself goes on beyond a curve on it.
 """
 
 from __future__ import annotations
@@ -20,6 +21,8 @@ from semispline.solver.judge.base import Base, local_origin
 from semispline.solver.judge.contact import Place
 from semispline.solver.judge.curvature_rates import curvature_rates
 from semispline.solver.judge.de_boor import edge_curves, surface_points
+from semispline.solver.judge.free_edge import FreeEdge
+from semispline.solver.judge.profile import Profile, chord_lengths
 from semispline.solver.splines import BSplineSurface, bounding_box, transform
 
 # Points of each span of the edge; of the face, each way, from the nearest of which a foot is sought.
@@ -43,12 +46,14 @@ class FaceContact:
     gap : float
         Largest distance of the edge from the face, model units.
     angle_degrees : float
-        Largest angle between the tangent planes.
+        Largest angle between the tangent planes; above 90 where an edge was given and the surface folds back at it.
     curvature_jump_relative : float
         Largest difference of normal curvature: across the edge over the largest one across it of the face, along it
         and of the mixed one over the largest of all; scales not below 1e-3 / size.
     rate_jump_relative, second_rate_jump_relative : float or None
         As `Contact` has them, where asked for.
+    off : float or None
+        Largest distance across from the edge of the face, model units; None where no edge was given.
     length : float
         Of the edge.
     at : dict
@@ -60,19 +65,23 @@ class FaceContact:
     curvature_jump_relative: float
     rate_jump_relative: float | None
     second_rate_jump_relative: float | None
+    off: float | None
     length: float
     at: dict[str, Place]
 
 
-def measure_face_contact(base: Base, face: BSplineSurface, *, order: int = 2, same_side: bool = False) -> FaceContact:
-    """Measure how an edge of a surface meets a face, anywhere on it.
+def measure_face_contact(
+    base: Base | FreeEdge, face: BSplineSurface | FreeEdge, *, order: int = 2, same_side: bool = False
+) -> FaceContact:
+    """Measure how an edge of a surface meets a face: anywhere on it, or along a free edge of it.
 
     Parameters
     ----------
-    base : Base
-        A blend and its edge, say.
-    face : BSplineSurface
-        Rational too; untrimmed.
+    base : Base or FreeEdge
+        A blend and its edge, say, or the edge of another face.
+    face : BSplineSurface or FreeEdge
+        Rational too; untrimmed. Of an edge what lies across it is told, too: how far `base` is off it, and whether it
+        folds back over the face.
     order : {2, 3, 4}
         3 and 4 measure rates of curvature.
     same_side : bool
@@ -92,45 +101,102 @@ def measure_face_contact(base: Base, face: BSplineSurface, *, order: int = 2, sa
     >>> measure_face_contact(Base(wall, "v0"), floor).angle_degrees
     90.0
     """
-    require(base, "base", Base)
-    require(face, "face", BSplineSurface)
-    origin = local_origin(base.surface, face)
-    moved = transform(face, np.eye(3), -origin)
-    s = _places(base.breakpoints_along())
-    at = edge_curves(base.surface, base.side, order, origin).points(s, order)
-    points = at[0, 0]
-    length = float(np.linalg.norm(np.diff(points, axis=0), axis=1).sum())
-    feet = _feet(moved, points)
-    away = np.linalg.norm(points - surface_points(moved, feet[:, 0], feet[:, 1]), axis=1)
-    if away.max() > _NOT_ON_IT * length:
+    return worst_of_face(measure_face_profile(base, face, order=order, same_side=same_side))
+
+
+def worst_of_face(found: Profile) -> FaceContact:
+    """Return the worst of what `measure_face_profile` found."""
+    worst = {name: int(np.where(np.isnan(x), np.inf, x).argmax()) for name, x in found.values.items()}
+    where = {name: Place(float(found.parameter[k]), tuple(found.points[k].tolist())) for name, k in worst.items()}
+    most = {name: float(found.values[name][k]) for name, k in worst.items()}
+    return FaceContact(
+        gap=most["gap"],
+        off=most.get("off"),
+        angle_degrees=most["angle_degrees"],
+        curvature_jump_relative=most["curvature_jump_relative"],
+        rate_jump_relative=most.get("rate_jump_relative"),
+        second_rate_jump_relative=most.get("second_rate_jump_relative"),
+        length=float(found.length[-1]),
+        at=where,
+    )
+
+
+def measure_face_profile(
+    base: Base | FreeEdge, face: BSplineSurface | FreeEdge, *, order: int = 2, same_side: bool = False
+) -> Profile:
+    """Measure along an edge what `measure_face_contact` finds the worst of; its arguments and its errors."""
+    require(base, "base", Base, FreeEdge)
+    require(face, "face", BSplineSurface, FreeEdge)
+    other = face.face if isinstance(face, FreeEdge) else face
+    origin = local_origin(base.face if isinstance(base, FreeEdge) else base.surface, other)
+    moved = transform(other, np.eye(3), -origin)
+    own = _edge_side(base.moved(-origin), order) if isinstance(base, FreeEdge) else _base_side(base, order, origin)
+    points, length = own.jet[0, 0], chord_lengths(own.jet[0, 0])
+    feet = surface_feet(moved, points)
+    to_foot = points - surface_points(moved, feet[:, 0], feet[:, 1])
+    away = np.linalg.norm(to_foot, axis=1)
+    if away.max() > _NOT_ON_IT * length[-1]:
         k = int(away.argmax())
         x, y, z = points[k] + origin
         raise EdgeError(
             f"face: the edge is {away[k]:.3g} away from it at ({x:.5g}, {y:.5g}, {z:.5g}), expected an edge on it"
         )
-    along = at[0, 1] / np.linalg.norm(at[0, 1], axis=1)[:, None]
-    towards = (1.0 if base.side[1] == "0" else -1.0) * (1.0 if same_side else -1.0) * at[1, 0]
-    of_face = _face_jet(moved, feet, towards, order)
-    normal = _normal(of_face)
-    own = _normal(at)
-    own *= np.where(np.sum(own * normal, axis=1) < 0, -1.0, 1.0)[:, None]
-    sides = [_in_frame(jet, along, n, order) for jet, n in ((at, own), (of_face, normal))]
-    sine = np.linalg.norm(np.cross(own, normal), axis=1)
-    size = float(np.ptp(bounding_box(face), axis=0).max())
-    values = {"gap": away, "angle_degrees": np.degrees(np.arctan2(sine, np.sum(own * normal, axis=1)))}
-    values |= _curvature_jumps(sides, (own, normal), size, order)
-    worst = {name: int(np.where(np.isnan(x), np.inf, x).argmax()) for name, x in values.items()}
-    where = {name: Place(float(s[k]), tuple((points[k] + origin).tolist())) for name, k in worst.items()}
-    found = {name: float(values[name][k]) for name, k in worst.items()}
-    rates = {name: found.get(name) for name in ("rate_jump_relative", "second_rate_jump_relative")}
-    return FaceContact(
-        gap=found["gap"],
-        angle_degrees=found["angle_degrees"],
-        curvature_jump_relative=found["curvature_jump_relative"],
-        length=length,
-        at=where,
-        **rates,
-    )
+    of_face = _face_jet(moved, feet, own.into if same_side else -own.into, order)
+    normal, side = _normal(of_face), _normal(own.jet)
+    # Of two ways to look at a surface that which agrees.
+    side *= np.where(np.sum(side * normal, axis=1) < 0, -1.0, 1.0)[:, None]
+    jets = [_in_frame(jet, own.along, n, order) for jet, n in ((own.jet, side), (of_face, normal))]
+    sine = np.linalg.norm(np.cross(side, normal), axis=1)
+    angle = np.degrees(np.arctan2(sine, np.sum(side * normal, axis=1)))
+    values = {"gap": away, "angle_degrees": angle}
+    if isinstance(face, FreeEdge):
+        edge = face.moved(-origin)
+        nearest, slope = edge.nearest(points)
+        apart = points - nearest
+        # An edge that touches the end of its surface is as far beyond it as it is off: that is no gap.
+        at_end = _at_an_end(moved, feet)
+        values["gap"] = np.where(at_end, np.abs(np.sum(to_foot * normal, axis=1)), away)
+        values["off"] = np.linalg.norm(apart - np.sum(apart * normal, axis=1)[:, None] * normal, axis=1)
+        ahead = np.sum(np.cross(normal, slope) * own.into, axis=1) * (1.0 if edge.keep == "left" else -1.0)
+        values["angle_degrees"] = np.where((ahead > 0) == same_side, angle, 180.0 - angle)
+    size = float(np.ptp(bounding_box(other), axis=0).max())
+    values |= _curvature_jumps(jets, (side, normal), size, order)
+    return Profile(own.s, points + origin, length, values)
+
+
+@dataclass(frozen=True, eq=False)
+class _Side:
+    """One side of a contact at places along its edge: parameters, derivatives, unit tangents, and a way into it."""
+
+    s: FloatArray
+    jet: Jet
+    along: FloatArray
+    into: FloatArray
+
+
+def _base_side(base: Base, order: int, origin: FloatArray) -> _Side:
+    s = _places(base.breakpoints_along())
+    at = edge_curves(base.surface, base.side, order, origin).points(s, order)
+    return _Side(s, at, _unit(at[0, 1]), (1.0 if base.side[1] == "0" else -1.0) * at[1, 0])
+
+
+def _edge_side(edge: FreeEdge, order: int) -> _Side:
+    """Return the side of a face along an edge of it: at the feet of points of the edge."""
+    s = _places(np.unique(edge.curve.knots))
+    points, slope = edge.at(s)
+    feet = surface_feet(edge.face, points)
+    normal = _normal(_face_jet(edge.face, feet, np.zeros_like(points), 1))
+    into = np.cross(normal, slope) * (1.0 if edge.keep == "left" else -1.0)
+    return _Side(s, _face_jet(edge.face, feet, into, order), _unit(slope), into)
+
+
+def _at_an_end(face: BSplineSurface, feet: FloatArray) -> NDArray[np.bool_]:
+    """Tell which feet lie at an end of the surface, shape (K,)."""
+    return np.asarray((feet[:, :, None] == np.array(face.domain)).any(axis=(1, 2)))
+
+
+def _unit(vectors: FloatArray) -> FloatArray:
+    return np.asarray(vectors / np.linalg.norm(vectors, axis=1)[:, None])
 
 
 def _places(breaks: FloatArray) -> FloatArray:
@@ -139,8 +205,11 @@ def _places(breaks: FloatArray) -> FloatArray:
     return np.concatenate([breaks[:1], inside.ravel(), breaks[-1:]])
 
 
-def _feet(face: BSplineSurface, points: FloatArray) -> FloatArray:
-    """Return the parameters of feet, shape (K, 2): Gauss-Newton steps from the nearest of many points, each halved."""
+def surface_feet(face: BSplineSurface, points: FloatArray) -> FloatArray:
+    """Return the parameters of the feet of points on a face, shape (K, 2).
+
+    Source: Gauss-Newton steps from the nearest of many points of the face, halved where they lead away.
+    """
     grids = []
     for breaks in face.breakpoints:
         each = -(-_GRID // (len(breaks) - 1))

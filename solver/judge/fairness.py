@@ -22,8 +22,9 @@ SETTLED, _NOTHING = 0.01, 1e-8
 # whether the first settled it: the integrand is no polynomial. Along v, where a span has few points, the second has
 # twice as many: two and three points may be off alike. Then the second on spans halved again and again.
 _FIRST, _SECOND = ((24, 10), (6, 3)), ((32, 20), (9, 6))
-# How often every span is halved before the meter gives up; what a grid may hold in all, and what is worked on at once.
-_HALVINGS, _MOST, _AT_ONCE = 5, 2**21, 2**13
+# How often every span is halved before the meter gives up, and at which change between two of these grids it does at
+# once: what folds is infinite in truth. What a grid may hold in all, and what is worked on at once.
+_HALVINGS, _WILD, _MOST, _AT_ONCE = 5, 10.0, 2**21, 2**13
 # Spans of a cluster of knots along v are below this fraction of the mean one, and the cluster is narrower than the
 # second figure, in gaps: over it H may change as much as over a jump. A gap is at least so large, in windows: the ends
 # of a surface that closes across have none.
@@ -46,7 +47,7 @@ class Fairness:
     jumps : float
         What lines where H jumps contribute: as much as if the jump were spread over one window of turn.
     settled : bool
-        The last refinement of the samples changed the value by at most 1 %.
+        The last refinement of the samples changed what the spans along v add by at most 1 % of the value altogether.
     """
 
     value: float
@@ -84,21 +85,26 @@ def measure_fairness(surface: ParametricSurface) -> Fairness:
     scaled = _Scaled(surface, turn_window(surface))
     seams = closed_directions(surface)
     wide = _wide_spans(surface.breakpoints[1], _length_along(scaled), _CLUSTER * max(_gap(scaled), _LEAST_GAP))
-    before: Fairness | None = None
-    for rules in (_rules(surface, wide, *grid) for grid in _GRIDS):
-        if before is not None and rules[0].points.size * rules[1].points.size > _MOST:
-            return before
-        gradient, area = _smooth_part(scaled, rules)
-        smooth, jumps = area * gradient, area * _jumps(scaled, rules, seams, wide)
+    before: FloatArray | None = None
+    found: Fairness | None = None
+    for points, halvings in _GRIDS:
+        rules = _rules(surface, wide, points, halvings)
+        if found is not None and rules[0].points.size * rules[1].points.size > _MOST:
+            return found
+        gradients, area = _smooth_part(scaled, rules)
+        parts = area * np.append(gradients.reshape(int(wide.sum()), -1).sum(axis=1), _jumps(scaled, rules, seams, wide))
+        smooth, jumps = float(parts[:-1].sum()), float(parts[-1])
         value = smooth + jumps
         if not np.isfinite(value):
             return Fairness(np.inf, np.inf, np.inf, settled=False)
-        settled = before is not None and abs(value - before.value) <= max(SETTLED * value, _NOTHING)
-        before = Fairness(value, smooth, jumps, settled)
-        if settled:
+        # Span by span: what one gains another may lose.
+        settled = before is not None and np.abs(parts - before).sum() <= max(SETTLED * value, _NOTHING)
+        is_wild = found is not None and halvings > 0 and not found.value / _WILD <= value <= found.value * _WILD
+        before, found = parts, Fairness(value, smooth, jumps, bool(settled))
+        if settled or is_wild:
             break
-    assert before is not None
-    return before
+    assert found is not None
+    return found
 
 
 @dataclass(frozen=True, eq=False)
@@ -184,15 +190,15 @@ def _rules(
     return rule(u_breaks, everywhere, totals[0], least[0]), rule(v_breaks, wide, totals[1], least[1])
 
 
-def _smooth_part(surface: _Scaled, rules: _Rules) -> tuple[float, float]:
-    """Return the integral of |grad H|^2 and the area, lengths in windows."""
+def _smooth_part(surface: _Scaled, rules: _Rules) -> tuple[FloatArray, float]:
+    """Return what each point of v adds to the integral of |grad H|^2, and the area, lengths in windows."""
     (u, of_u), (v, of_v) = ((rule.points, rule.weights) for rule in rules)
-    gradient = area = 0.0
+    gradients, area = np.empty(len(v)), 0.0
     for part in _parts(len(u), len(v)):
         density, element = _gradient_density(surface, u, v[part])
-        gradient += float(of_u @ density @ of_v[part])
+        gradients[part] = (of_u @ density) * of_v[part]
         area += float(of_u @ element @ of_v[part])
-    return gradient, area
+    return gradients, area
 
 
 def _parts(n_u: int, n_v: int) -> Iterator[slice]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from math import radians
 
 from semispline.solver.errors import InputError
@@ -93,6 +94,15 @@ def cad_measures(length: float, millimetres: float | None = None) -> dict[str, f
     }
 
 
+def in_cad_limits(contact: Contact, length: float, millimetres: float | None = None) -> Contact:
+    """Return a contact that is held to the limits of checkers of CAD systems, but for what only parameters have.
+
+    `length` is that of the edge; `millimetres` as in `cad_measures`.
+    """
+    cad = cad_measures(length, millimetres)
+    return replace(contact, allowed={name: max(cad.get(name, 0.0), x) for name, x in contact.allowed.items()})
+
+
 def required_limits(contact: Contact, continuity: Continuity) -> list[tuple[str, float, float]]:
     """Return name, measured value and limit of each measure that `continuity` requires.
 
@@ -136,6 +146,11 @@ def _hidden(contact: Contact, continuity: Continuity) -> list[tuple[str, bool]]:
             text = f"rounding alone may change {name} by {rounding:.2g}, expected at most {ceiling:.2g}"
             found.append((text, rounding > most))
     return found
+
+
+def required_measures(continuity: Continuity) -> tuple[str, ...]:
+    """Return the names of the measures that a continuity requires, as `Contact` has them."""
+    return _REQUIRED[continuity]
 
 
 def _measures(contact: Contact, continuity: Continuity) -> tuple[str, ...]:

@@ -1,9 +1,15 @@
+from .deviation import Deviation as Deviation
+from .deviation import TrueFace as TrueFace
 from .plotting import BASE_COLOR as BASE_COLOR
 from .plotting import BLEND_COLOR as BLEND_COLOR
 from .plotting import CURVE_COLORS as CURVE_COLORS
 from .plotting import PALETTE as PALETTE
+from .plotting import Drawn as Drawn
+from .plotting import Picture as Picture
 from .plotting import check_picture as check_picture
 from .plotting import render as render
+from .profiles import profile_plots as profile_plots
 from .viewer import model as model
 from .viewer import viewer_html as viewer_html
 from .viewer import viewer_script as viewer_script
+from .views import parsed_views as parsed_views

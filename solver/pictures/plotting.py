@@ -9,157 +9,207 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, Literal, TypeAlias, get_args
+from typing import Any, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike
+from PIL import Image, ImageDraw
 
 from semispline.solver.arrays import FloatArray
 from semispline.solver.errors import OptionError
-from semispline.solver.io import atomic_path, pyvista_module, sampled, shown, triangle_mesh
-from semispline.solver.judge import LocalGeometry, isophote_angle, mirror_angle
+from semispline.solver.io import atomic_path, pyvista_module, shown
+from semispline.solver.pictures.deviation import Deviation, TrueFace, measure_deviation
+from semispline.solver.pictures.fields import (
+    Field,
+    Scale,
+    curvature_scale,
+    distance_scale,
+    field_values,
+    mesh_options,
+)
+from semispline.solver.pictures.labels import (
+    NOTHING,
+    Seen,
+    draw_labels,
+    edge_anchor,
+    face_anchors,
+    font,
+    placed,
+)
+from semispline.solver.pictures.samples import Sampled, all_points, extent_of, sample
+from semispline.solver.pictures.views import (
+    TITLE,
+    Frame,
+    View,
+    ViewName,
+    cells,
+    framed,
+    line_of_sight,
+    named_view,
+    view_from,
+)
 from semispline.solver.splines import SemiStructuredSurface, Surface
-
-Field: TypeAlias = Literal["curvature", "gaussian", "zebra", "isophotes"]
+from semispline.solver.topology import EdgeLine, FaceMesh
 
 BASE_COLOR, BLEND_COLOR = "#3f9b4f", "#d1402f"
 # For surfaces side by side: Okabe and Ito's palette, which colour-blind readers tell apart.
 PALETTE = ("#3f9b4f", "#d1402f", "#0072b2", "#e69f00", "#56b4e9", "#cc79a7", "#8c6d31", "#7f7f7f")
 # For v-control curves on top of red and green.
 CURVE_COLORS = ("#0b3c8c", "#e8a200", "#6a0dad", "#00a0b0", "#111111", "#c2185b", "#5d4037", "#ffe14d")
-
-# Samples along each parameter, for one surface and at the least; and over all surfaces.
-_FINEST, _COARSEST, _TOTAL = 240, 24, 600_000
-# Bands over 180 (light and dark ones of `zebra`) and over 90 degrees; even numbers.
-_STRIPES, _ISOPHOTES = 40, 18
-_MARGIN = 1.06
-# A direction whose horizontal part is smaller than this counts as vertical.
-_STEEP = 1e-6
-_BAR = {
-    "vertical": False,
-    "color": "black",
-    "title_font_size": 28,
-    "label_font_size": 24,
-    "n_labels": 5,
-    "fmt": "{:.3g}",
-    "width": 0.6,
-    "height": 0.11,
-    "position_x": 0.2,
-    "position_y": 0.01,
-}
+# What is drawn around that of which distances are shown.
+_AROUND = "#c9c9c9"
+_SIZE, _SIZE_OF_SEVERAL = (1600, 1200), (1200, 900)
+# Of the height of a picture: its scale; of a view: names of faces and edges.
+_SCALE, _NAMES = 0.1, 0.024
+# Edges of one face among many are named where it has so much room, in half heights of a name.
+_ROOM = 2.5
+# Lines lie this much before their surface, of the extent: they are on it, and half of them would be hidden.
+_BEFORE = 2e-3
 
 
 @dataclass(frozen=True, eq=False)
-class _View:
-    """Where the camera looks from; unit vectors, and the eye that sees stripes, at infinity unless given."""
+class Drawn:
+    """A surface in a picture.
 
-    towards_eye: FloatArray
-    right: FloatArray
-    up: FloatArray
-    eye: FloatArray | None = None
+    Attributes
+    ----------
+    surface : BSplineSurface or SemiStructuredSurface
+    color : str, optional
+        With stripes or bands that of the dark ones, black unless given; not used with scales.
+    control_points : bool
+        Draw them, those of each v-control curve (or row of the net) in a colour of its own and joined by a polygon.
+    mesh : FaceMesh, optional
+        The part that is drawn; without, all of it.
+    edges : tuple of EdgeLine
+        The lines around it; without, the four sides of the surface.
+    label : str
+        Its name, if it is to be seen.
+    name_edges : bool
+    around : bool
+        Of distances from a face: it only stands around what is measured.
+    """
+
+    surface: Surface
+    color: str | None = None
+    control_points: bool = False
+    mesh: FaceMesh | None = None
+    edges: tuple[EdgeLine, ...] = ()
+    label: str = ""
+    name_edges: bool = False
+    around: bool = False
 
 
-@dataclass(frozen=True, eq=False)
-class _Sampled:
-    geometry: LocalGeometry
-    normal: FloatArray
+@dataclass(frozen=True)
+class Picture:
+    """What a picture shows.
+
+    Attributes
+    ----------
+    unseen : tuple of str
+        Names of surfaces that no view shows, or for which there was no room.
+    unnamed_edges : int
+        Edges that were to be named, and are not for the same reasons.
+    deviation : Deviation or None
+        Where distances from a face were drawn.
+    """
+
+    unseen: tuple[str, ...]
+    unnamed_edges: int
+    deviation: Deviation | None
 
 
 def render(
-    surfaces: Sequence[Surface],
+    surfaces: Sequence[Surface | Drawn],
     path: str | Path,
     *,
-    colors: Sequence[str] | None = None,
-    control_points: Sequence[bool] | None = None,
     field: Field | None = None,
+    true_face: TrueFace | None = None,
+    views: Sequence[ViewName] = (),
+    heavy_edges: bool = False,
     towards_eye: ArrayLike | None = None,
     eye_distance: float = np.inf,
-    size: tuple[int, int] = (1600, 1200),
-) -> None:
+    size: tuple[int, int] | None = None,
+) -> Picture:
     """Draw surfaces into a PNG file.
 
     Parameters
     ----------
-    surfaces : sequence of BSplineSurface or SemiStructuredSurface
+    surfaces : sequence of BSplineSurface, SemiStructuredSurface or Drawn
     path : str or Path
         Written whole or not at all.
-    colors : sequence of str, optional
-        One for each surface; with stripes or bands the colour of the dark ones, black unless given; not used with
-        curvatures.
-    control_points : sequence of bool, optional
-        For which surfaces the control points are drawn, those of each v-control curve (or row of the net) in a colour
-        of its own and joined by a polygon.
     field : {"curvature", "gaussian", "zebra", "isophotes"}, optional
         Mean or Gaussian curvature with a scale in 1/length or 1/length^2 (the mean one positive where the surface
         bulges towards the eye); stripes mirrored in the surface; bands of equal angle to the light, 5 degrees each.
         Without, the surfaces are shaded.
+    true_face : TrueFace, optional
+        Instead: colour by the distance from this face, with a scale.
+    views : sequence of {"iso", "front", "back", "left", "right", "top", "bottom"}
+        Side by side, each with its name; z upwards. Without, one view that is chosen from the surfaces.
+    heavy_edges : bool
+        Draw edges broad.
     towards_eye : array_like, shape (3,), optional
-        Direction from the model to the eye, z upwards; chosen from the surfaces unless given.
+        Direction from the model to the eye, z upwards, instead of views.
     eye_distance : float
         From where the stripes are seen, in extents of the model: from far away a plane shows one stripe, from near by
         several. The projection is parallel in any case.
-    size : (int, int)
-        Width and height in pixels.
+    size : (int, int), optional
+        Width and height in pixels, of each of several views; 1600 x 1200 for one, 1200 x 900 for each of several.
+
+    Returns
+    -------
+    Picture
 
     Raises
     ------
     OptionError
-        No surface, another field, lists of different lengths, or a direction of length zero.
+        No surface, another field, or a direction of length zero.
     FileError
         pyvista is not installed, or the file cannot be written.
     """
     check_picture(path, field)
-    _check_lists(surfaces, colors=colors, control_points=control_points)
-    pyvista = pyvista_module(path)
-    count = int(np.clip(np.sqrt(_TOTAL / len(surfaces)), _COARSEST, _FINEST))
-    samples = [_Sampled(*sampled(surface, count)) for surface in surfaces]
-    if _extent(samples) == 0:
-        raise OptionError("surfaces: all points coincide, so there is nothing to draw; give a surface with an extent")
-    view = _view(samples) if towards_eye is None else _view_from(np.asarray(towards_eye, dtype=np.float64))
-    if np.isfinite(eye_distance):
-        middle = _all_points(samples).mean(axis=0)
-        view = replace(view, eye=middle + eye_distance * _extent(samples) * view.towards_eye)
-    shown = control_points or [False] * len(surfaces)
-    polygons = [_polygons(surface) if show else [] for surface, show in zip(surfaces, shown, strict=True)]
-    with atomic_path(path) as temporary, _quiet_vtk():
-        plotter = pyvista.Plotter(off_screen=True, window_size=size)
-        try:
-            plotter.set_background("white")
-            if field is None:
-                palette = colors or [PALETTE[i % len(PALETTE)] for i in range(len(surfaces))]
-                for item, color in zip(samples, palette, strict=True):
-                    _add_shaded(plotter, item, color)
-            else:
-                _add_field(plotter, samples, field, view, colors)
-            _add_outlines(plotter, pyvista, samples)
-            points = [_all_points(samples), *_add_lifted(plotter, pyvista, samples, polygons, view)]
-            width = 0.84 if field in ("curvature", "gaussian") else 1.0
-            _aim(plotter, np.concatenate(points), view, size, width)
-            plotter.enable_anti_aliasing("ssaa")
-            plotter.screenshot(str(temporary))
-        finally:
-            plotter.close()
-
-
-def _check_lists(surfaces: Sequence[Surface], **lists: Sequence[object] | None) -> None:
-    """Refuse no surface, and lists that do not have one entry for each."""
     if not surfaces:
         raise OptionError("surfaces: found none, expected at least one")
-    for name, given in lists.items():
-        if given is not None and len(given) != len(surfaces):
-            raise OptionError(f"{name}: found {len(given)}, expected {len(surfaces)}, one for each surface")
-
-
-def _add_lifted(
-    plotter: Any, pyvista: Any, samples: Sequence[_Sampled], polygons: Sequence[list[FloatArray]], view: _View
-) -> list[FloatArray]:
-    """Add control polygons in front of all surfaces, and return their rows where they are."""
-    # In parallel projection a shift towards the eye changes nothing but what hides what: no control point is hidden by
-    # a surface.
-    lift = 2 * float(np.ptp(_all_points(samples) @ view.towards_eye)) * view.towards_eye
-    for rows in polygons:
-        _add_polygons(plotter, pyvista, [row + lift for row in rows], _extent(samples))
-    return [row for rows in polygons for row in rows]
+    items = [item if isinstance(item, Drawn) else Drawn(item) for item in surfaces]
+    samples = sample([item.surface for item in items], [item.mesh for item in items])
+    if views:
+        seen_from = [named_view(name) for name in views]
+    elif towards_eye is not None:
+        seen_from = [view_from(towards_eye)]
+    else:
+        right, up, towards = line_of_sight([(s.geometry.point, s.normal, s.area) for s in samples])
+        seen_from = [View(towards, right, up)]
+    size = size or (_SIZE_OF_SEVERAL if len(seen_from) > 1 else _SIZE)
+    if np.isfinite(eye_distance):
+        middle, away = all_points(samples).mean(axis=0), eye_distance * extent_of(samples)
+        seen_from = [replace(view, eye=middle + away * view.towards_eye) for view in seen_from]
+    deviation, distances = None, None
+    scale = None if field is None else curvature_scale(field, samples)
+    if true_face is not None:
+        distances = [
+            None if item.around else true_face.distances(s.points) for item, s in zip(items, samples, strict=True)
+        ]
+        inside = [(s, d) for s, d in zip(samples, distances, strict=True) if d is not None]
+        deviation = measure_deviation(*map(list, zip(*inside, strict=True)))
+        scale = distance_scale(true_face.name, true_face.unit, deviation.largest)
+    scene = _Scene(items, samples, field, scale, distances, heavy_edges)
+    rows, columns = cells(len(seen_from))
+    # The scale takes its place below a single view from the view itself.
+    strip = 0 if scale is None else round(_SCALE * size[1] * rows)
+    cell = size if len(seen_from) > 1 else (size[0], size[1] - strip)
+    whole = Image.new("RGB", (columns * cell[0], rows * cell[1] + strip), "white")
+    named: set[tuple[int, str]] = set()
+    with _quiet_vtk():
+        for k, view in enumerate(seen_from):
+            image, texts = scene.picture(view, cell)
+            whole.paste(image, (k % columns * cell[0], k // columns * cell[1]))
+            named |= texts
+    if scale is not None:
+        whole.paste(scale.strip((whole.width, strip)), (0, rows * cell[1]))
+    with atomic_path(path) as temporary:
+        whole.save(temporary, format="PNG")
+    unseen = tuple(item.label for k, item in enumerate(items) if item.label and (k, item.label) not in named)
+    of_edges = {(k, line.name) for k, item in enumerate(items) if item.name_edges for line in item.edges}
+    return Picture(unseen, len(of_edges - named), deviation)
 
 
 def check_picture(path: str | Path, field: str | None) -> None:
@@ -192,150 +242,124 @@ def _quiet_vtk() -> Iterator[None]:
         vtkLogger.SetStderrVerbosity(before)
 
 
-def _view(samples: Sequence[_Sampled]) -> _View:
-    right, up, towards_eye = line_of_sight([(item.geometry.point, item.normal, _area(item)) for item in samples])
-    return _View(towards_eye, right, up)
+class _Scene:
+    """What is drawn in every view."""
 
+    def __init__(
+        self,
+        items: Sequence[Drawn],
+        samples: Sequence[Sampled],
+        field: Field | None,
+        scale: Scale | None,
+        distances: Sequence[FloatArray | None] | None,
+        heavy_edges: bool,
+    ) -> None:
+        self.items, self.samples, self.field, self.scale = items, samples, field, scale
+        self.distances, self.heavy_edges = distances, heavy_edges
+        self.meshes = [item.polydata() for item in samples]
+        self.extent = extent_of(samples)
+        self.polygons = [_polygons(item.surface) if item.control_points else [] for item in items]
+        self.lines = [
+            [line.points for line in item.edges] or sampled.borders
+            for item, sampled in zip(items, samples, strict=True)
+        ]
 
-def line_of_sight(surfaces: Sequence[tuple[FloatArray, FloatArray, FloatArray]]) -> FloatArray:
-    """Return unit rows right, up, towards the eye, from where surfaces are seen well.
+    def picture(self, view: View, size: tuple[int, int]) -> tuple[Image.Image, set[tuple[int, str]]]:
+        """Return one view, and the names that it shows, each with the number of its surface."""
+        rows = [row for polygon in self.polygons for row in polygon]
+        frame = framed(np.concatenate([all_points(self.samples), *rows]), view, size)
+        plotter = _plotter(size)
+        try:
+            for k, mesh in enumerate(self.meshes):
+                self._add(plotter, k, mesh, view)
+            self._add_lines(plotter, view)
+            self._add_lifted(plotter, view)
+            frame.aim(plotter)
+            plotter.enable_anti_aliasing("ssaa")
+            image = Image.fromarray(np.asarray(plotter.screenshot(return_img=True))[..., :3])
+        finally:
+            plotter.close()
+        names: set[tuple[int, str]] = set()
+        if any(item.label or item.name_edges for item in self.items):
+            names = self._name(image, frame)
+        if view.name:
+            height = round(TITLE * size[1])
+            ImageDraw.Draw(image).text((height / 2, height / 2), view.name, fill="#404040", font=font(height))
+        return image, names
 
-    The eye looks along the normal that most of the area shares, a little from above and from the right. The sign of a
-    normal does not matter: the dominant eigenvector of the sum of n n^T over the area is taken.
-
-    Parameters
-    ----------
-    surfaces : sequence of (points, normals, area elements)
-        Samples of each surface, shapes (n_u, n_v, 3), (n_u, n_v, 3) and (n_u, n_v).
-    """
-    spread = np.zeros((3, 3))
-    for _, normals, area in surfaces:
-        share = area / max(float(area.sum()), np.finfo(np.float64).tiny)
-        spread += np.einsum("ij,ija,ijb->ab", share, normals, normals)
-    normal = _signed(np.linalg.eigh(spread)[1][:, -1])
-    points = np.concatenate([p.reshape(-1, 3) for p, _, _ in surfaces])
-    across = (points - points.mean(axis=0)) @ (np.eye(3) - np.outer(normal, normal))
-    # The longest extent lies across the picture.
-    right = _signed(np.linalg.eigh(across.T @ across)[1][:, -1])
-    up = np.cross(normal, right)
-    towards_eye = _unit(normal - 0.55 * up + 0.35 * right)
-    right = _unit(np.cross(up, towards_eye))
-    return np.stack([right, np.cross(towards_eye, right), towards_eye])
-
-
-def _view_from(direction: FloatArray) -> _View:
-    """Look from a direction, with z upwards, or y where the direction is that of z."""
-    if direction.shape != (3,) or not 0 < np.linalg.norm(direction) < np.inf:
-        raise OptionError(f"towards_eye: found {direction.tolist()}, expected three numbers that are not all zero")
-    towards_eye = _unit(direction)
-    upwards = np.eye(3)[2 if np.hypot(*towards_eye[:2]) > _STEEP else 1]
-    right = _unit(np.cross(upwards, towards_eye))
-    return _View(towards_eye, right, np.cross(towards_eye, right))
-
-
-def _signed(vector: FloatArray) -> FloatArray:
-    """Of the two directions of an eigenvector, the one whose largest component is positive."""
-    return vector if vector[np.argmax(np.abs(vector))] > 0 else -vector
-
-
-def _unit(vector: FloatArray) -> FloatArray:
-    return vector / np.linalg.norm(vector)
-
-
-def _extent(samples: Sequence[_Sampled]) -> float:
-    return float(np.ptp(_all_points(samples), axis=0).max())
-
-
-def _all_points(samples: Sequence[_Sampled]) -> FloatArray:
-    return np.concatenate([item.geometry.point.reshape(-1, 3) for item in samples])
-
-
-def _area(item: _Sampled) -> FloatArray:
-    """Return the area element at each sample, shape (len(u), len(v))."""
-    return np.asarray(np.linalg.norm(np.cross(item.geometry.tangent_u, item.geometry.tangent_v), axis=-1))
-
-
-def _aim(plotter: Any, points: FloatArray, view: _View, size: tuple[int, int], share: float) -> None:
-    """Fit the points into the picture, in parallel projection; `share` of the height is theirs, from the top."""
-    x, y, z = points @ view.right, points @ view.up, points @ view.towards_eye
-    width, height = float(np.ptp(x)), float(np.ptp(y))
-    scale = _MARGIN * max(width * size[1] / size[0], height / share, 1e-300) / 2
-    middle_x, middle_y = (x.min() + x.max()) / 2, (y.min() + y.max()) / 2
-    middle_y -= (1 - share) * scale
-    focus = middle_x * view.right + middle_y * view.up + (z.min() + z.max()) / 2 * view.towards_eye
-    distance = 4 * (scale + float(np.ptp(z)))
-    plotter.camera_position = [focus + distance * view.towards_eye, focus, view.up]
-    plotter.enable_parallel_projection()
-    plotter.camera.parallel_scale = scale
-    plotter.reset_camera_clipping_range()
-
-
-def _add_shaded(plotter: Any, item: _Sampled, color: str) -> None:
-    mesh = triangle_mesh(item.geometry, item.normal)
-    actor = plotter.add_mesh(mesh, color=color, ambient=0.25, diffuse=0.75, specular=0.25, specular_power=20)
-    actor.prop.interpolation = "Phong"
-
-
-def _add_outlines(plotter: Any, pyvista: Any, samples: Sequence[_Sampled]) -> None:
-    """Draw the four edges of every surface."""
-    edges = [edge for p in (item.geometry.point for item in samples) for edge in (p[0], p[-1], p[:, 0], p[:, -1])]
-    starts = np.cumsum([0, *(len(edge) for edge in edges)])
-    lines = [[len(edge), *range(start, start + len(edge))] for start, edge in zip(starts, edges, strict=False)]
-    outline = pyvista.PolyData(np.concatenate(edges), lines=np.concatenate(lines))
-    plotter.add_mesh(outline, color="#202020", line_width=2, lighting=False)
-
-
-def _add_field(
-    plotter: Any, samples: Sequence[_Sampled], field: Field, view: _View, dark: Sequence[str] | None
-) -> None:
-    values = [_field_values(item, field, view) for item in samples]
-    options: dict[str, Any] = {"interpolate_before_map": True, "ambient": 0.6, "diffuse": 0.4}
-    if field in ("curvature", "gaussian"):
-        power = 1 if field == "curvature" else 2
-        limit = _color_limit(values, samples, _extent(samples) ** -power)
-        title = "mean curvature, 1/length\n" if power == 1 else "Gaussian curvature, 1/length\u00b2\n"
-        options |= {"cmap": "coolwarm", "clim": (-limit, limit), "scalar_bar_args": {"title": title, **_BAR}}
-    else:
-        bands = _STRIPES if field == "zebra" else _ISOPHOTES
-        usual, light = ("#101010", "#ffffff") if field == "zebra" else ("#1f4e79", "#f2f2f2")
-        end = 180 if field == "zebra" else 90
-        options |= {"n_colors": bands, "clim": (0, end), "show_scalar_bar": False}
-    for i, (item, value) in enumerate(zip(samples, values, strict=True)):
-        if field in ("zebra", "isophotes"):
-            options["cmap"] = [dark[i] if dark else usual, light] * (bands // 2)
-        mesh = triangle_mesh(item.geometry, item.normal)
-        mesh.point_data["field"] = np.nan_to_num(value).ravel()
-        actor = plotter.add_mesh(mesh, scalars="field", **options)
+    def _add(self, plotter: Any, k: int, mesh: Any, view: View) -> None:
+        item, sampled = self.items[k], self.samples[k]
+        values = None if self.distances is None else self.distances[k]
+        if self.field is not None:
+            values = np.nan_to_num(field_values(sampled, self.field, view)).ravel()
+        if values is None:
+            color = _AROUND if self.distances is not None else item.color or PALETTE[k % len(PALETTE)]
+            actor = plotter.add_mesh(mesh, color=color, ambient=0.35, diffuse=0.7, specular=0.2, specular_power=20)
+        else:
+            mesh.point_data["field"] = values
+            actor = plotter.add_mesh(mesh, scalars="field", **mesh_options(self.field, self.scale, item.color))
         actor.prop.interpolation = "Phong"
 
+    def _add_lines(self, plotter: Any, view: View) -> None:
+        lines = [line + _BEFORE * self.extent * view.towards_eye for of_one in self.lines for line in of_one]
+        if not lines:
+            return
+        starts = np.cumsum([0, *(len(line) for line in lines)])
+        joined = [[len(line), *range(start, start + len(line))] for start, line in zip(starts, lines, strict=False)]
+        outline = pyvista_module("mesh").PolyData(np.concatenate(lines), lines=np.concatenate(joined))
+        plotter.add_mesh(outline, color="#202020", line_width=5 if self.heavy_edges else 2, lighting=False)
 
-def _field_values(item: _Sampled, field: Field, view: _View) -> FloatArray:
-    if field == "gaussian":
-        return item.geometry.gaussian
-    if field == "curvature":
-        # Towards the normal is positive in `curvature`; bulging towards the eye is what a reader sees, point by point:
-        # of a whole tube the outside of one part is seen, and the inside of another.
-        return item.geometry.mean * np.where(item.normal @ view.towards_eye >= 0, -1.0, 1.0)
-    if field == "isophotes":
-        angle = isophote_angle(item.normal, _unit(view.towards_eye + view.up))
-        # Either side of a surface may be the outer one.
-        return np.minimum(angle, 180 - angle)
-    # The pattern of `zebra` about an axis across the picture, so that stripes cross edges of either direction.
-    seen_from = view.towards_eye if view.eye is None else view.eye - item.geometry.point
-    return mirror_angle(item.normal, seen_from, view.right + view.up)
+    def _add_lifted(self, plotter: Any, view: View) -> None:
+        """Add control polygons in front of all surfaces."""
+        # In parallel projection a shift towards the eye changes nothing but what hides what: no control point is hidden
+        # by a surface.
+        lift = 2 * float(np.ptp(all_points(self.samples) @ view.towards_eye)) * view.towards_eye
+        for rows in self.polygons:
+            _add_polygons(plotter, [row + lift for row in rows], self.extent)
+
+    def _name(self, image: Image.Image, frame: Frame) -> set[tuple[int, str]]:
+        """Draw the names of what is seen; return them, each with the number of its surface."""
+        seen = self._seen(frame)
+        height = max(round(_NAMES * frame.size[1]), 9)
+        anchors = list(face_anchors(seen, [item.label for item in self.items], height).values())
+        alone = len(self.items) == 1
+        for face in list(anchors):
+            # Among many, a face that has no room for its own name has none for those of its edges.
+            if not self.items[face.surface].name_edges or not (alone or face.room > _ROOM):
+                continue
+            for line in self.items[face.surface].edges:
+                at = frame.pixels(line.points)
+                anchor = edge_anchor(seen, face.surface, at, line.name, height)
+                anchors += [] if anchor is None else [replace(anchor, nearby=not alone)]
+        labels = placed(anchors, frame.size, height)
+        draw_labels(image, labels, height)
+        return {(label.anchor.surface, label.anchor.text) for label in labels}
+
+    def _seen(self, frame: Frame) -> Seen:
+        """Return the number of the surface at each pixel."""
+        counts = [len(item.points) for item in self.samples]
+        starts = np.cumsum([0, *counts[:-1]])
+        triangles = np.concatenate([s.triangles + start for s, start in zip(self.samples, starts, strict=True)])
+        numbers = np.repeat(np.arange(len(self.samples)), [len(s.triangles) for s in self.samples])
+        faces = np.hstack([np.full((len(triangles), 1), 3), triangles]).ravel()
+        mesh = pyvista_module("mesh").PolyData(all_points(self.samples), faces)
+        mesh.cell_data["number"] = np.stack([numbers % 256, numbers // 256 % 256, numbers // 65536], 1).astype(np.uint8)
+        plotter = _plotter(frame.size)
+        try:
+            plotter.add_mesh(mesh, scalars="number", rgb=True, lighting=False)
+            plotter.disable_anti_aliasing()
+            frame.aim(plotter)
+            pixels = np.asarray(plotter.screenshot(return_img=True))[..., :3].astype(np.int64)
+        finally:
+            plotter.close()
+        found = pixels @ np.array([1, 256, 65536])
+        return np.where(found < len(self.samples), found, NOTHING)
 
 
-def _color_limit(values: Sequence[FloatArray], samples: Sequence[_Sampled], natural: float) -> float:
-    """Return the end of a symmetric scale that holds 98 % of the area; not below rounding."""
-    found = np.concatenate([np.abs(value).ravel() for value in values])
-    area = np.concatenate([(_area(item) / item.geometry.point[..., 0].size).ravel() for item in samples])
-    kept = np.isfinite(found)
-    order = np.argsort(found[kept])
-    share = np.cumsum(area[kept][order])
-    if not len(share) or share[-1] <= 0:
-        return natural
-    limit = float(found[kept][order][np.searchsorted(share, 0.98 * share[-1])])
-    return limit if limit > 1e-9 * natural else natural
+def _plotter(size: tuple[int, int]) -> Any:
+    plotter = pyvista_module("picture").Plotter(off_screen=True, window_size=size)
+    plotter.set_background("white")
+    return plotter
 
 
 def _polygons(surface: Surface) -> list[FloatArray]:
@@ -344,7 +368,8 @@ def _polygons(surface: Surface) -> list[FloatArray]:
     return list(surface.control_points)
 
 
-def _add_polygons(plotter: Any, pyvista: Any, rows: Sequence[FloatArray], extent: float) -> None:
+def _add_polygons(plotter: Any, rows: Sequence[FloatArray], extent: float) -> None:
+    pyvista = pyvista_module("picture")
     for i, row in enumerate(rows):
         color = CURVE_COLORS[i % len(CURVE_COLORS)]
         if np.ptp(row, axis=0).max() > 0:

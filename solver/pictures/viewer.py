@@ -20,7 +20,8 @@ import numpy as np
 
 from semispline.solver.arrays import FloatArray
 from semispline.solver.judge import ParametricSurface, geometry_grid
-from semispline.solver.pictures.plotting import BASE_COLOR, BLEND_COLOR, line_of_sight
+from semispline.solver.pictures.plotting import BASE_COLOR, BLEND_COLOR
+from semispline.solver.pictures.views import line_of_sight
 from semispline.solver.splines import BSplineSurface, SemiStructuredSurface
 
 # Samples along each parameter, at least; every breakpoint is one of them.

@@ -34,6 +34,9 @@ from semispline.solver.splines.surfaces import BSplineCurve, BSplineSurface, Sem
 
 # Roundings of the largest coordinate that are added to a bound.
 ROUNDING = 16 * float(np.finfo(float).eps)
+# Parts of a span that are bounded apart, as long as there are not more of them than the second number in all; narrower
+# spans than this fraction of the domain are left whole.
+_PARTS, _SPANS, _NARROW = 8, 64, 1e-6
 
 
 S = TypeVar("S", BSplineSurface, SemiStructuredSurface)
@@ -267,10 +270,18 @@ def _deviation(one: _Net, other: _Net) -> float:
 
 
 def _common_space(p: int, knots: FloatArray, q: int, others: FloatArray) -> tuple[int, FloatArray]:
-    """Return the degree and knots of the least space that has both; knots are the same where they are equal."""
+    """Return the degree and knots of a space that has both; knots are the same where they are equal.
+
+    Its spans are parts of those of the least one: the finer a net, the closer to the truth what bounds it.
+    """
     degree = max(p, q)
     counts: dict[float, int] = {}
     for vector in (elevated_knots(knots, degree - p), elevated_knots(others, degree - q)):
         for value, times in zip(*(x.tolist() for x in np.unique(vector, return_counts=True)), strict=True):
             counts[value] = max(times, counts.get(value, 0))
-    return degree, np.repeat(sorted(counts), [counts[value] for value in sorted(counts)])
+    breaks = np.array(sorted(counts))
+    parts = int(np.clip(_SPANS // (len(breaks) - 1), 1, _PARTS))
+    widths = np.diff(breaks)
+    starts, widths = (x[widths > _NARROW * np.ptp(breaks)] for x in (breaks[:-1], widths))
+    inside = starts[:, None] + widths[:, None] * np.arange(1, parts) / parts
+    return degree, np.sort(np.append(np.repeat(breaks, [counts[value] for value in sorted(counts)]), inside))

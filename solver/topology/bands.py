@@ -22,7 +22,7 @@ from semispline.solver.topology.band_refusals import refusal, wild_end
 from semispline.solver.topology.band_search import BandFit, Continuity, band_limits, fit_band, is_plane
 from semispline.solver.topology.curve_pieces import Break, CurvePiece, pieces, turns_at_breaks
 from semispline.solver.topology.curve_smoothing import sagitta, smoothed
-from semispline.solver.topology.face_curves import Source, curve_on_face, edge_on_face
+from semispline.solver.topology.face_curves import Source, trim_curve
 from semispline.solver.topology.face_jets import Face
 from semispline.solver.topology.row_fit import BandLimits
 
@@ -117,6 +117,7 @@ def band_along(
     tolerance: float = 0.0,
     millimetres: float | None = None,
     continuity: Literal["G1", "G2", "G3", "G4"] = "G2",
+    part: int | None = None,
     name: str = "the curve",
 ) -> tuple[Band, ...]:
     """Return bands along a free curve of a face: one, or one for each piece where it has to be cut.
@@ -143,6 +144,8 @@ def band_along(
         In one model unit, where that is known: then no gap above 0.001 mm is allowed.
     continuity : {"G1", "G2", "G3", "G4"}
         That the band is to be met with.
+    part : int, optional
+        Only the band of this piece, counted from 0.
     name : str
         How messages call the curve.
 
@@ -151,7 +154,7 @@ def band_along(
     BandError
         A limit cannot be met: what was reached, where, and the likely reason.
     EdgeError
-        A curve that leaves the face, or that is a point.
+        A curve that leaves the face, or that is a point; no such part.
 
     Source: `semispline.derivations.bands`.
 
@@ -170,24 +173,27 @@ def band_along(
     order = max(2, int(continuity[1]))
     origin = exact_origin(surface.control_points.reshape(-1, 3))
     face = Face(replace(surface, control_points=surface.control_points - origin))
-    on_face = None if curve is None else curve_on_face(face, curve)
-    if edge is not None:
-        on_face = edge_on_face(face, replace(edge, control_points=edge.control_points - origin), on_face, tolerance)
-    if on_face is None:
-        raise EdgeError("curve: found neither a curve in the face's parameters nor an edge in space, expected one")
+    in_space = None if edge is None else replace(edge, control_points=edge.control_points - origin)
+    on_face = trim_curve(face, curve, in_space, tolerance)
     sign = 1.0 if keep == "left" else -1.0
     made = []
     cut, breaks = pieces(on_face, sign, _AWAY[0])
-    for k, piece in enumerate(cut):
+    if part is not None and not 0 <= part < len(cut):
+        raise EdgeError(f"part: found {part}, but {name} has {len(cut)}, counted from 0")
+    for k in range(len(cut)) if part is None else [part]:
+        piece = cut[k]
+        title = name if len(cut) == 1 else f"part {k} of {name}"
         fit = _fit(piece, order, tolerance, millimetres)
         if piece.left_out and not (fit.is_good and np.diff(np.unique(fit.knots)).min() > _NARROW * piece.length):
             again = _fit(pieces(on_face, sign, _AWAY[1])[0][k], order, tolerance, millimetres)
             fit = again if again.is_good or not fit.is_good else fit
         if not fit.is_good:
-            raise BandError(refusal(fit, name, origin, tolerance))
+            raise BandError(refusal(fit, title, origin, tolerance))
         no_normal = wild_end(fit.piece) if piece.left_out else None
         if no_normal is not None:
-            raise BandError(f"{name}: the face has no normal at the {no_normal} of it, its curvature grows without end")
+            raise BandError(
+                f"{title}: the face has no normal at the {no_normal} of it, its curvature grows without end"
+            )
         made.append(_band(fit, piece, origin, breaks))
     return tuple(made)
 

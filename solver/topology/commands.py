@@ -3,32 +3,63 @@
 from __future__ import annotations
 
 import shlex
+from collections.abc import Mapping
 from dataclasses import replace
 from math import floor, log10
 
+from semispline.solver.errors import EdgeError
+from semispline.solver.topology.between import Between
 from semispline.solver.topology.half_edges import EdgeGraph
 from semispline.solver.topology.place import Place
+from semispline.solver.topology.relations import Relations
+from semispline.solver.topology.replacing import pair_of
 
 # A contact moves into its face by this share of the way to the next edge, where nobody says how far.
 _OF_CLEARANCE = 1 / 3
 
 
-def with_commands(graph: EdgeGraph, place: Place) -> Place:
-    """Return a place with its commands; a chain has those of its members, one by one."""
-    if place.faces:
-        return replace(place, commands=tuple(replacing(graph.path, face) for face in place.faces))
-    return replace(place, commands=(_two_faces(graph.path, place),))
+def with_commands(graph: EdgeGraph, relations: Relations, place: Place, betweens: Mapping[int, Between]) -> Place:
+    """Return a place with its commands; a chain has those of its members, one by one.
+
+    Parameters
+    ----------
+    graph : EdgeGraph
+    relations : Relations
+    place : Place
+    betweens : dict
+        Face -> how it lies between the faces that are to be blended.
+    """
+    if not place.faces:
+        return replace(place, commands=(_two_faces(graph.path, place),))
+    edges = (_edges_to_name(graph, relations, betweens[face]) for face in place.faces)
+    commands = (replacing(graph.path, face, names) for face, names in zip(place.faces, edges, strict=True))
+    return replace(place, commands=tuple(commands))
 
 
-def replacing(path: str, face: int) -> str:
-    """Return the command that blends the faces beyond a face.
+def replacing(path: str, face: int, edges: tuple[str, str] | None = None) -> str:
+    """Return the command that blends the faces beyond a face, from one of its edges to another where they are named.
 
     Examples
     --------
     >>> replacing("my part.step", 65)
     "semispline blend 'my part.step' --replace 65 -o blend-65.step"
     """
-    return shlex.join(["semispline", "blend", _safe(path), "--replace", str(face), "-o", f"blend-{face}.step"])
+    words = ["semispline", "blend", _safe(path), "--replace", str(face)]
+    if edges is not None:
+        words += ["--edge-a", edges[0], "--edge-b", edges[1]]
+    return shlex.join([*words, "-o", f"blend-{face}.step"])
+
+
+def _edges_to_name(graph: EdgeGraph, relations: Relations, between: Between) -> tuple[str, str] | None:
+    """Return the contacts of a face where it would not be blended from one to the other without a word."""
+    rows = [max(side.uses, key=lambda row: float(relations.length[row])) for side in (between.a, between.b)]
+    try:
+        taken = pair_of(graph, relations, between.face)
+    except EdgeError:
+        taken = None
+    if taken is not None and {*taken.a.uses, *taken.b.uses} == set(rows):
+        return None
+    return graph.uses.name(rows[0]), graph.uses.name(rows[1])
 
 
 def _two_faces(path: str, place: Place) -> str:

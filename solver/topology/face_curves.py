@@ -94,6 +94,22 @@ class FaceCurve:
         return bool(np.linalg.norm(points[0] - points[-1]) <= _SAME_POINT * length)
 
 
+def trim_curve(face: Face, pcurve: BSplineCurve | None, edge: BSplineCurve | None, tolerance: float) -> FaceCurve:
+    """Return the curve on a face that a trim curve is meant to be: the feet of its edge, or its pcurve.
+
+    Raises
+    ------
+    EdgeError
+        There is neither, or it is not on the face.
+    """
+    on_face = None if pcurve is None else curve_on_face(face, pcurve)
+    if edge is not None:
+        on_face = edge_on_face(face, edge, on_face, tolerance)
+    if on_face is None:
+        raise EdgeError("curve: found neither a curve in the face's parameters nor an edge in space, expected one")
+    return on_face
+
+
 def spread(breaks: FloatArray, total: int, least: int = 1) -> FloatArray:
     """Return parameters that divide each span evenly, about `total` in all."""
     share = np.diff(breaks) / (breaks[-1] - breaks[0])

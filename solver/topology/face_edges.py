@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from semispline.solver.errors import EdgeError, FileError
 from semispline.solver.io import LoadedSurface, in_one_unit, read_surfaces, split_spec
@@ -16,7 +17,12 @@ from semispline.solver.topology.measuring import MeasuredEdges, measured_edges
 from semispline.solver.topology.near import NEAR, nearest_edge
 from semispline.solver.topology.relations import relate
 
+if TYPE_CHECKING:
+    from semispline.solver.topology.trim_curves import TrimCurve
+
 _OF_A_FACE = re.compile(r"e([0-9]{1,9})")
+# A part of a free curve, where that was cut: e3[0].
+_PART = re.compile(r"(e[0-9]{1,9})\[([0-9]{1,9})\]")
 Point = tuple[float, float, float]
 
 
@@ -97,7 +103,7 @@ class FaceEdges:
 
 @dataclass(frozen=True, eq=False)
 class ResolvedEdge:
-    """An edge of a surface in a file, by a name that `Base` knows.
+    """An edge of a surface in a file: by a name that `Base` knows, or a free curve, along which bands are made.
 
     Attributes
     ----------
@@ -106,12 +112,15 @@ class ResolvedEdge:
     loaded : LoadedSurface
         The whole surface of the face, without its trimming; without its boundary where the edge is one of the face's.
     edge : str
+        What `Base` calls it; of a free curve "e3", or "e3[0]", the first part of it where it was cut.
     asked : str or None
         The word that was resolved; None where it was a name already.
     entry : FaceEdge or None
         What is known of the edge of the face.
     said : str
         What was taken, in words; "" where nothing was resolved.
+    curve : TrimCurve or None
+        A free curve in the face to which the contact was moved.
     """
 
     spec: str
@@ -120,16 +129,39 @@ class ResolvedEdge:
     asked: str | None = None
     entry: FaceEdge | None = None
     said: str = ""
+    curve: TrimCurve | None = None
 
     @property
     def surface(self) -> Surface:
         """The whole surface."""
         return self.loaded.surface
 
+    @property
+    def is_free(self) -> bool:
+        """No parameter of the surface is constant along it: `edge_bases` makes bands, which `Base` takes."""
+        return self.curve is not None or (self.entry is not None and self.entry.kind == "free")
+
+    @property
+    def part(self) -> int | None:
+        """Which part of a free curve is meant; None for all of it."""
+        return split_part(self.edge)[1]
+
 
 def is_of_a_face(word: str) -> bool:
-    """Tell whether a word names an edge of a face in a file: e3, near=x,y,z."""
-    return bool(_OF_A_FACE.fullmatch(word.strip())) or word.strip().startswith(NEAR)
+    """Tell whether a word names an edge of a face in a file: e3, e3[0], near=x,y,z."""
+    return bool(_OF_A_FACE.fullmatch(split_part(word)[0])) or word.strip().startswith(NEAR)
+
+
+def split_part(word: str) -> tuple[str, int | None]:
+    """Split e3[0], the first part of a free curve.
+
+    Examples
+    --------
+    >>> split_part("e3[0]"), split_part("e3"), split_part("u1[0,1]")
+    (('e3', 0), ('e3', None), ('u1[0,1]', None))
+    """
+    found = _PART.fullmatch(word.strip())
+    return (word.strip(), None) if found is None else (found[1], int(found[2]))
 
 
 def list_edges(path: str | Path, face: int) -> FaceEdges:
@@ -143,7 +175,7 @@ def list_edges(path: str | Path, face: int) -> FaceEdges:
         The process that read the file was killed.
     """
     measured = measured_edges(path, [face])
-    _check_face(measured.graph, face, str(path))
+    check_face(measured.graph, face, str(path))
     (loaded,) = read_surfaces([f"{path}#{face}"])
     return _edges_of(measured, face, loaded)
 
@@ -156,14 +188,15 @@ def resolve_edge(spec: str | Path, word: str, name: str = "edge") -> ResolvedEdg
     spec : str
         PATH, or PATH#N.
     word : str
-        "e3", "near=x,y,z", or a name that `Base` knows, which is returned as it is.
+        "e3", "near=x,y,z", "e3[0]" (of a free curve the part up to the first place where bands are cut), or a name that
+        `Base` knows, which is returned as it is.
     name : str
         What messages call the word.
 
     Raises
     ------
     EdgeError
-        No such edge, a free curve or a point, none near the point or several.
+        No such edge, a point, none near the point or several; a part of what is no free curve.
     FileError, ComputationError
         As `read_surface` and `list_edges`.
     """
@@ -199,7 +232,7 @@ def resolve_edges(
                 graph, f"{names[k]} {words[k]}", measured[path].nearest[words[k], number], where
             )
         else:
-            rows[k] = _row_of(graph, words[k], _only_face(graph, number, path), names[k])
+            rows[k] = row_of(graph, split_part(words[k])[0], only_face(graph, number, path), names[k])
     _take_faces(rows, picked, words, measured, names)
     faces = [
         number if row is None else int(measured[path].graph.uses.face[row])
@@ -213,10 +246,28 @@ def resolve_edges(
         if row is None or face is None:
             found.append(ResolvedEdge(full[k], loaded, str(parse_edge(words[k], names[k]))))
             continue
-        entry = _edges_of(measured[path], face, loaded).edges[int(measured[path].graph.uses.number[row])]
-        found.append(_resolved(full[k], loaded, words[k], entry, names[k], said[k]))
+        found.append(resolved_use(measured[path], row, full[k], loaded, words[k], names[k], said[k]))
     same = in_one_unit([one.loaded for one in found])
     return [replace(one, loaded=loaded) for one, loaded in zip(found, same, strict=True)]
+
+
+def resolved_use(
+    measured: MeasuredEdges, row: int, spec: str, loaded: LoadedSurface, word: str, name: str, near: str = ""
+) -> ResolvedEdge:
+    """Return a use of an edge as its surface knows it; `word`, and how near it is, is what it was found by.
+
+    Raises
+    ------
+    EdgeError
+        It has no name that a surface knows.
+    """
+    return _resolved(spec, loaded, word, edge_of_use(measured, row, loaded), name, near)
+
+
+def edge_of_use(measured: MeasuredEdges, row: int, loaded: LoadedSurface) -> FaceEdge:
+    """Return what is known of an edge of a face whose surface is read."""
+    uses = measured.graph.uses
+    return _edges_of(measured, int(uses.face[row]), loaded).edges[int(uses.number[row])]
 
 
 def _in_own_units(specs: Sequence[str], paths: Sequence[str]) -> list[LoadedSurface]:
@@ -289,22 +340,27 @@ def _uses_of_edge(graph: EdgeGraph, row: int | None) -> list[int]:
     return [row, *(x for x in (partner, twin) if x != NONE)]
 
 
-def _only_face(graph: EdgeGraph, number: int | None, path: str) -> int:
+def only_face(graph: EdgeGraph, number: int | None, path: str) -> int:
+    """Return the number of a face; without one that of the only face of the file."""
     if number is None:
         if len(graph.faces) != 1:
             raise FileError(f"{path}: holds {len(graph.faces)} surfaces; choose one as {path}#N")
         return 0
-    _check_face(graph, number, path)
+    check_face(graph, number, path)
     return number
 
 
-def _check_face(graph: EdgeGraph, face: int, path: str) -> None:
+def check_face(graph: EdgeGraph, face: int, path: str) -> None:
+    """Refuse a number that no face of the file has."""
     count = len(graph.faces)
     if not 0 <= face < count:
         raise FileError(f"{path}#{face}: no such surface; the file holds {count}, numbered 0 to {count - 1}")
 
 
-def _row_of(graph: EdgeGraph, word: str, face: int, name: str) -> int:
+def row_of(graph: EdgeGraph, word: str, face: int, name: str) -> int:
+    """Return the use that is called "e3" in a face."""
+    if not _OF_A_FACE.fullmatch(word):
+        raise EdgeError(f"{name}: found {word!r}, expected an edge of face #{face} of {graph.path}, as e0")
     number = int(word[1:])
     rows = graph.uses.of_face(face)
     count = rows.stop - rows.start
@@ -316,18 +372,23 @@ def _row_of(graph: EdgeGraph, word: str, face: int, name: str) -> int:
 
 def _resolved(spec: str, loaded: LoadedSurface, word: str, entry: FaceEdge, name: str, near: str) -> ResolvedEdge:
     title = f"{name} {word}: {entry.name} of {spec}"
-    if entry.edge is None:
-        why = {
-            "free": "is a free curve, along which no parameter of the surface is constant",
-            "point": "is a point",
-        }.get(entry.kind, "cannot be told: the edge was not found on the surface")
+    edge, part = entry.edge, split_part(word)[1]
+    if entry.kind == "free":
+        edge = entry.name if part is None else f"{entry.name}[{part}]"
+    elif edge is None:
+        why = "is a point" if entry.kind == "point" else "cannot be told: the edge was not found on the surface"
         path, number = split_spec(spec)
         raise EdgeError(f"{title} {why}; `semispline list {path} --edges {number or 0}` lists the edges of the face")
+    elif part is not None:
+        raise EdgeError(
+            f"{title} is {edge}: only free curves are cut into parts; name {entry.name}, or a part as u1[0,1]"
+        )
     if entry.seam and near:
-        raise EdgeError(f"{title} is a seam: both its sides are of this face; name one of them, as {entry.edge}")
-    said = f"{entry.name} of {spec} is {entry.edge}" + (f" ({near})" if near else "")
+        raise EdgeError(f"{title} is a seam: both its sides are of this face; name one of them, as {edge}")
+    is_what = "a free curve" if entry.kind == "free" else edge
+    said = f"{entry.name} of {spec} is {is_what}" + (f" ({near})" if near else "")
     # It is the face's own: what its surface does elsewhere needs no warning.
-    return ResolvedEdge(spec, replace(loaded, boundary=None), entry.edge, word, entry, said)
+    return ResolvedEdge(spec, replace(loaded, boundary=None), edge, word, entry, said)
 
 
 def _edges_of(measured: MeasuredEdges, face: int, loaded: LoadedSurface) -> FaceEdges:

@@ -13,7 +13,7 @@ from semispline.solver.topology.place import KINDS, Place, Places
 _PRINTED = 20
 _PLURALS = {
     "fillet": "fillets: faces that can be blended anew between the faces beyond",
-    "chain": "chains of fillets; the command for a whole chain comes with a later version, these blend a single face",
+    "chain": "chains of fillets: no single blend; each command replaces one of the faces",
     "gap": "gaps: free edges that face each other",
     "chamfer": "chamfers: faces between two sharp edges",
     "round end": "round ends: faces that turn by more than 150 degrees, as half a hole does",
@@ -41,8 +41,6 @@ def place_lines(places: Places) -> Iterator[str]:
         yield _nothing(places)
     else:
         yield f"lengths in {places.unit or 'model units'}, angles in degrees; the best of each kind first"
-        # Until blend has them.
-        yield "(blend does not know --replace, --cut-a, --cut-b and edges e0, e1, .. yet: these commands are to come)"
     for kind in KINDS:
         found = places.of_kind(kind)
         if not found:

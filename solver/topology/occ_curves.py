@@ -25,15 +25,24 @@ _PLACES, _DEGREE = 400, 5
 Content = tuple[int, FloatArray, FloatArray, FloatArray | None]
 
 
-def work(path: str, face: str, *numbers: str) -> tuple[str | None, Any, list[Any]]:
-    """Return the unit, arguments of the surface or the error, and for each edge its curves or what is wrong with it."""
+def work(path: str, *asked: str) -> tuple[str | None, list[Any]]:
+    """Return the unit, and for each "FACE NUMBER" what `TrimCurve` holds of it, or what is wrong with it."""
     model = read_occ(path)
-    if not 0 <= int(face) < len(model.faces):
-        return model.unit, FileError(f"{path}#{face}: the file has {len(model.faces)} faces, counted from 0"), []
-    try:
-        return model.unit, *face_curves(model.faces[int(face)], [int(x) for x in numbers])
-    except InputError as error:
-        return model.unit, error, []
+    wanted = [tuple(map(int, text.split())) for text in asked]
+    found: dict[tuple[int, ...], Any] = {}
+    for face in dict.fromkeys(face for face, _ in wanted):
+        numbers = [number for other, number in wanted if other == face]
+        if not 0 <= face < len(model.faces):
+            content: Any = FileError(f"{path}#{face}: the file has {len(model.faces)} faces, counted from 0")
+            curves = [content] * len(numbers)
+        else:
+            try:
+                content, curves = face_curves(model.faces[face], numbers)
+            except InputError as error:
+                curves = [error] * len(numbers)
+        for number, curve in zip(numbers, curves, strict=True):
+            found[face, number] = (content, *curve) if isinstance(curve, tuple) else curve
+    return model.unit, [found[key] for key in wanted]
 
 
 def face_curves(item: Any, numbers: list[int]) -> tuple[tuple[Any, ...], list[Any]]:

@@ -27,7 +27,7 @@ _POLE = 1e-14
 # Rows that agree to this fraction of the size close a surface.
 _CLOSED = 1e-9
 # Samples further from the surface than this fraction of the size of all edges have not been found on it.
-_FAR = 1e-3
+FAR = 1e-3
 _ORDERS = ((0, 0), (1, 0), (0, 1), (2, 0), (0, 2), (1, 1))
 _NOTHING = ("none", False, (np.nan, np.nan), (np.nan,) * 4, [np.nan] * (4 * SAMPLES), [np.nan] * (18 * SAMPLES))
 
@@ -38,7 +38,7 @@ def edges_of_3dm(model: Model) -> EdgeGraph:
     rows: list[tuple[Any, ...]] = []
     records: list[tuple[Any, ...]] = []
     ends = np.full((len(faces), 4), np.nan)
-    far = _FAR * _size([curve for face in faces for curve in face.curves or ()])
+    far = FAR * _size([curve for face in faces for curve in face.curves or ()])
     for number, face in enumerate(faces):
         try:
             surface = face.surface()
@@ -49,14 +49,11 @@ def edges_of_3dm(model: Model) -> EdgeGraph:
             continue
         known = _projected(surface, face.curves or (), far)
         times = Counter(trim[0] for loop in face.trims[1] for trim in loop)
-        k = 0
-        for wire, loop in enumerate(face.trims[1]):
-            # Loops run as the surface looks; faces that look the other way are walked backwards.
-            for edge, place, against in reversed(loop) if face.trims[0] else loop:
-                turned = bool(against) != face.trims[0]
-                rows.append((number, wire, k, edge, turned, edge >= 0 and times[edge] == 2, edge < 0))
-                records.append((0.0, *_NOTHING) if edge < 0 else known[place])
-                k += 1
+        wires = [wire for wire, loop in enumerate(face.trims[1]) for _ in loop]
+        for k, (wire, (edge, place, against)) in enumerate(zip(wires, edges_in_order(face), strict=True)):
+            turned = bool(against) != face.trims[0]
+            rows.append((number, wire, k, edge, turned, edge >= 0 and times[edge] == 2, edge < 0))
+            records.append((0.0, *_NOTHING) if edge < 0 else known[place])
     numbers = np.arange(len(faces))
     table = Faces(
         kind=tuple(face.kind for face in faces),
@@ -68,6 +65,19 @@ def edges_of_3dm(model: Model) -> EdgeGraph:
         walked=np.ones(len(faces), dtype=bool),
     )
     return EdgeGraph(model.path, model.unit, table, uses_of(table, rows, records), dict(model.others))
+
+
+def edges_in_order(face: RhinoFace) -> list[tuple[int, int, bool]]:
+    """Return what `RhinoFace` holds of each trim, as edges are numbered: in walking order, loop by loop."""
+    if face.trims is None:
+        return []
+    # Loops run as the surface looks; faces that look the other way are walked backwards.
+    return [trim for loop in face.trims[1] for trim in (reversed(loop) if face.trims[0] else loop)]
+
+
+def distance_from(surface: BSplineSurface, curve: Curve) -> float:
+    """Return how far a curve is from a surface, by samples."""
+    return float(_projected(surface, [curve], np.inf)[0][0])
 
 
 def _size(curves: Sequence[Curve]) -> float:
@@ -87,11 +97,7 @@ def _projected(surface: BSplineSurface, curves: Sequence[Curve], far: float) -> 
         points.append(point)
         slopes.append(slope)
     samples = np.concatenate(points)
-    uv, away = _feet(surface, samples, _STARTS)
-    # Between two walls of one surface the nearest places of the grid may all lie on the wrong one.
-    lost = away > far / 10
-    if lost.any():
-        uv[lost], away[lost] = _feet(surface, samples[lost], _MORE_STARTS)
+    uv, away = feet_on(surface, samples, far)
     jet = np.stack([surface.evaluate(uv[:, 0], uv[:, 1], *order) for order in _ORDERS], axis=1)
     # The part of the edge's derivative that the surface can follow.
     along = np.concatenate(slopes)
@@ -106,6 +112,16 @@ def _projected(surface: BSplineSurface, curves: Sequence[Curve], far: float) -> 
         else (float(off[k]), *_NOTHING)
         for k in range(len(curves))
     ]
+
+
+def feet_on(surface: BSplineSurface, points: FloatArray, far: float) -> tuple[FloatArray, FloatArray]:
+    """Return parameters of the nearest points, shape (K, 2), and distances; what is `far` from it is not on it."""
+    uv, away = _feet(surface, points, _STARTS)
+    # Between two walls of one surface the nearest places of the grid may all lie on the wrong one.
+    lost = away > far / 10
+    if lost.any():
+        uv[lost], away[lost] = _feet(surface, points[lost], _MORE_STARTS)
+    return uv, away
 
 
 def _feet(surface: BSplineSurface, points: FloatArray, starts: int) -> tuple[FloatArray, FloatArray]:

@@ -8,7 +8,6 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import Any
 
 from mutants.choice import QUICK, Table, chosen_for, digest_of_test, measure
 from mutants.in_memory import Host, run_in_memory
@@ -114,30 +113,38 @@ def decide(
         next_one()
 
 
-def decide_all(root: Path, wanted: list[Mutant], accepted: list[dict[str, Any]], slots: list[Slot]) -> None:
+def decide_all(root: Path, wanted: list[Mutant], accepted: Path, slots: list[Slot]) -> None:
     """Run in memory what is not known, and in a process of its own who is alive after that and not explained."""
     folder = slots[0].folder.parent
     results = folder / "results.jsonl"
     table = measure(root, folder / "coverage", slots)
     for test in table.failed:
         print(f"left out, fails without any mutant: {test}")
-    explained = {m.key for m in wanted if reason(accepted, m)}
+    explained = _explained(accepted, wanted)
     bounds = {m: BOUND_EXPLAINED if m.key in explained else BOUND_IN_MEMORY for m in wanted}
     chosen = {m.key: chosen_for(m, table, root, bounds[m]) for m in wanted}
     records = read_records(results)
     to_show = {m: still_to_show(root, m, records.get(m.key), chosen[m.key]) for m in wanted}
-    if open_ones := {m: tests for m, tests in to_show.items() if tests is not None}:
+    # Who is not known at all comes before who passed other tests already.
+    in_order = sorted(wanted, key=lambda m: m.key in records)
+    if open_ones := {m: tests for m in in_order if (tests := to_show[m]) is not None}:
         files = sorted({test.partition("::")[0] for tests in open_ones.values() for test in tests})
         hosts = [Host(slot, files, ["-m", QUICK]) for slot in slots]
         way = Way(partial(run_in_memory, hosts=hosts), len(hosts), "alive")
         decide(root, open_ones, chosen, table, way, results)
         for host in hosts:
             host.end()
-    records = read_records(results)
+    # Meanwhile reasons may have been written down.
+    records, explained = read_records(results), _explained(accepted, wanted)
     alive = [m for m in wanted if is_to_confirm(records.get(m.key), explained=m.key in explained)]
     chosen |= {m.key: chosen_for(m, table, root, BOUND) for m in alive}
     way = Way(partial(run_all, slots=slots), len(slots), "survived")
     decide(root, {m: chosen[m.key] for m in alive}, chosen, table, way, results)
+
+
+def _explained(accepted: Path, mutants: list[Mutant]) -> set[str]:
+    entries = read_accepted(accepted)
+    return {m.key for m in mutants if reason(entries, m)}
 
 
 def _first(tests: list[str], killers: list[str]) -> list[str]:
@@ -160,11 +167,11 @@ def main() -> int:
     words = parser.parse_args()
     taken, left_out = all_mutants(ROOT, ROOMS, SAMPLE)
     wanted = [m for m in taken if any(Path(m.file).is_relative_to(p) for p in words.paths)]
-    accepted = read_accepted(Path(__file__).parent / "accepted.toml")
+    accepted = Path(__file__).parent / "accepted.toml"
     if not words.report:
         load_libraries()
         decide_all(ROOT, wanted, accepted, make_slots(ROOT, FOLDER, words.workers))
-    return report(wanted, left_out, read_records(FOLDER / "results.jsonl"), accepted)
+    return report(wanted, left_out, read_records(FOLDER / "results.jsonl"), read_accepted(accepted))
 
 
 if __name__ == "__main__":

@@ -218,7 +218,7 @@ def _at(table: Table, file: str, first: int, last: int) -> set[str]:
 @cache
 def _uses(root: Path, file: str, name: str) -> list[tuple[str, int, int]]:
     """Return the statements of functions that use a module's name; those of names defined by it, too."""
-    files = [file] if name.startswith("_") else [p.relative_to(root).as_posix() for p in _sources(root)]
+    files = [file, *_importers(root, file, name)]
     found = []
     for path in files:
         for statement, is_inner, last, names in _statements(root / path):
@@ -232,6 +232,26 @@ def _uses(root: Path, file: str, name: str) -> list[tuple[str, int, int]]:
                 found += [use for other in sorted(others) for use in _uses(root, path, other)]
             else:
                 found.append((path, 1, 10**6))
+    return found
+
+
+def _importers(root: Path, file: str, name: str) -> list[str]:
+    """Return the other files that import a name from a file, or from its room's face."""
+    if name.startswith("_"):
+        return []
+    module, paths = Path(file), [p.relative_to(root).as_posix() for p in _sources(root)]
+    homes = {module.stem, module.parent.name}
+    return [path for path in paths if path != file and homes & _imported(root / path).get(name, set())]
+
+
+@cache
+def _imported(path: Path) -> dict[str, set[str]]:
+    """Return the last parts of the modules that each name is imported from."""
+    found: dict[str, set[str]] = defaultdict(set)
+    for node in ast.walk(ast.parse(path.read_bytes())):
+        if isinstance(node, ast.ImportFrom) and node.module:
+            for alias in node.names:
+                found[alias.name].add(node.module.rpartition(".")[2])
     return found
 
 

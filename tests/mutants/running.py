@@ -165,7 +165,8 @@ def end_with_parent() -> None:
 
 def confine(slot: Slot, job: Job) -> None:
     """Give this process, a child, a group and a log of its own, and limits."""
-    os.setsid()
+    # No session of its own: on Linux the priority of the run (its autogroup's) would not hold for it.
+    os.setpgid(0, 0)
     end_with_parent()
     signal.signal(signal.SIGINT, signal.SIG_DFL)
     limit = int(job.seconds) + 1

@@ -11,7 +11,7 @@ from semispline.papers.baselines.registry import method
 from semispline.papers.lin2014.examples.section5 import FIGURES
 from semispline.papers.lin2014.figures import blends as figures_blends
 from semispline.solver.errors import FileError, OptionError
-from semispline.solver.pictures.plotting import BASE_COLOR, BLEND_COLOR, render
+from semispline.solver.pictures.plotting import BASE_COLOR, BLEND_COLOR, Drawn, render
 from semispline.solver.splines.surfaces import BSplineSurface, SemiStructuredSurface
 
 NAMES = [*(f"figure-{i}" for i in range(4, 12)), "figure-10-exact", "figure-11-exact"]
@@ -89,8 +89,8 @@ def flat(shift):
 
 def test_stripes_take_the_colours_of_their_surfaces_and_show_on_planes_from_near_by(tmp_path):
     path = tmp_path / "z.png"
-    colors = {"colors": [BASE_COLOR, BLEND_COLOR], "field": "zebra", "towards_eye": (0, 0, 1), "size": (400, 300)}
-    render([flat(0), flat(1)], path, eye_distance=0.6, **colors)
+    scene = [Drawn(flat(0), BASE_COLOR), Drawn(flat(1), BLEND_COLOR)]
+    render(scene, path, eye_distance=0.6, field="zebra", towards_eye=(0, 0, 1), size=(400, 300))
     image = imread(path)[..., :3]
     inked = image.min(axis=2) < 0.99
     columns = np.flatnonzero(inked.any(axis=0))

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from helpers.facing import random_facing
-from semispline import Base, BSplineSurface, FoldError, OptionError, blend, measure_fairness
+from semispline import Base, BlendOptions, BSplineSurface, FoldError, OptionError, blend, measure_fairness
 from semispline.papers.reproduction.families.suite import shape_problem
-from semispline.solver.blending import candidates, shape_parameters
+from semispline.solver.blending import candidates, pipeline, shape_parameters
 from semispline.solver.blending.fair_search import FairSolution, solve_fair
 from semispline.solver.blending.linear_problem import gap_ratio
 from semispline.solver.blending.pipeline import state_problem
@@ -50,6 +50,55 @@ def test_a_middle_curve_that_is_fairer_by_a_twentieth_is_taken():
     assert (one.middle_curves, one.verdict) == (1, "chosen")
     assert one.fairness == result.objective.value < 0.95 * min(c.fairness for c in without)
     assert result.shape.turn.degrees < blend(a, b, middle_curves=0).shape.turn.degrees
+
+
+# Each ends at its window without a middle curve; with one the third is fairer by a third alone.
+@pytest.mark.parametrize(
+    ("seed", "searched"),
+    [
+        (4, [(5, 0, "constant"), (5, 1, "constant")]),
+        (103, [(5, 0, "constant"), (5, 1, "constant"), (5, 1, "constant")]),
+        (159, [(5, 0, "constant"), (5, 1, "constant"), (5, 0, "constant")]),
+    ],
+)
+def test_beside_a_middle_curve_that_is_much_fairer_no_lower_window_is_searched(seed, searched):
+    result = blend(*facing(seed))
+    assert tried(result) == searched
+    assert result.options.middle_curves == 1
+    first, middle = result.candidates[:2]
+    assert (middle.fairness < 0.5 * first.fairness) is (seed != 159)
+    assert not result.active_bounds
+
+
+def test_a_little_fairness_is_not_worth_a_warning():
+    a, b = facing(265)
+    result, middle = blend(a, b), blend(a, b, middle_curves=1)
+    (text,) = middle.warnings
+    assert "loops or waves" in text
+    assert not result.warnings
+    assert result.options.middle_curves == 0
+    assert 0.9 * result.objective.value < middle.objective.value < 0.95 * result.objective.value
+    chosen, left = result.candidates
+    assert chosen.verdict == "chosen"
+    assert left.middle_curves == 1
+    assert left.verdict == f"fairness {middle.objective.value:.4g} is less, but {text}"
+    assert result.edges == middle.edges
+    assert result.flipped == middle.flipped
+
+
+def test_what_is_warned_of_either_way_keeps_its_middle_curve():
+    # A pair of whatever shape, and a warning that both of them carry.
+    a, b = facing(103)
+    one = blend(a, b)
+    warned = replace(one, warnings=("loud",))
+    assert pipeline._unwarned(a, b, BlendOptions(), one) is one
+    assert pipeline._unwarned(a, b, BlendOptions(), warned).options.middle_curves == 0
+    assert pipeline._unwarned(a, b, BlendOptions(middle_curves=1), warned) is warned
+    # That of least energy was not chosen for its fairness.
+    energy = replace(blend(a, b, alpha="energy"), warnings=("loud",))
+    assert pipeline._unwarned(a, b, BlendOptions(alpha="energy"), energy) is energy
+    # Too small a box leaves both at its end.
+    assert pipeline._unwarned(a, b, BlendOptions(box=(1.3, 1.4)), warned) is warned
 
 
 @pytest.mark.parametrize("options", [{"degree_u": 4}, {"degree_u": 3}, {"continuity": "G3"}, {"continuity": "G4"}])
@@ -112,9 +161,9 @@ def test_a_linear_alpha_is_tried_from_a_ratio_on(ratio, is_tried):
 
 def test_a_wide_wedge_takes_a_linear_alpha_and_says_what_it_costs():
     result, constant = blend(*wedge(5.0)), blend(*wedge(5.0), alpha_v="constant")
-    # A loop stops the search for a constant one, so that the quartic is tried, too.
-    assert tried(result) == [(5, 0, "constant"), (4, 0, "constant"), (5, 0, "linear")]
-    assert [c.verdict == "chosen" for c in result.candidates] == [False, False, True]
+    # A loop stops the search for a constant one: it would stop the quartic's as well.
+    assert tried(result) == [(5, 0, "constant"), (5, 0, "linear")]
+    assert [c.verdict == "chosen" for c in result.candidates] == [False, True]
     assert result.objective.value < 0.7 * constant.objective.value
     assert result.rows_converted > constant.rows_converted
     low, high = result.alpha2
@@ -320,7 +369,7 @@ def test_a_search_that_a_refusal_stopped_tries_other_layouts_and_says_what_is_le
     result = blend(rough.a, rough.b)
     # Its gap varies too little for a linear alpha to be tried otherwise.
     assert gap_ratio(state_problem(rough.a, rough.b).problem) < 1.5
-    assert tried(result) == [(5, 0, "constant"), (4, 0, "constant"), (5, 0, "linear")]
+    assert tried(result) == [(5, 0, "constant"), (5, 0, "linear")]
     assert result.options.alpha_v == "linear"
     assert result.shape.fairness.value < 0.7 * result.candidates[0].fairness
     (text,) = result.warnings
@@ -343,7 +392,7 @@ def test_a_middle_curve_is_tried_where_a_refusal_stopped_a_constant_alpha():
     rough = shape_problem("rough", 51)
     assert gap_ratio(state_problem(rough.a, rough.b).problem) < candidates.MIDDLE_RATIO
     result = blend(rough.a, rough.b, alpha_v="constant")
-    assert tried(result) == [(5, 0, "constant"), (4, 0, "constant"), (5, 1, "constant")]
+    assert tried(result) == [(5, 0, "constant"), (5, 1, "constant")]
     assert result.options.middle_curves == 1
     assert not result.warnings
 

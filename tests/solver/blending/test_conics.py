@@ -13,7 +13,7 @@ from helpers.knot_lines import least_continuity
 from helpers.same_surface import departure
 from semispline import Base
 from semispline.derivations.circles import circle_points
-from semispline.solver.blending.conics import _boost, cured_conic, recognised_conic, same_arcs
+from semispline.solver.blending.conics import Conic, _boost, cured_conic, recognised_conic, same_arcs
 from semispline.solver.blending.knot_lines import knot_lines
 from semispline.solver.blending.matching import matched_edges
 from semispline.solver.splines import Basis, clamped, elevation_matrix, refinement_matrix
@@ -203,6 +203,31 @@ def test_a_conic_is_named_by_what_it_is(frame, kind):
     knots, points = standard_arcs([0.3, 0.9, 2.0], [1, 2, 0.5])
     conic = recognised_conic(images(points, frame), basis_of(knots))
     assert conic.kind == kind
+
+
+# A hundred-millionth of the squares of both radii, 2: as much as twice their product, or as the squares differ.
+@pytest.mark.parametrize(("times", "kind"), [(0.9, "circle"), (-0.9, "circle"), (1.1, "ellipse"), (-1.1, "ellipse")])
+@pytest.mark.parametrize("skew", [True, False])
+def test_radii_make_a_circle_up_to_their_last_digits(skew, times, kind):
+    y = [times * 1e-8, 1, 0] if skew else [0, 1 - times * 1e-8, 0]
+    conic = Conic(basis_of(np.array([0, 0, 0, 1, 1, 1.0])), np.zeros((3, 3)), TURN, framed([1, 0, 0], y))
+    assert conic.kind == kind
+
+
+@pytest.mark.parametrize(("weight", "is_cured"), [(0.9, True), (1.1, False)])
+def test_a_rim_whose_new_weights_are_not_positive_is_not_cured(weight, is_cured):
+    # At the ends of the arc the weight of the rim is 1 - weight.
+    frame = framed([1, 0, 0], [0, 1, 0], (-weight, 0, 1))
+    conic = Conic(basis_of(np.array([0, 0, 0, 1, 1, 1.0])), np.zeros((3, 3)), TURN, frame)
+    assert (conic.cured_rows(2) is not None) is is_cured
+
+
+@pytest.mark.parametrize("turn", [0.5, -0.5, 2.0, -2.0])
+@pytest.mark.parametrize("start", [0.0, 2.0, 4.0])
+def test_short_arcs_are_recognised_in_both_directions(start, turn):
+    conic = recognised_conic(*ellipse([start, start + turn]))
+    assert conic.turn == pytest.approx(abs(turn), rel=1e-9)
+    assert conic.smooth_rows(1)[1].degree == conic.smooth_rows(2)[1].degree == 6
 
 
 def nine_points():

@@ -28,7 +28,8 @@ def objective(values, refused=None, **options):
     values = np.array(values, dtype=float)
     measured = Measured(values, np.zeros(len(values), dtype=np.int8) if refused is None else np.array(refused))
     table = SimpleNamespace(
-        measure=lambda monomials: measured, with_gradient=lambda monomials: (measured, np.zeros_like(monomials))
+        measure=lambda monomials: measured,
+        with_gradient=lambda monomials, everywhere: (measured, np.zeros_like(monomials)),
     )
     return FairObjective(unknowns, table)
 

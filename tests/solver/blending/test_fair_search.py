@@ -1,63 +1,29 @@
-"""The fairest shape: J and its gradient against other ways to them, and blends whose right shape is known."""
+"""The search for the fairest shape: what it starts from, what it refuses, and where it ends."""
 
-from dataclasses import dataclass, replace
-from pathlib import Path
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from helpers.bases import facing_pair
-from helpers.facing import random_facing
-from helpers.impeller import impeller_pair
+from helpers.sheets import FAIR, QUINTIC, sheets
 from semispline import (
     Base,
     BlendOptions,
-    BSplineCurve,
     BSplineSurface,
     ComputationError,
     OptionError,
     blend,
-    measure_fairness,
-    measure_turn,
-    read_surface,
-    revolve_polynomial,
-    transform,
 )
 from semispline.papers.reproduction.families.open_pairs import open_pair
 from semispline.solver.blending import fair_search
 from semispline.solver.blending.candidates import Layout, _fairer
-from semispline.solver.blending.fair_objective import FairObjective, make_unknowns
 from semispline.solver.blending.fair_search import FairSolution, solve_fair
 from semispline.solver.blending.fairness_grid import NODES_U, across, along
 from semispline.solver.blending.fairness_table import FOLDS, LOOPS, FairnessTable
 from semispline.solver.blending.pipeline import state_problem
-from semispline.solver.blending.projected import Point, descend
 from semispline.solver.blending.shape_parameters import Found, found_fair
-from semispline.solver.blending.warnings import fairness_warning
-
-CASES = Path(__file__).parents[2] / "cases"
-QUINTIC = {"degree_u": 5, "middle_curves": 0}
-FAIR = QUINTIC | {"alpha": "fair"}
-
-
-def case(name, edge):
-    return Base(read_surface(CASES / f"{name}.json"), edge)
-
-
-def sheet(x, height, slope, *, bend=0.3, inner=(), degree=3):
-    """A curved sheet from x on whose edge u0 rises by `slope`; knots along v as given."""
-    n = degree + 1 + len(inner)
-    v = np.linspace(0, 2, n)
-    rows = [[[x + i * 0.5, y, height + slope * i * 0.5 + bend * np.sin(2 * y + i)] for y in v] for i in range(4)]
-    knots = [0.0] * (degree + 1) + list(inner) + [1.0] * (degree + 1)
-    return BSplineSurface(3, degree, [0, 0, 0, 0, 1, 1, 1, 1], knots, rows)
-
-
-def sheets(**more):
-    """Two sheets that face each other: the first one turned round."""
-    first = transform(sheet(0.0, 0.0, 0.2, **more), np.diag([-1.0, 1.0, 1.0]))
-    return Base(first, "u0"), Base(sheet(1.2, 0.6, 0.4, bend=0.2, inner=(0.4,)), "u0")
 
 
 def tables(pair, times=1, nodes_u=NODES_U, **options):
@@ -73,15 +39,6 @@ def j(table, monomials):
     return float(table.measure(np.array(monomials)[None]).values[0])
 
 
-@pytest.mark.parametrize("inner", [(), (0.5, 0.5)])
-def test_what_is_minimised_is_what_the_judge_measures(inner):
-    result = blend(*sheets(inner=inner), **FAIR)
-    measured = measure_fairness(result.surface)
-    assert measured.settled
-    assert result.objective.value == pytest.approx(measured.value, rel=0.01)
-    assert (measured.jumps > 1e-3) is bool(inner)
-
-
 def test_the_end_is_a_minimum_of_the_search_and_p2_makes_it_lower():
     problem = state_problem(*sheets(), **FAIR).problem
     with_p2, without = solve_fair(problem), solve_fair(state_problem(*sheets(), **FAIR, p2="zero").problem)
@@ -94,32 +51,6 @@ def test_the_end_is_a_minimum_of_the_search_and_p2_makes_it_lower():
     for factor in (0.9, 1.1):
         x, y = without.a * factor / unit_a, without.b / unit_b
         assert j(table, [1.0, 0.0, x, x**2, 0.0, y, y**2]) > without.value
-
-
-def refined(problem, found, times):
-    """The search gone on from its end on a grid that is finer; and J at its end there."""
-    layers, exponents = problem.shape_layers()
-    unknowns = make_unknowns(problem, exponents)
-    (unit_a, unit_b), (p2_a, p2_b) = problem.natural, found.p2
-    end = np.array([np.log(found.a / unit_a), p2_a / unit_a, np.log(found.b / unit_b), p2_b / unit_b])
-    end = np.clip(end, unknowns.low, unknowns.high)
-    grid = across(problem.form.u, times * NODES_U), along(problem.rows, times)
-    objective = FairObjective(unknowns, FairnessTable(problem, layers, *grid))
-    at = objective.point(end)
-    further = descend(objective, at, unknowns.low, unknowns.high, np.full(4, 0.3), 1e-4)
-    return objective.j(end, at.value), np.exp(further.x - end)[[0, 2]]
-
-
-def test_a_finer_grid_chooses_the_same(whole):
-    # At least 97 of 100 choices within 1 %, and every measure.
-    moved = []
-    for k in range(33 if whole else 11):
-        problem = state_problem(*random_facing(np.random.default_rng([7, k])), **FAIR).problem
-        found = solve_fair(problem)
-        measure, choice = refined(problem, found, 4)
-        assert measure == pytest.approx(found.value, rel=0.01)
-        moved.append(np.abs(choice - 1).max())
-    assert sum(x > 0.01 for x in moved) <= 1
 
 
 def test_refused_candidates_are_counted_by_reason():
@@ -168,76 +99,6 @@ def test_higher_orders_tie_p2_to_alpha(order, degree):
         state_problem(*sheets(), **(FAIR | {"continuity": f"G{order}", "degree_u": degree, "p2": "zero"})).problem
     )
     assert found.value < zero.value
-
-
-def test_a_pipe_and_its_cap_are_not_pinched():
-    result = blend(case("pipe_poly", "v1"), case("dome_poly", "v0"), **FAIR)
-    points = result.surface.evaluate_grid(np.linspace(0, 1, 41), np.linspace(*result.surface.domain[1], 61))
-    radius = np.linalg.norm(points[..., :2], axis=-1)
-    assert radius.min() > 4.6
-    assert radius.max() < 5.001
-    assert not result.warnings
-
-
-def test_bells_bulge_and_are_symmetric():
-    low, high = case("bell_low", "u1"), case("bell_high", "u0")
-    result = blend(low, high, **FAIR)
-    u, v = np.linspace(0, 1, 41), np.linspace(*result.surface.domain[1], 61)
-    points = result.surface.evaluate_grid(u, v)
-    radius = np.linalg.norm(points[..., :2], axis=-1)
-    rims = np.linalg.norm(points[[0, -1], :, :2], axis=-1)
-    assert radius.min() >= rims.min() - 1e-9
-    assert radius.max() > 2.3
-    np.testing.assert_allclose(radius, radius[::-1], atol=1e-4)
-    assert result.alpha2 == pytest.approx(result.beta2, rel=1e-3)
-    assert not result.active_bounds
-
-
-def test_two_pipes_of_one_radius_are_joined_by_that_pipe():
-    line = BSplineCurve(3, [0] * 4 + [1] * 4, [[5, 0, z] for z in (0, 1, 2, 3)])
-    pipe = revolve_polynomial(line, [0, 0, 0], [0, 0, 1], 360, 1e-6).surface
-    far = transform(pipe, np.eye(3), [0, 0, 13])
-    edges = [(Base(pipe, edge), Base(far, other)) for edge, other in (("u1", "u0"), ("v1", "v0"))]
-    a, b = next((a, b) for a, b in edges if np.ptp(a.derivative(np.array([0.1, 0.6]), 0, 0)[:, 2]) < 1e-9)
-    surface = blend(a, b, **FAIR).surface
-    points = surface.evaluate_grid(np.linspace(0, 1, 31), np.linspace(*surface.domain[1], 41))
-    np.testing.assert_allclose(np.linalg.norm(points[..., :2], axis=-1), 5.0, rtol=0.01)
-
-
-def test_what_is_flat_takes_the_arc():
-    knots = [0, 0, 1, 1]
-    left = BSplineSurface(1, 1, knots, knots, [[[0, 0, 0], [0, 1, 0]], [[1, 0, 0], [1, 1, 0]]])
-    right = BSplineSurface(1, 1, knots, knots, [[[3, 0, 0], [3, 1, 0]], [[5, 0, 0], [5, 1, 0]]])
-    result = blend(Base(left, "u1"), Base(right, "u0"), **FAIR)
-    # Gap 2 over speeds 1 and 2, and the arc of a straight way is its chord.
-    assert (result.alpha2, result.beta2) == pytest.approx((2.0, 1.0), rel=1e-4)
-    assert result.objective.value == pytest.approx(0.0, abs=1e-9)
-
-
-def test_the_real_pair_turns_evenly():
-    result = blend(*impeller_pair(), **FAIR)
-    assert measure_turn(result.surface).degrees < 15
-    assert not result.warnings
-
-
-def same_points(one, two, u, v, **tolerance):
-    np.testing.assert_allclose(one.evaluate_grid(u, v), two, **tolerance)
-
-
-def test_units_place_order_and_parameters_do_not_matter():
-    a, b = sheets()
-    first = blend(a, b, **FAIR)
-    u, v = np.linspace(0, 1, 9), np.linspace(0, 1, 7)
-    points = first.surface.evaluate_grid(u, v)
-    again = blend(a, b, **FAIR)
-    np.testing.assert_array_equal(again.surface.evaluate_grid(u, v), points)
-    scaled = [Base(transform(base.surface, 1e3 * np.eye(3)), base.edge) for base in (a, b)]
-    same_points(blend(*scaled, **FAIR).surface, 1e3 * points, u, v, rtol=0, atol=1e-5 * 1e3)
-    moved = [Base(transform(base.surface, np.eye(3), [1e3, 0, 0]), base.edge) for base in (a, b)]
-    same_points(blend(*moved, **FAIR).surface, points + np.array([1e3, 0, 0]), u, v, rtol=0, atol=1e-5)
-    swapped = blend(b, a, **FAIR)
-    assert not swapped.flipped
-    same_points(swapped.surface, points[::-1], u, v, rtol=0, atol=1e-5)
 
 
 @pytest.mark.parametrize(
@@ -338,6 +199,25 @@ def test_what_is_known_goes_to_the_fine_grid_alone(monkeypatch):
     assert gone[-1][2] == 2
 
 
+def test_beside_what_is_known_only_better_starts_are_followed():
+    grid = SimpleNamespace(values=lambda y: np.abs(y[:, 0]))
+    starts = [np.array([x]) for x in (3.0, -0.5, 1.0, 0.25, np.inf)]
+    assert fair_search._better(grid, starts, np.array([1.0])) == [starts[1], starts[3]]
+    assert fair_search._better(grid, [], np.array([1.0])) == []
+    # Where it is refused itself, all that are not.
+    assert fair_search._better(grid, starts, np.array([np.inf])) == starts[:4]
+
+
+@pytest.mark.parametrize("condoned", [(), ("folds",)])
+def test_what_was_let_pass_is_no_reason_to_follow_fewer_starts(monkeypatch, condoned):
+    problem = state_problem(*sheets(), **FAIR).problem
+    known = replace(solve_fair(problem), condoned=condoned)
+    asked = []
+    monkeypatch.setattr(fair_search, "_better", lambda grid, starts, than: asked.append(than) or starts)
+    solve_fair(problem, known)
+    assert len(asked) == (not condoned)
+
+
 def test_a_candidate_that_passes_comes_before_a_fairer_one_that_was_let_pass():
     solutions = [
         FairSolution(1.0, 1.0, (0.0, 0.0), value, 0.0, 1, {}, condoned)
@@ -357,99 +237,6 @@ def test_a_given_alpha_stays_and_a_box_replaces_the_window():
     assert any("at its lower bound" in text for text in narrow.warnings)
 
 
-@pytest.fixture(scope="module")
-def narrow_pair():
-    """Quartic bases with knots far from uniform: two nodes on each span see a twentieth of J."""
-    return case("narrow-spans-a", "u1"), case("narrow-spans-b", "u0")
-
-
-def test_where_spans_are_narrow_the_grid_is_refined_until_it_settles(narrow_pair):
-    found = solve_fair(state_problem(*narrow_pair, **FAIR, continuity="G1").problem)
-    assert found.settled
-    result = blend(*narrow_pair, continuity="G1", middle_curves=0)
-    # Measured by the judge. The blind search stopped at 25 000.
-    assert result.shape.fairness.value < 20_000
-    assert result.objective.value == pytest.approx(result.shape.fairness.value, rel=0.02)
-    assert "not settled" not in result.objective.known
-    assert not [w for w in result.warnings if "was minimised" in w]
-
-
-def test_what_does_not_settle_is_said(narrow_pair, monkeypatch):
-    # With the first of the finer grids alone.
-    monkeypatch.setattr(fair_search, "_MOST", 1)
-    result = blend(*narrow_pair, continuity="G1")
-    assert "not settled" in result.objective.known
-    (said,) = [w for w in result.warnings if "was minimised" in w]
-    assert f"{result.objective.value:.3g}" in said
-    assert f"{result.shape.fairness.value:.3g}" in said
-
-
-@dataclass
-class Wells:
-    """A stand-in for a grid: two wells, at -1 and 1, of given depths."""
-
-    left: float
-    right: float
-    table = SimpleNamespace(size=100, refusable=(FOLDS, LOOPS))
-    unknowns = SimpleNamespace(logarithmic=np.array([True]), low=np.array([-3.0]), high=np.array([3.0]))
-
-    def __call__(self, x):
-        side = np.sign(x[0])
-        return float((self.right if side > 0 else self.left) + (x[0] - side) ** 2), 2 * (x - side)
-
-    def values(self, x):
-        return np.array([self(y)[0] for y in x])
-
-    def point(self, x):
-        return Point(x, *self(x), 2 * np.eye(1))
-
-    def at(self, point):
-        return self.point(point.x)
-
-
-@pytest.mark.parametrize(
-    ("right", "end"),
-    # Within a fifth the search goes on where it is; past that the other well is looked at, which is lower.
-    [(0.005, 1.0), (0.19, 1.0), (0.21, -1.0)],
-)
-def test_a_coarse_grid_that_was_blind_is_ranked_anew(right, end):
-    found = Wells(0.1, 0.0).point(np.array([1.0]))
-    made = []
-
-    def finer(times):
-        made.append(times)
-        return Wells(0.1, right)
-
-    at, settled = fair_search._settled(found, np.array([1.1]), finer, np.array([[-1.1], [1.1]]))
-    assert at.x == pytest.approx([end], abs=1e-3)
-    assert at.value == pytest.approx(min(right, 0.1 if end < 0 else right), abs=1e-6)
-    assert settled
-    assert made == ([2] if right == 0.005 else [2, 4])
-
-
-def test_grids_that_never_agree_do_not_settle():
-    made = []
-
-    def finer(times):
-        made.append(times)
-        return Wells(9.0, float(times))
-
-    at, settled = fair_search._settled(
-        Wells(9.0, 0.0).point(np.array([1.0])), np.array([1.1]), finer, np.array([[1.1]])
-    )
-    assert not settled
-    assert made == [2, 4, 8, 16]
-    assert at.value == pytest.approx(16.0)
-
-
-@pytest.mark.parametrize(
-    ("minimised", "measured", "warned"),
-    [(100, 109, False), (100, 111, True), (111, 100, True), (0.09, 5, False), (5, 0.09, False), (None, 5, False)],
-)
-def test_the_limits_of_the_warning(minimised, measured, warned):
-    assert bool(fairness_warning(minimised, measured)) is warned
-
-
 @pytest.mark.parametrize(
     ("options", "name"),
     [
@@ -463,26 +250,6 @@ def test_curvature_that_jumps_across_is_not_searched(options, name):
     # Only where it is searched.
     for alpha in ("natural", 1.0, "energy"):
         assert blend(*sheets(), alpha=alpha, **options).surface is not None
-
-
-def near_double(apart):
-    """A sheet with two knots so far apart in the middle of its edge, and a smooth one."""
-    knots = [0, 0, 0, 0, 1, 1, 1, 1]
-    x, y = np.mgrid[0:1:4j, 0:1:6j]
-    first = BSplineSurface(
-        3, 3, knots, [0, 0, 0, 0, 0.5, 0.5 + apart, 1, 1, 1, 1], np.dstack([x, y, 0.1 * np.sin(5 * y) * x])
-    )
-    x, y = np.mgrid[0:1:4j, 0:1:4j]
-    return Base(first, "u1"), Base(BSplineSurface(3, 3, knots, knots, np.dstack([x + 1.5, y, 0.3 + 0.1 * x**2])), "u0")
-
-
-@pytest.mark.parametrize("exponent", [3, 4, 5, 6, 7, 8, 9, 10, 11, 12])
-def test_nearly_double_knots_choose_what_double_ones_do(exponent):
-    double, near = blend(*near_double(0.0), **FAIR), blend(*near_double(10.0**-exponent), **FAIR)
-    assert double.shape.fairness.jumps > 0.01 * double.shape.fairness.value
-    assert (near.alpha2, near.beta2) == pytest.approx((double.alpha2, double.beta2), rel=0.02)
-    for value in (near.shape.fairness.value, near.objective.value):
-        assert value == pytest.approx(double.shape.fairness.value, rel=0.05)
 
 
 def test_double_knots_of_degree_four_are_searched():

@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 
 from helpers.facing import random_facing
-from semispline import Base, BSplineSurface, blend, transform
+from helpers.sheets import sheets
+from semispline import Base, BSplineSurface, blend
+from semispline.solver.blending import fairness_table
 from semispline.solver.blending.fair_search import solve_fair
 from semispline.solver.blending.fairness_grid import NODES_U, across, along, rough_along
 from semispline.solver.blending.fairness_table import FOLDS, LOOPS, FairnessTable, narrow_width
@@ -13,20 +15,6 @@ from semispline.solver.blending.refusals import needed_turn, turned
 from semispline.solver.splines import Basis
 
 QUINTIC = {"degree_u": 5, "middle_curves": 0, "alpha": "fair"}
-
-
-def sheet(x, height, slope, *, bend=0.3, inner=()):
-    """A curved sheet from x on whose edge u0 rises by `slope`; knots along v as given."""
-    v = np.linspace(0, 2, 4 + len(inner))
-    rows = [[[x + i * 0.5, y, height + slope * i * 0.5 + bend * np.sin(2 * y + i)] for y in v] for i in range(4)]
-    knots = [0.0] * 4 + list(inner) + [1.0] * 4
-    return BSplineSurface(3, 3, [0, 0, 0, 0, 1, 1, 1, 1], knots, rows)
-
-
-def sheets(**more):
-    """Two sheets that face each other: the first one turned round."""
-    first = transform(sheet(0.0, 0.0, 0.2, **more), np.diag([-1.0, 1.0, 1.0]))
-    return Base(first, "u0"), Base(sheet(1.2, 0.6, 0.4, bend=0.2, inner=(0.4,)), "u0")
 
 
 def table_of(pair, *, nodes_u=NODES_U, times=1, least_cosine=0.5, **options):
@@ -104,6 +92,32 @@ def test_what_is_reversed_folds():
     table, _ = table_of(strips())
     refused = table.measure(np.array([monomials(1, 1), monomials(4, 4), monomials(0.3, 0.3)])).refused
     assert refused.tolist() == [0, FOLDS, 0]
+
+
+def test_what_is_refused_is_measured_where_that_is_wanted_alone(monkeypatch):
+    table, _ = table_of(sheets())
+    good, bad = monomials(0.5, 0.7), monomials(8, 8)
+    expected, slope = table.with_gradient(np.array([bad]))
+    assert np.isfinite(expected.values).all()
+    assert slope.any()
+    taken = []
+
+    def watched(name):
+        function = getattr(fairness_table, name)
+        return lambda planes: taken.append(name) or function(planes)
+
+    for name in ("fairness", "fairness_pullback"):
+        monkeypatch.setattr(fairness_table, name, watched(name))
+    # Beside one that is not refused it is measured as well.
+    for batch, measures in (([bad], False), ([bad, bad], False), ([good, bad], True)):
+        measured, gradient = table.with_gradient(np.array(batch), everywhere=False)
+        again = table.measure(np.array(batch))
+        assert taken == (["fairness_pullback", "fairness"] if measures else [])
+        for one in (measured, again):
+            assert (one.refused != 0).tolist() == [row is bad for row in batch]
+            assert np.isfinite(one.values).all() == measures
+        assert gradient.shape == (len(batch), 7)
+        assert gradient.any() == measures
 
 
 @pytest.mark.parametrize("seed", range(6))

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from semispline.solver.blending.projected import Point, _updated, convex, descend, unbound
+from semispline.solver.blending.projected import Point, _updated, convex, descend, descend_abreast, unbound
 
 WIDE = np.full(2, -np.inf), np.full(2, np.inf)
 
@@ -89,6 +89,29 @@ def test_a_way_that_ends_by_itself_is_not_shut():
         return 1.0, np.array([1.0, 0.0])
 
     assert descend(noise, started(noise, [0.0, 0.0]), *WIDE, np.ones(2), 1e-9).shut is None
+
+
+def test_ways_side_by_side_end_where_each_would_alone():
+    batches = []
+
+    def together(places):
+        batches.append(len(places))
+        found = [rosenbrock(x) for x in places]
+        return np.array([value for value, _ in found]), np.array([gradient for _, gradient in found])
+
+    # The second one has nothing to do; the others need not take the same number of steps.
+    starts = [started(rosenbrock, x) for x in ([-1.2, 1.0], [1.0, 1.0], [0.5, 0.7])]
+    ends = descend_abreast(together, starts, *WIDE, np.ones(2), 1e-8)
+    calls = []
+    for start, end in zip(starts, ends, strict=True):
+        function, places = counted(rosenbrock)
+        alone = descend(function, start, *WIDE, np.ones(2), 1e-8)
+        np.testing.assert_array_equal(end.x, alone.x)
+        assert end.value == alone.value
+        calls.append(len(places))
+    assert calls[1] == 0
+    assert batches == [2] * min(calls[0], calls[2]) + [1] * abs(calls[0] - calls[2])
+    assert descend_abreast(together, [], *WIDE, np.ones(2), 1e-8) == []
 
 
 def test_convex_keeps_what_is_convex():

@@ -90,3 +90,18 @@ def test_what_is_said_of_derivatives_that_round(order, said):
 
 def test_what_was_found_without_a_search_took_no_iterations():
     assert Found(1.0, 1.0, "linear").iterations == 0
+
+
+@pytest.mark.parametrize(("slope", "least", "most"), [(1.0, 0.0, 5e-11), (3e-5, 0.0, 5e-11), (3e-7, 1e-10, 1e-8)])
+def test_an_energy_counts_as_zero_below_a_million_millionth_of_its_terms(slope, least, most):
+    # It goes with the square of the slope; the bound is an eighth of 1e-10 of it below, or of 1e-22 of the terms.
+    a, b = (
+        BSplineSurface(1, 1, LINE, LINE, [[[x + t, y, s * t * (1 + y)] for y in (0, 1)] for t in (0, 1)])
+        for x, s in ((0, 0.0), (3, slope))
+    )
+    options = {"continuity": "G1", "alpha": "energy", "degree_u": 3, "middle_curves": 0, "v_scale": "length"}
+    problem = state_problem(Base(a, "u1"), Base(b, "u0"), **options).problem
+    found = reduced.solve_reduced(problem)
+    energy = float(problem.energy_products(problem.control_points(found.a, found.b)[None])[0, 0])
+    assert least <= (energy - found.certificate.bound) / energy <= most
+    assert 0 < found.gap < 5e-11

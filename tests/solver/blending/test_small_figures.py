@@ -135,8 +135,12 @@ def test_a_grid_of_more_than_2000_nodes_has_one_between(monkeypatch, spans, acro
         cosines.append(objective.table.least_cosine)
         return start
 
+    def abreast(objective, starts, tolerance):
+        return [descended(objective, start, tolerance) for start in starts]
+
     monkeypatch.setattr(fair_search, "across", told)
     monkeypatch.setattr(fair_search, "_descended", descended)
+    monkeypatch.setattr(fair_search, "_descended_abreast", abreast)
     # Smooth rows: no line is crossed.
     knots = clamped(np.arange(1, spans) / spans, 3, 0.0, 1.0)
     y = [knots[i : i + 3].mean() for i in range(1, spans + 4)]
@@ -223,7 +227,8 @@ class Wells:
 def test_of_the_ends_of_two_starts_the_finer_grid_says_which_is_best(monkeypatch):
     found = []
     monkeypatch.setattr(fair_search, "FairObjective", Wells)
-    monkeypatch.setattr(fair_search, "_descended", lambda objective, start, tolerance: start)
+    for name in ("_descended", "_descended_abreast"):
+        monkeypatch.setattr(fair_search, name, lambda objective, start, tolerance: start)
 
     def solution(problem, unknowns, point, *_):
         found.append(point.x)
@@ -232,6 +237,36 @@ def test_of_the_ends_of_two_starts_the_finer_grid_says_which_is_best(monkeypatch
     monkeypatch.setattr(fair_search, "_solution", solution)
     fair_search.solve_fair(state_problem(*strips()).problem)
     assert found[0][0] > 1
+
+
+@pytest.mark.parametrize(("settled_at", "is_taken"), [(0.9, True), (1.1, False)])
+def test_what_is_known_is_taken_where_what_looked_better_ends_worse(monkeypatch, settled_at, is_taken):
+    found = []
+
+    def known_start(problem, unknowns, known):
+        return unknowns.high.copy()
+
+    def settled(at, start, *_):
+        return replace(at, value=settled_at if start[0] > 1.3 else 1.0), True
+
+    def solution(problem, unknowns, point, *_):
+        found.append(point)
+        return known
+
+    known = fair_search.FairSolution(1.0, 1.0, (0.0, 0.0), 0.0, 0.0, 1, {})
+    for name, stub in {
+        "FairObjective": Wells,
+        "_descended": lambda objective, start, tolerance: start,
+        "_descended_abreast": lambda objective, starts, tolerance: starts,
+        "_refined": lambda end, start, levels: end,
+        "_known_start": known_start,
+        "_settled": settled,
+        "_solution": solution,
+    }.items():
+        monkeypatch.setattr(fair_search, name, stub)
+    fair_search.solve_fair(state_problem(*strips()).problem, known)
+    assert bool(found[0].x[0] > 1.3) is is_taken
+    assert found[0].value == (settled_at if is_taken else 1.0)
 
 
 @pytest.mark.parametrize(("orders", "least", "most"), [((2, 2), 2, 5), ((1, 0), 2, 5), ((3, 2), 4, 6), ((4, 4), 5, 9)])

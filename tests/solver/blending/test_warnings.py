@@ -228,6 +228,15 @@ def test_a_search_that_a_refusal_stopped_is_told_of(reason):
         fair = FairSolution(1.0, 1.0, (0.0, 0.0), 1.0, 0.5, 1, {}, stopped_by=stopped_by)
         return Found(1.0, 1.0, "reduced", fair=fair)
 
-    (text,) = stopped_warning(found(reason))
-    assert f"beside this blend lie fairer ones that {reason}, which are refused; try alpha_v linear" in text
-    assert stopped_warning(found("")) == stopped_warning(Found(1.0, 1.0, "casadi")) == ()
+    def said(**options):
+        (text,) = stopped_warning(found(reason), BlendOptions(**options))
+        assert f"beside this blend lie fairer ones that {reason}, which are refused; try " in text
+        return text.partition("try ")[2]
+
+    # What was done is not to be tried.
+    edges = "or edges that face each other more evenly"
+    assert said(alpha_v="constant", middle_curves=0) == f"alpha_v linear, a middle curve, {edges}"
+    assert said(alpha_v="linear", middle_curves=0) == f"a middle curve, {edges}"
+    assert said(alpha_v="constant", middle_curves=1) == f"alpha_v linear, {edges}"
+    for nothing in (found(""), Found(1.0, 1.0, "casadi")):
+        assert stopped_warning(nothing, BlendOptions()) == ()

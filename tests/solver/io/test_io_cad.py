@@ -140,7 +140,7 @@ def test_the_size_that_others_read_is_right(tmp_path, suffix, unit):
     [(".igs", b",2,2HMM,", b",1,2HIN,", "in"), (".step", b"SI_UNIT(.MILLI.,.METRE.)", b"SI_UNIT($,.METRE.)", "m")],
 )
 def test_the_unit_is_read_off_the_header(tmp_path, suffix, declared, instead, unit):
-    data = occ_bytes(patch(), suffix, "mm")
+    data = occ_bytes([patch()], suffix, "mm")
     assert data.count(declared) == 1
     path = tmp_path / f"s{suffix}"
     path.write_bytes(data.replace(declared, instead))
@@ -243,7 +243,7 @@ def test_a_face_on_a_part_of_its_surface_is_trimmed_and_read_whole(tmp_path):
     (face,) = read_occ(path).faces
     assert face.trimmed() is True
     assert_same(face.surface(), patch())
-    path.write_bytes(occ_bytes(patch(), ".brep", "mm"))
+    path.write_bytes(occ_bytes([patch()], ".brep", "mm"))
     assert read_occ(path).faces[0].trimmed() is False
 
 
@@ -289,7 +289,7 @@ def test_what_a_format_cannot_hold_is_refused_and_the_old_file_stays(tmp_path):
 
 
 def test_headers_do_not_tell_who_ran_it(tmp_path):
-    text = occ_bytes(patch(), ".igs", "mm").decode()
+    text = occ_bytes([patch()], ".igs", "mm").decode()
     assert "10Hsemispline" in text
     assert max(map(len, text.splitlines())) == 80
 

@@ -246,7 +246,7 @@ def test_generated_c_refuses_a_rational_base(tmp_path):
 
 
 def test_bytes_of_a_rational_surface_say_so():
-    assert b"RATIONAL_B_SPLINE_SURFACE" in occ_bytes(nine_points(), ".step", "mm")
+    assert b"RATIONAL_B_SPLINE_SURFACE" in occ_bytes([nine_points()], ".step", "mm")
 
 
 @pytest.mark.parametrize(

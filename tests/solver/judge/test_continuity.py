@@ -8,7 +8,7 @@ import pytest
 from helpers.bases import facing_pair, moved
 from helpers.occ import analyse, edge_point
 from semispline import Base, BSplineSurface, EdgeError, map_domain, measure_contact
-from semispline.solver.judge import edge_samples
+from semispline.solver.judge import continuity, correspond, edge_samples, untold
 from semispline.solver.judge.edge_normals import check_regular_edge
 from semispline.solver.splines.knots import uniform_knots
 from semispline.solver.splines.operations import reverse_u, reverse_v, split_u, swap_directions
@@ -216,3 +216,75 @@ def test_how_far_derivatives_along_both_sides_are_apart(monkeypatch, backwards):
     assert second_a == pytest.approx(np.full(len(second_a), 0.2))
     assert first_b == pytest.approx(first_a / 3)
     assert second_b == pytest.approx(second_a / 9)
+
+
+def uneven(start, degrees, weight=1e5):
+    """A plane strip in general position whose weights fall by a factor from its edge at `start`; the first edge is u0.
+
+    It is tilted about that edge.
+    """
+    slope = np.tan(np.radians(degrees))
+    net = [[[start + t, 3 * y, slope * t] for y in (0, 1)] for t in (0, 0.5, 1)]
+    turn = np.array([[2, -2, 1], [1, 2, 2], [2, 1, -2]]) / 3
+    weights = np.multiply.outer([weight, 1, 1], [1.0, 3.0])
+    return BSplineSurface(2, 1, BEZIER_2, BEZIER_1, np.array(net) @ turn.T, weights=weights)
+
+
+def mirrored(degrees=0.0, weight=1e5):
+    """Two such strips on both sides of x = 1."""
+    left = uneven(1.0, 0.0, weight)
+    net = left.control_points.copy()
+    net[1:] = 2 * net[:1] - net[1:]
+    return (
+        BSplineSurface(2, 1, BEZIER_2, BEZIER_1, net, weights=left.weights),
+        uneven(1.0, degrees, weight),
+    )
+
+
+@pytest.mark.parametrize(("degrees", "is_told"), [(0.0, True), (0.8e-9, True), (1.2e-9, False), (1e-3, False)])
+def test_what_the_bound_on_rounding_hides_is_told_where_it_is_within_the_limit(degrees, is_told):
+    # Weights that differ by 10^5 bound the rounding of the angle by 0.1 degree; many digits show the angle as it is.
+    a, b = mirrored(degrees)
+    contact = measure_contact(Base(a, "u0"), Base(b, "u0"))
+    assert bool(untold(contact, "G1")) is not is_told
+    if is_told:
+        # Of rounding ten times as much is allowed as it does where it is looked at.
+        error = contact.angle_degrees - degrees
+        assert 1e-11 < error < 1e-7
+        assert 5 * error < contact.rounding["angle_degrees"] < 20 * error
+        assert contact.allowed["angle_degrees"] == pytest.approx(1e-9 + contact.rounding["angle_degrees"], rel=1e-12)
+    else:
+        assert contact.rounding["angle_degrees"] > 0.01
+
+
+@pytest.mark.parametrize(
+    ("degrees", "weight", "expected"),
+    [
+        # The bound is 1e-8 degree on the angle, and 0.009 on the curvature.
+        (0.0, 30.0, []),
+        (0.0, 1e5, ["angle_degrees", "curvature_jump_relative"]),
+        # An angle above what is allowed is one.
+        (5.0, 1e5, ["curvature_jump_relative"]),
+    ],
+)
+def test_only_what_is_bounded_too_widely_is_looked_at_again(monkeypatch, degrees, weight, expected):
+    asked = []
+
+    def told(edges, pairs, found, result, hidden):
+        asked.extend(hidden)
+        return result
+
+    monkeypatch.setattr(continuity, "_told", told)
+    measure_contact(*(Base(surface, "u0") for surface in mirrored(degrees, weight)))
+    assert asked == expected
+
+
+def test_rounding_of_rates_is_that_of_the_worst_sample():
+    bent = [[[u, v, (u - 0.3) ** 3 * (1 + 9 * v)] for v in (0, 1)] for u in (0, 1 / 3, 2 / 3, 1)]
+    knots = [0, 0, 0, 0, 1, 1, 1, 1]
+    base = Base(BSplineSurface(3, 1, knots, BEZIER_1, bent), "u0")
+    edges = edge_samples.Edges(base, base, correspond(base, base, "no"), np.zeros(3), 3)
+    s = np.array([0.0, 1.0])
+    first, second, both = (edges.measured(at, at).noises[2] for at in (s[:1], s[1:], s))
+    assert 0 < min(first, second) < 0.9 * max(first, second)
+    assert both == max(first, second)

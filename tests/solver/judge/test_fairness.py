@@ -288,17 +288,26 @@ def test_a_cluster_at_an_end_is_left_out():
 
 
 def measured_as(monkeypatch, *values):
-    """A flat surface whose finer and finer grids give these values, and how many of them were taken."""
-    taken = []
+    """A flat surface whose finer and finer grids give these values, and how many of them were taken.
 
-    def smooth_part(*_):
-        taken.append(values[len(taken)])
-        return taken[-1], 1.0
+    A value may be a pair: of the two halves of the surface.
+    """
+    taken = []
+    halves = isinstance(values[0], tuple)
+
+    def smooth_part(_, rules):
+        value = values[len(taken)]
+        taken.append(value)
+        gradients = np.zeros(len(rules[1].points))
+        # At the first point, or at the first and the last.
+        gradients[[0, -1] if halves else [0]] = value
+        return gradients, 1.0
 
     monkeypatch.setattr(fairness, "_smooth_part", smooth_part)
     monkeypatch.setattr(fairness, "_jumps", lambda *_: 0.0)
-    k = [0, 0, 1, 1]
-    return measure_fairness(BSplineSurface(1, 1, k, k, [[[0, 0, 0], [0, 1, 0]], [[1, 0, 0], [1, 1, 0]]])), len(taken)
+    k, y = [0, 0, 1, 1], [0, 0.5, 1] if halves else [0, 1]
+    flat = BSplineSurface(1, 1, k, [0, *y, 1], [[[x, at, 0] for at in y] for x in (0, 1)])
+    return measure_fairness(flat), len(taken)
 
 
 @pytest.mark.parametrize(
@@ -319,9 +328,58 @@ def test_a_change_of_a_hundredth_settles(monkeypatch, values, count):
     assert (found.settled, found.value, taken) == (True, values[count - 1], count)
 
 
+@pytest.mark.parametrize(
+    ("values", "count"),
+    [
+        # What one half gains the other loses: the sum alone would settle at once.
+        (((1.0, 3.0), (3.0, 1.0), (3.0, 1.0)), 3),
+        (((0.98, 1.02), (1.0, 1.0), (1.0, 1.0)), 3),
+        (((0.991, 1.009), (1.0, 1.0), (1.0, 1.0)), 2),
+    ],
+)
+def test_each_span_settles(monkeypatch, values, count):
+    found, taken = measured_as(monkeypatch, *values)
+    assert (found.settled, found.value, taken) == (True, sum(values[count - 1]), count)
+
+
 def test_the_meter_gives_up_after_five_finer_grids(monkeypatch):
     found, taken = measured_as(monkeypatch, *(2.0**n for n in range(20)))
     assert (found.settled, found.value, taken) == (False, 32.0, 6)
+
+
+@pytest.mark.parametrize(
+    ("values", "count"),
+    [
+        # Tenfold where spans are halved, up or down; not where the first rule has fewer points than the second.
+        ((1.0, 99.0, 989.0, 989.0), 4),
+        ((1.0, 99.0, 991.0, 991.0), 3),
+        ((1.0, 0.05, 0.0051, 0.0051), 4),
+        ((1.0, 0.05, 0.0049, 0.0049), 3),
+        ((1.0, 2.0, 4.0, 41.0, 41.0), 4),
+    ],
+)
+def test_what_changes_tenfold_is_given_up_at_once(monkeypatch, values, count):
+    found, taken = measured_as(monkeypatch, *values)
+    assert (found.settled, found.value, taken) == (count == 4 and len(values) == 4, values[count - 1], count)
+
+
+@pytest.mark.parametrize("slope", [0.0, 0.1])
+def test_a_cuspidal_edge_is_given_up_and_a_sharp_bend_is_not(monkeypatch, slope):
+    """(t^2, t^3 + slope t) along x: |grad H|^2 dA is about dt / t^5, so infinite, where the slope is 0."""
+    taken = []
+    smooth_part = fairness._smooth_part
+    monkeypatch.setattr(fairness, "_smooth_part", lambda *of: taken.append(smooth_part(*of)) or taken[-1])
+    t = np.polynomial.Polynomial([-0.37, 1.0])
+    y, z = ((t**k).coef for k in (2, 3))
+    y, z = np.append(y, 0.0), z + slope * np.append(t.coef, [0.0, 0.0])
+    # Monomials to Bernstein coefficients, by blossoms.
+    points = [
+        [0.0, *(c[0] + k * c[1] / 3 + comb(k, 2) * c[2] / 3 + comb(k, 3) * c[3] for c in (y, z))] for k in range(4)
+    ]
+    net = np.array([points, np.add(points, [1.0, 0.0, 0.0])])
+    found = measure_fairness(BSplineSurface(1, 3, [0, 0, 1, 1], [0] * 4 + [1] * 4, net))
+    assert found.settled == (slope > 0)
+    assert found.settled or len(taken) == 3
 
 
 @pytest.mark.parametrize(("points", "count"), [(2**11, 3), (2**11 + 1, 2)])

@@ -8,11 +8,13 @@ from hypothesis import strategies as st
 from helpers.bases import facing_pair, moved
 from helpers.circles import arcs, cone, cylinder, full_circle, smooth_circle, torus
 from semispline import Base, BSplineSurface, measure_contact
+from semispline.solver.cli.contact_table import print_contact
 from semispline.solver.judge import Correspondence, corresponding_points, measure_meets
 from semispline.solver.judge.continuation import continuation
 from semispline.solver.judge.foot_points import Run, _merged, foot_map
 from semispline.solver.judge.limits import shortfalls
-from semispline.solver.reports import contact_record, print_contact
+from semispline.solver.judge.profile import measure_profile
+from semispline.solver.reports import contact_record
 from semispline.solver.splines.operations import map_domain, reverse_v, split_u, swap_directions
 
 TURN = 2 * np.pi
@@ -259,17 +261,16 @@ def _bulged(tube):
 
 
 def test_what_was_compared_is_said(capsys):
-    contact = measure_contact(
-        Base(cylinder(smooth_circle()), "u1"), Base(cylinder(full_circle(4), heights=(1, 2)), "u0")
-    )
-    assert contact_record(contact)["corresponds"] == "foot points"
-    print_contact(contact, None)
-    assert "each point is compared with its foot on the other" in capsys.readouterr().out
-    same = cylinder(full_circle(4))
-    contact = measure_contact(Base(same, "u1"), Base(same, "u1"))
-    assert contact_record(contact)["corresponds"] == "affine"
-    print_contact(contact, None)
-    assert "foot" not in capsys.readouterr().out
+    ring = cylinder(full_circle(4))
+    for first, second, expected in (
+        (Base(cylinder(smooth_circle()), "u1"), Base(cylinder(full_circle(4), heights=(1, 2)), "u0"), "foot points"),
+        (Base(ring, "u1"), Base(ring, "u1"), "affine"),
+    ):
+        contact = measure_contact(first, second)
+        assert contact_record(contact)["corresponds"] == expected
+        print_contact(contact, measure_profile(first, second, contact), None)
+        said = "each point is compared with its foot on the other" in capsys.readouterr().out
+        assert said is (expected == "foot points")
 
 
 def straight(x):

@@ -2,18 +2,12 @@
 
 import numpy as np
 import pytest
-from OCP.BRepAlgoAPI import BRepAlgoAPI_Cut
 from OCP.BRepClass import BRepClass_FaceClassifier
-from OCP.BRepPrimAPI import (
-    BRepPrimAPI_MakeBox,
-    BRepPrimAPI_MakeCone,
-    BRepPrimAPI_MakeCylinder,
-    BRepPrimAPI_MakeSphere,
-    BRepPrimAPI_MakeTorus,
-)
-from OCP.gp import gp_Ax2, gp_Dir, gp_Pnt
+from OCP.BRepPrimAPI import BRepPrimAPI_MakeCylinder, BRepPrimAPI_MakeSphere
+from OCP.gp import gp_Pnt
 from OCP.TopAbs import TopAbs_State
 
+from helpers.drilled import WHOLE, drilled_part
 from helpers.free_curves import seen_by_open_cascade
 from helpers.parts import graph_of, written
 from semispline import BSplineCurve, BSplineSurface, EdgeError, FileError
@@ -21,26 +15,6 @@ from semispline.solver.io.occ import OccFace, _faces
 from semispline.solver.judge import measure_face_contact
 from semispline.solver.topology.occ_curves import face_curves
 from semispline.solver.topology.trim_curves import TrimCurve, read_trim_curves
-
-
-def drilled(shape, radius=1.0, at=(0.0, 0.0), tilt=(0.3, 0.2, 1.0)):
-    """A shape with a slanted round hole."""
-    axis = gp_Ax2(gp_Pnt(*at, -50), gp_Dir(*tilt))
-    return BRepAlgoAPI_Cut(shape, BRepPrimAPI_MakeCylinder(axis, radius, 100).Shape()).Shape()
-
-
-SHAPES = {
-    "cylinder": lambda: drilled(lying(), at=(-15.0, -10.0)),
-    "sphere": lambda: drilled(BRepPrimAPI_MakeSphere(8.0).Shape(), at=(-13.0, -9.0)),
-    "torus": lambda: drilled(BRepPrimAPI_MakeTorus(10.0, 3.0).Shape(), at=(-5.0, -10.0)),
-    "cone": lambda: drilled(BRepPrimAPI_MakeCone(8.0, 3.0, 10.0).Shape(), at=(-11.5, -11.0)),
-    "box": lambda: drilled(BRepPrimAPI_MakeBox(gp_Pnt(-4, -4, -4), gp_Pnt(4, 4, 4)).Shape(), at=(-15.0, -10.0)),
-}
-
-
-def lying():
-    """A cylinder about the x-axis."""
-    return BRepPrimAPI_MakeCylinder(gp_Ax2(gp_Pnt(-20, 0, 0), gp_Dir(1, 0, 0)), 5.0, 40.0).Shape()
 
 
 def free_edges(shape):
@@ -66,9 +40,9 @@ def curves_of(shape, face, numbers):
 
 
 @pytest.mark.parametrize("turned", [False, True])
-@pytest.mark.parametrize("kind", SHAPES)
+@pytest.mark.parametrize("kind", WHOLE)
 def test_bands_along_holes_meet_their_limits_and_lead_into_the_face(kind, turned):
-    shape = SHAPES[kind]()
+    shape = drilled_part(kind)
     shape = shape.Reversed() if turned else shape
     graph, uses = free_edges(shape)
     assert uses
@@ -104,7 +78,7 @@ def check_direction(band, item):
 
 
 def test_planes_of_a_box_are_exact():
-    shape = SHAPES["box"]()
+    shape = drilled_part("plane")
     graph, uses = free_edges(shape)
     planes = [i for i in uses if graph.faces.kind[graph.uses.face[i]] == "plane"]
     assert planes
@@ -116,12 +90,12 @@ def test_planes_of_a_box_are_exact():
 
 
 def test_edges_are_read_by_a_process_of_its_own(tmp_path):
-    shape = SHAPES["cylinder"]()
+    shape = drilled_part("cylinder")
     path = written(shape, tmp_path / "part.brep")
     graph, uses = free_edges(shape)
     use = next(i for i in uses if graph.faces.kind[graph.uses.face[i]] == "cylinder")
     face, number = int(graph.uses.face[use]), int(graph.uses.number[use])
-    (curve,) = read_trim_curves(path, face, [number])
+    (curve,) = read_trim_curves(path, [(face, number)])
     assert curve.name == f"edge e{number} of face {face}"
     # BREP files have no unit.
     assert curve.millimetres is None
@@ -130,18 +104,19 @@ def test_edges_are_read_by_a_process_of_its_own(tmp_path):
     assert band.edge_to_face <= curve.tolerance
     # What the process raises comes through.
     with pytest.raises(FileError, match="faces, counted from 0"):
-        read_trim_curves(path, 99, [0])
+        read_trim_curves(path, [(99, 0)])
 
 
 @pytest.mark.usefixtures("read_here")
 def test_edges_that_are_no_curves_are_refused(tmp_path):
-    cylinder = written(lying(), tmp_path / "part.brep")
+    shape, _ = WHOLE["cylinder"]
+    cylinder = written(shape(), tmp_path / "part.brep")
     with pytest.raises(EdgeError, match=r"e99: the face has \d+ edges"):
-        read_trim_curves(cylinder, 0, [99])
+        read_trim_curves(cylinder, [(0, 99)])
     degenerate = graph_of(BRepPrimAPI_MakeSphere(8.0).Shape()).uses
     ball = written(BRepPrimAPI_MakeSphere(8.0).Shape(), tmp_path / "ball.brep")
     with pytest.raises(EdgeError, match="it is a point; choose another edge"):
-        read_trim_curves(ball, 0, [int(degenerate.number[np.flatnonzero(degenerate.degenerate)[0]])])
+        read_trim_curves(ball, [(0, int(degenerate.number[np.flatnonzero(degenerate.degenerate)[0]]))])
 
 
 def test_the_seam_of_a_closed_face_is_met_from_both_sides():

@@ -1,0 +1,110 @@
+"""Which two bases the command blend was asked for: edges of two surfaces, or the faces beside one to be replaced.
+
+Heavy imports wait inside the functions, so that `--help` answers fast.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from semispline.solver.cli.words import check_word, check_words
+from semispline.solver.errors import OptionError
+
+if TYPE_CHECKING:
+    from semispline.solver.topology import ResolvedEdge
+
+
+@dataclass(frozen=True)
+class WantedBases:
+    """What was said of the bases on the command line."""
+
+    a: str
+    b: str | None
+    edge_a: str | None
+    edge_b: str | None
+    replaced: int | None
+    cuts: tuple[str | None, str | None] = (None, None)
+
+    @property
+    def specs(self) -> list[str]:
+        """The files that are read, with or without a number."""
+        return [self.a] if self.b is None else [self.a, self.b]
+
+    @property
+    def record(self) -> dict[str, Any]:
+        """What a report holds of it, beside the edges."""
+        return {} if self.replaced is None else {"replaced": self.replaced}
+
+    def check(self) -> None:
+        """Refuse what does not go together before a file is read.
+
+        Raises
+        ------
+        OptionError, EdgeError
+        """
+        if self.replaced is not None:
+            self._check_replace()
+        elif self.b is not None and self.cuts != (None, None):
+            self._check_cuts()
+        elif self.b is None or self.edge_a is None or self.edge_b is None:
+            missing = [
+                name
+                for name, said in (("B", self.b), ("--edge-a", self.edge_a), ("--edge-b", self.edge_b))
+                if said is None
+            ]
+            raise OptionError(
+                f"blend: {', '.join(missing)} missing, expected A B --edge-a EDGE --edge-b EDGE, FILE --replace FACE, "
+                "or PATH#N PATH#M --cut-a D --cut-b D"
+            )
+        else:
+            check_words(self.edge_a, self.edge_b)
+
+    def resolved(self) -> tuple[list[ResolvedEdge], str]:
+        """Return both edges as `Base` knows them, and what is said of the place.
+
+        Raises
+        ------
+        EdgeError, FileError, ComputationError
+        """
+        from semispline.solver.topology import moved_edges, replaced_pair, resolve_edges
+
+        if self.replaced is not None:
+            pair = replaced_pair(self.a, self.replaced, self.edge_a, self.edge_b)
+            return [pair.a, pair.b], pair.said
+        assert self.b is not None
+        if self.cuts != (None, None):
+            return moved_edges((self.a, self.b), (self.edge_a, self.edge_b), self.cuts), ""
+        assert self.edge_a is not None
+        assert self.edge_b is not None
+        return resolve_edges([(self.a, self.edge_a), (self.b, self.edge_b)]), ""
+
+    def _check_replace(self) -> None:
+        from semispline.solver.io import split_spec
+        from semispline.solver.topology import is_of_a_face
+
+        if self.cuts != (None, None):
+            raise OptionError("--replace: found it together with --cut-a or --cut-b, expected one of them")
+        if self.b is not None:
+            raise OptionError(f"--replace: found a second file {self.b!r}, expected the one that holds the face")
+        path, number = split_spec(self.a)
+        if number is not None:
+            raise OptionError(
+                f"--replace: found {self.a!r}, expected the file alone, {path!r}: --replace says which face"
+            )
+        for name, word in (("--edge-a", self.edge_a), ("--edge-b", self.edge_b)):
+            if word is not None and not is_of_a_face(word):
+                raise OptionError(
+                    f"{name}: found {word!r}, expected an edge of face {self.replaced}, as e1: "
+                    f"`semispline list {path} --edges {self.replaced}` lists them"
+                )
+
+    def _check_cuts(self) -> None:
+        from semispline.solver.topology import parse_cut
+
+        for name, word in zip(("--cut-a", "--cut-b"), self.cuts, strict=True):
+            if word is not None:
+                parse_cut(word, name)
+        for name, word in (("--edge-a", self.edge_a), ("--edge-b", self.edge_b)):
+            if word is not None:
+                check_word(word, name)

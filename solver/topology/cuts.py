@@ -1,0 +1,324 @@
+"""Contacts that are moved from an edge into its face: by a true distance, or to a parameter.
+
+By a distance along the surface, square to the edge; where that is a line of constant parameter the contact is one, else
+a free curve and a band along it. At the ends it goes as far as the edges of the face there.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from math import isfinite
+
+import numpy as np
+from scipy.integrate import fixed_quad
+from scipy.interpolate import make_interp_spline
+from scipy.optimize import brentq
+
+from semispline.solver.arrays import FloatArray
+from semispline.solver.errors import EdgeError, OptionError
+from semispline.solver.splines import BSplineCurve, BSplineSurface, EdgeName, parse_edge
+from semispline.solver.topology.face_jets import Face
+from semispline.solver.topology.outlines import Outline
+from semispline.solver.topology.parallels import Paths, crossings, focal_distance, paths_from
+from semispline.solver.topology.trim_curves import TrimCurve
+
+_PARAMETER = re.compile(r"([uv])=(.+)")
+# Paths of which the face's limits are told; places of a free contact between which it is interpolated.
+_PATHS, _PLACES, _DEGREE = 41, 161, 5
+# Bisections to the end of a free contact: the step is far below any tolerance.
+_HALVINGS = 40
+# Of the range of a parameter: what is nearer to an end means the end.
+_SNAP = 1e-9
+_INTERVALS = 16
+# Ends of an edge that are this near, of the size, are one point.
+_CLOSED = 1e-6
+
+
+@dataclass(frozen=True)
+class Cut:
+    """How far a contact moves into its face.
+
+    Attributes
+    ----------
+    distance : float or None
+        Model units.
+    direction : {"u", "v"} or None
+    parameter : float or None
+        Of the line that it moves to, in place of a distance.
+    """
+
+    distance: float | None = None
+    direction: str | None = None
+    parameter: float | None = None
+
+
+def parse_cut(word: str, name: str = "cut") -> Cut:
+    """Return what "2.5" or "u=0.3" means.
+
+    Raises
+    ------
+    OptionError
+
+    Examples
+    --------
+    >>> parse_cut("2.5"), parse_cut("u=0.3")
+    (Cut(distance=2.5, direction=None, parameter=None), Cut(distance=None, direction='u', parameter=0.3))
+    """
+    found = _PARAMETER.fullmatch(word.strip())
+    try:
+        value = float(found[2] if found else word)
+    except ValueError:
+        value = float("nan")
+    if not isfinite(value) or (found is None and value <= 0):
+        raise OptionError(
+            f"{name}: found {word!r}, expected a distance above 0 in model units, as 2.5, or a parameter, as u=0.3"
+        )
+    return Cut(direction=found[1], parameter=value) if found else Cut(distance=value)
+
+
+@dataclass(frozen=True, eq=False)
+class MovedContact:
+    """Where a contact moved to.
+
+    Attributes
+    ----------
+    name : EdgeName or None
+        A line of constant parameter.
+    curve : TrimCurve or None
+        Where it is none: a free curve in the face.
+    said : str
+    """
+
+    name: EdgeName | None
+    curve: TrimCurve | None
+    said: str
+
+
+def moved_contact(
+    surface: BSplineSurface,
+    edge: str | EdgeName | None,
+    cut: Cut,
+    outline: Outline,
+    tolerance: float,
+    title: str,
+    word: str,
+    millimetres: float | None = None,
+) -> MovedContact:
+    """Return a contact moved into its face.
+
+    Parameters
+    ----------
+    surface : BSplineSurface
+    edge : str, EdgeName or None
+        None for a free curve: `outline.trim`.
+    cut : Cut
+    outline : Outline
+        Of the face, in the parameters of the surface.
+    tolerance : float
+        The length within which a contact is a line of constant parameter.
+    title : str
+        How messages begin.
+    word : str
+        What the edge is called.
+    millimetres : float, optional
+        In a model unit, where that is known.
+
+    Raises
+    ------
+    EdgeError
+        The face does not reach so far: the largest possible distance or parameter is said.
+    """
+    name = None if edge is None else parse_edge(edge)
+    if cut.parameter is not None:
+        if name is None:
+            raise EdgeError(f"{title}: the edge is a free curve, along which no parameter is constant; give a distance")
+        return _to_parameter(surface, name, cut, outline, title)
+    assert cut.distance is not None
+    face = Face(surface)
+    curve = _named_curve(surface, name) if name is not None else _trim_curve(outline, title)
+    inside = curve.ends[0] + (np.arange(_PATHS) + 0.5) / _PATHS * (curve.ends[1] - curve.ends[0])
+    paths = curve.paths(face, inside, cut.distance)
+    _check_reach(paths, outline, cut.distance, title)
+    if name is not None:
+        axis = 0 if name.direction == "u" else 1
+        last = paths.at[-1]
+        speed = np.linalg.norm(face.jet(last, 1)[(1, 0) if axis == 0 else (0, 1)], axis=1)
+        if (np.abs(last[:, axis] - last[_PATHS // 2, axis]) * speed).max() <= tolerance:
+            value = _exactly(face, paths, axis, cut.distance)
+            moved = _line(surface, name, value, float(last[_PATHS // 2, 1 - axis]), outline, title)
+            return MovedContact(moved, None, f"{moved}, {cut.distance:g} inside")
+    x, at = _places_inside(face, curve, cut.distance, outline)
+    through = make_interp_spline(x, at, _DEGREE)
+    points = np.column_stack([through.c, np.zeros(len(through.c))])
+    moved_curve = TrimCurve(
+        name=f"edge {word} moved {cut.distance:g} into its face",
+        surface=surface,
+        edge=None,
+        pcurve=BSplineCurve(_DEGREE, through.t, points),
+        keep="left" if curve.sign > 0 else "right",
+        tolerance=0.0,
+        millimetres=millimetres,
+    )
+    return MovedContact(None, moved_curve, f"a free curve, {cut.distance:g} inside")
+
+
+@dataclass(frozen=True, eq=False)
+class _Curve:
+    """An edge in the parameters of its face."""
+
+    ends: tuple[float, float]
+    sign: float
+    spline: BSplineCurve
+    closed: bool
+
+    def paths(self, face: Face, x: FloatArray, distance: float) -> Paths:
+        """Return the paths from places of the edge into the face."""
+        at, slope = (self.spline.evaluate(x, order)[:, :2] for order in (0, 1))
+        return paths_from(face, at, slope, self.sign, distance)
+
+    def runs_out(self, face: Face, x: float, distance: float, outline: Outline) -> bool:
+        """Tell whether a path comes to an edge of the face at an end of this one first."""
+        return bool(crossings(self.paths(face, np.array([x]), distance), outline.ends).min(initial=np.inf) <= distance)
+
+    def end_inside(self, face: Face, inside: float, outside: float, distance: float, outline: Outline) -> float:
+        """Return the last place, towards an end, whose path stays inside."""
+        if not self.runs_out(face, outside + _SNAP * (inside - outside), distance, outline):
+            return outside
+        for _ in range(_HALVINGS):
+            middle = (inside + outside) / 2
+            if self.runs_out(face, middle, distance, outline):
+                outside = middle
+            else:
+                inside = middle
+        return inside
+
+
+def _named_curve(surface: BSplineSurface, name: EdgeName) -> _Curve:
+    axis = 0 if name.direction == "u" else 1
+    value = surface.domain[axis][name.end] if name.at is None else name.at
+    low, high = name.part or surface.domain[1 - axis]
+    points = np.zeros((2, 3))
+    points[:, axis], points[:, 1 - axis] = value, (low, high)
+    # Larger u lies right of a line that runs with v, larger v left of one that runs with u.
+    sign = (1.0 if name.end == 0 else -1.0) * (-1.0 if axis == 0 else 1.0)
+    spline = BSplineCurve(1, np.array([low, low, high, high]), points)
+    return _Curve((low, high), sign, spline, closed=False)
+
+
+def _trim_curve(outline: Outline, title: str) -> _Curve:
+    trim = outline.trim
+    if trim is None or trim.pcurve is None:
+        raise EdgeError(f"{title}: the file shows no curve in the parameters of the face, from which to measure")
+    first, last = float(trim.pcurve.knots[0]), float(trim.pcurve.knots[-1])
+    ends = trim.surface.evaluate(*trim.pcurve.evaluate(np.array([first, last]))[:, :2].T)
+    closed = bool(np.linalg.norm(ends[0] - ends[1]) <= _CLOSED * Face(trim.surface).size)
+    return _Curve((first, last), 1.0 if trim.keep == "left" else -1.0, trim.pcurve, closed)
+
+
+def _check_reach(paths: Paths, outline: Outline, distance: float, title: str) -> None:
+    """Refuse a distance that leaves the face, or at which the paths have crossed."""
+    leaves = crossings(paths, outline.others).min(axis=0, initial=np.inf)
+    ends = crossings(paths, outline.ends).min(axis=0, initial=np.inf)
+    beyond = float(np.where(leaves < ends, leaves, np.inf).min())
+    # Where all run out at the ends the contact has shrunk to nothing.
+    nothing = float(ends.max())
+    largest = min(beyond, nothing, focal_distance(paths))
+    if not distance < largest:
+        raise EdgeError(f"{title}: {distance:g} reaches beyond the face, expected a distance below {largest:.4g}")
+
+
+def _to_parameter(surface: BSplineSurface, name: EdgeName, cut: Cut, outline: Outline, title: str) -> MovedContact:
+    """Return a contact moved to a line of constant parameter."""
+    assert cut.parameter is not None
+    if cut.direction != name.direction:
+        raise EdgeError(f"{title}: found {cut.direction}, but along the edge {name} {name.direction} is constant")
+    axis, at = (0 if name.direction == "u" else 1), cut.parameter
+    edge = surface.domain[axis][name.end] if name.at is None else name.at
+    low, high = name.part or surface.domain[1 - axis]
+    into = 1.0 if name.end == 0 else -1.0
+    reach = np.inf
+    for value in low + (np.arange(_PATHS) + 0.5) / _PATHS * (high - low):
+        ends, others = (_met(lines, 1 - axis, value, edge, into) for lines in (outline.ends, outline.others))
+        reach = min(reach, others if others < ends else np.inf)
+    middle = (low + high) / 2
+    reach = min(reach, _met(outline.ends, 1 - axis, middle, edge, into))
+    if not 0 < (at - edge) * into < reach:
+        first, last = sorted((edge, edge + into * reach))
+        raise EdgeError(
+            f"{title}: {cut.direction}={at:g} lies beyond the face, expected {cut.direction} between {first:.6g} and "
+            f"{last:.6g}"
+        )
+    moved = _line(surface, name, at, middle, outline, title)
+    return MovedContact(moved, None, str(moved))
+
+
+def _exactly(face: Face, paths: Paths, axis: int, distance: float) -> float:
+    """Return the parameter at a distance from the middle of an edge, by quadrature where the path is a cross line."""
+    path = paths.at[:, _PATHS // 2]
+    start, end, beside = float(path[0, axis]), float(path[-1, axis]), float(path[0, 1 - axis])
+    if np.abs(path[:, 1 - axis] - beside).max() > _SNAP * face.widths[1 - axis]:
+        return end
+
+    def speed(value: FloatArray) -> FloatArray:
+        at = np.full((len(value), 2), beside)
+        at[:, axis] = value
+        return np.asarray(np.linalg.norm(face.jet(at, 1)[(1, 0) if axis == 0 else (0, 1)], axis=1))
+
+    breaks = face.surface.breakpoints[axis]
+
+    def missing(value: float) -> float:
+        low, high = sorted((start, value))
+        nodes = np.unique([low, *breaks[(breaks > low) & (breaks < high)], *np.linspace(low, high, _INTERVALS), high])
+        return float(sum(fixed_quad(speed, a, b, n=8)[0] for a, b in pairwise(nodes))) - distance
+
+    margin = 1e-3 * (end - start)
+    if missing(end - margin) * missing(end + margin) >= 0:
+        return end
+    return float(brentq(missing, end - margin, end + margin, xtol=1e-15 * abs(end - start)))
+
+
+def _line(surface: BSplineSurface, name: EdgeName, at: float, middle: float, outline: Outline, title: str) -> EdgeName:
+    """Return the name of a line, as far as the edges of the face at both sides of its middle."""
+    axis = 0 if name.direction == "u" else 1
+    first, last = surface.domain[1 - axis]
+    lines = [*outline.ends, *outline.others]
+    low, high = middle - _met(lines, axis, at, middle, -1.0), middle + _met(lines, axis, at, middle, 1.0)
+    near = _SNAP * (last - first)
+    low, high = (first if low <= first + near else low), (last if high >= last - near else high)
+    if not high - low > near:
+        raise EdgeError(f"{title}: the face has no width there")
+    part = None if (low, high) == (first, last) else (low, high)
+    return EdgeName(name.direction, name.end, at, part)
+
+
+def _met(lines: Sequence[FloatArray], axis: int, at: float, start: float, sign: float) -> float:
+    """Return how far from `start`, in a direction along a line of constant parameter, polylines are met first."""
+    nearest = np.inf
+    for line in lines:
+        off, along = line[:, axis] - at, line[:, 1 - axis]
+        rows = np.flatnonzero((off[:-1] <= 0) != (off[1:] <= 0))
+        share = off[rows] / (off[rows] - off[rows + 1])
+        away = sign * (along[rows] + share * (along[rows + 1] - along[rows]) - start)
+        nearest = min(nearest, float(away[away > 0].min(initial=np.inf)))
+    return nearest
+
+
+def _places_inside(face: Face, curve: _Curve, distance: float, outline: Outline) -> tuple[FloatArray, FloatArray]:
+    """Return places of an edge, and the parameters at a distance from them, as far as the edges at both its ends."""
+    start, end = curve.ends
+    if not curve.closed:
+        inside = start + (np.arange(_PATHS) + 0.5) / _PATHS * (end - start)
+        ran_out = crossings(curve.paths(face, inside, distance), outline.ends).min(axis=0, initial=np.inf) <= distance
+        kept = inside[~ran_out]
+        start = curve.end_inside(face, float(kept[0]), start, distance, outline)
+        end = curve.end_inside(face, float(kept[-1]), end, distance, outline)
+    x = np.linspace(start, end, _PLACES)
+    at = curve.paths(face, x, distance).at[-1]
+    if curve.closed:
+        # The curve ends where it began, perhaps a turn later.
+        ends = curve.spline.evaluate(x[[0, -1]])[:, :2]
+        at[-1] = at[0] + ends[1] - ends[0]
+    return x, at

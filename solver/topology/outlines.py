@@ -1,0 +1,106 @@
+"""The edges of a face as polylines in the parameters of the surface that is read out for it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from semispline.solver.arrays import FloatArray
+from semispline.solver.io import converted_parameters
+from semispline.solver.splines import BSplineSurface, EdgeName
+from semispline.solver.topology.face_curves import spread
+from semispline.solver.topology.face_jets import Face
+from semispline.solver.topology.half_edges import EdgeGraph
+from semispline.solver.topology.trim_curves import TrimCurve
+
+# Points of an edge that is not straight in the parameters.
+_POINTS = 120
+
+
+@dataclass(frozen=True, eq=False)
+class Outline:
+    """The edges of a face, as seen from one of them.
+
+    Attributes
+    ----------
+    trim : TrimCurve or None
+        The edge itself as a curve; None where the file knows none.
+    ends : list of ndarray, shape (S, 2)
+        Edges that touch it: they end what runs beside it.
+    others : list of ndarray, shape (S, 2)
+        All other edges: beyond them the face is left.
+    """
+
+    trim: TrimCurve | None
+    ends: list[FloatArray]
+    others: list[FloatArray]
+
+
+def curved_edges(graph: EdgeGraph, row: int) -> list[int]:
+    """Return the edges of the face of a use, itself among them, of which samples do not tell all."""
+    uses = graph.uses
+    return [x for x in _drawn(graph, row) if uses.pcurve[x] != "line"]
+
+
+def outline_of(graph: EdgeGraph, row: int, surface: BSplineSurface, curves: Mapping[int, TrimCurve]) -> Outline:
+    """Return the outline of the face of a use; `curves` are those of `curved_edges`, as far as they are known."""
+    near = {int(graph.uses.previous[row]), int(graph.uses.following[row])}
+    ends: list[FloatArray] = []
+    others: list[FloatArray] = []
+    for x in _drawn(graph, row):
+        if x != row:
+            line = _polyline(graph, x, surface, curves.get(x))
+            (ends if x in near or _touches(graph, x, row) else others).append(line)
+    return Outline(curves.get(row), ends, others)
+
+
+def _drawn(graph: EdgeGraph, row: int) -> list[int]:
+    uses = graph.uses
+    rows = range(*uses.of_face(int(uses.face[row])).indices(len(uses)))
+    return [x for x in rows if uses.pcurve[x] != "none" and not uses.degenerate[x]]
+
+
+def _touches(graph: EdgeGraph, one: int, two: int) -> bool:
+    points = graph.uses.points
+    apart = points[one][[0, -1], None] - points[two][[0, -1]]
+    return bool((np.linalg.norm(apart, axis=2) <= 1e-6 * graph.size).any())
+
+
+def _polyline(graph: EdgeGraph, row: int, surface: BSplineSurface, trim: TrimCurve | None) -> FloatArray:
+    samples = own_parameters(graph, row, surface)
+    if trim is None or trim.pcurve is None:
+        return samples
+    line = trim.pcurve.evaluate(spread(np.unique(trim.pcurve.knots), _POINTS))[:, :2]
+    # It may have been taken over a turn beside the others.
+    face = Face(surface)
+    turns = np.round((samples.mean(axis=0) - line.mean(axis=0)) / face.widths)
+    return np.asarray(line + np.where(face.closed, turns, 0.0) * face.widths)
+
+
+def own_parameters(graph: EdgeGraph, row: int, surface: BSplineSurface) -> FloatArray:
+    """Return the samples of a use in the parameters of the surface, shape (N, 2)."""
+    uses, face = graph.uses, int(graph.uses.face[row])
+    found: FloatArray = np.empty_like(uses.uv[row])
+    for axis, kind in enumerate(graph.faces.parameters[face]):
+        start, first = graph.faces.ends[face][2 * axis], surface.domain[axis][0]
+        own = uses.uv[row][:, axis] - start + first if start != first else uses.uv[row][:, axis]
+        found[:, axis] = converted_parameters(kind, surface.breakpoints[axis], own)
+    return found
+
+
+def border(surface: BSplineSurface, name: EdgeName) -> Outline:
+    """Return the outline of a whole surface, as seen from an edge or a line of it."""
+    axis = 0 if name.direction == "u" else 1
+    ends, others = [], []
+    for d, (low, high) in enumerate(surface.domain):
+        first, last = surface.domain[1 - d]
+        for end, value in enumerate((low, high)):
+            line = np.empty((2, 2))
+            line[:, d], line[:, 1 - d] = value, (first, last)
+            if d != axis:
+                ends.append(line)
+            elif end != name.end or name.at is not None:
+                others.append(line)
+    return Outline(None, ends, others)
