@@ -64,6 +64,7 @@ def test_an_edge_is_named_on_its_own_face_beside_its_seen_middle():
     line = np.stack([np.full(41, 300.0), np.linspace(50, 250, 41)], axis=1)
     left, right = (edge_anchor(seen, face, line, "e3", HEIGHT) for face in (0, 1))
     assert left.at == right.at == (300.0, 150.0)
+    assert edge_anchor(seen, 0, line[[0, -1]], "e3", HEIGHT) == left
     assert left.towards[0] < -0.9
     assert right.towards[0] > 0.9
     # Half of it is hidden: the middle of the rest.
