@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from typing import Any
 
-from semispline import Base, SemisplineError
+from semispline import Base, BlendResult, SemisplineError
 from semispline.solver.io import LoadedSurface
 from semispline.solver.judge import FOLD_DEGREES, measure_face_contact
 from semispline.solver.topology import blend_edges
@@ -76,9 +76,7 @@ def outcome(
     except Exception as error:
         return row | {"error": f"FAULT {type(error).__name__}: {error}", "seconds": time.process_time() - started}
     contacts = [
-        measure_face_contact(Base(result.surface, edge), surfaces[face].surface)
-        for result in results
-        for edge, face in zip(("u0", "u1"), beyond, strict=True)
+        _contact(result, which, surfaces[face]) for result in results for which, face in zip("ab", beyond, strict=True)
     ]
     turn = max(result.shape.turn.degrees for result in results)
     return row | {
@@ -86,10 +84,22 @@ def outcome(
         "warnings": [warning for result in results for warning in result.warnings],
         "turn_of_blend": turn,
         "folds": turn > FOLD_DEGREES,
-        "contacts": [{k: v for k, v in asdict(contact).items() if k != "at"} for contact in contacts],
+        "contacts": contacts,
         "points": sum(result.rows_stored for result in results),
         "seconds": time.process_time() - started,
     }
+
+
+def _contact(result: BlendResult, which: str, face: LoadedSurface) -> dict[str, float]:
+    """Return how a blend meets the true face: gap in parts of the length, angle and jump of curvature."""
+    own = Base(result.surface, "u0" if which == "a" else "u1")
+    band = result.band_a if which == "a" else result.band_b
+    if band is not None:
+        gap, angle, curvature = band.gap / band.length, band.angle_degrees, band.curvature
+    else:
+        found = measure_face_contact(own, face.surface)
+        gap, angle, curvature = found.gap / found.length, found.angle_degrees, found.curvature_jump_relative
+    return {"gap": gap, "angle_degrees": angle, "curvature": curvature}
 
 
 def _is_of_a_hull(between: Between) -> bool:

@@ -42,7 +42,7 @@ def document(rows: Sequence[Row], ours: Sequence[str]) -> str:
     parts = [_HEAD, *_table(rows, ours), "", *_answer([row for row in rows if row["file"] in ours]), ""]
     if others:
         parts += ["Files of packages:", "", _COLUMNS, *_table(rows, others), ""]
-    parts += ["## Why the rest does not, file by file", ""]
+    parts += ["## Why the rest does not, file by file", "", "Of several warnings the gravest.", ""]
     for name in (*ours, *others):
         parts += _reasons(name, [row for row in rows if row["file"] == name])
     return "\n".join(parts)
@@ -85,8 +85,8 @@ def _contacts(rows: Sequence[Row]) -> list[str]:
     contacts = [contact for row in rows for contact in row["contacts"]]
     if not contacts:
         return ["", "", ""]
-    gap = max(contact["gap"] / contact["length"] for contact in contacts)
-    angle, curvature = (max(x[key] for x in contacts) for key in ("angle_degrees", "curvature_jump_relative"))
+    gap = max(contact["gap"] for contact in contacts)
+    angle, curvature = (max(x[key] for x in contacts) for key in ("angle_degrees", "curvature"))
     return [f"{gap:.0e}", f"{angle:.0e}", f"{curvature:.0e}"]
 
 
@@ -116,10 +116,10 @@ def _reasons(name: str, rows: Sequence[Row]) -> Iterator[str]:
 
 
 def _of_warnings(row: Row) -> str:
-    """Return what is said of a place, each kind once, the gravest first."""
+    """Return the gravest of what is said of a place."""
     order = [short for _, short in WARNINGS]
     found = {_short(warning, WARNINGS) for warning in row["warnings"]}
-    return "; ".join(sorted(found, key=lambda x: (order.index(x) if x in order else len(order), x)))
+    return min(found, key=lambda x: (order.index(x) if x in order else len(order), x))
 
 
 def _short(text: str, known: Sequence[tuple[str, str]]) -> str:

@@ -29,6 +29,7 @@ from semispline.solver.cli.words import (
     progress,
     resolved,
 )
+from semispline.solver.errors import OptionError
 from semispline.solver.exit_status import reports_errors
 from semispline.solver.option_flags import takes_blend_options
 from semispline.solver.options import BlendOptions
@@ -58,6 +59,9 @@ def blend_command(
     ] = None,
     cut_a: Annotated[str | None, typer.Option(metavar="D", help=_CUT_HELP.format("A"))] = None,
     cut_b: Annotated[str | None, typer.Option(metavar="D", help=_CUT_HELP.format("B"))] = None,
+    surfaces: Annotated[
+        bool, typer.Option("--surfaces", help="Write the blend alone, as a surface: the default.")
+    ] = False,
     with_bases: Annotated[
         bool, typer.Option("--with-bases", help="Write the bases, cut to their edges, as surfaces beside the blend.")
     ] = False,
@@ -68,6 +72,8 @@ def blend_command(
 
     wanted = WantedBases(a, b, edge_a, edge_b, replace_face, (cut_a, cut_b))
     wanted.check()
+    if surfaces and with_bases:
+        raise OptionError("--surfaces: found it together with --with-bases, expected one of them")
     check_surface_output(out, 3 if with_bases else 1)
     check_outputs({"--out": out, "--report": report}, wanted.specs)
     with progress("reading"):

@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from math import isfinite
+from typing import Any
 
 import numpy as np
 from scipy.integrate import fixed_quad
@@ -33,6 +34,9 @@ _HALVINGS = 40
 # Of the range of a parameter: what is nearer to an end means the end.
 _SNAP = 1e-9
 _INTERVALS = 16
+_GAUSS = np.polynomial.legendre.leggauss(6)
+# Times that lengths of chords are made lengths of the curve through their ends.
+_REFINED = 8
 # Ends of an edge that are this near, of the size, are one point.
 _CLOSED = 1e-6
 
@@ -150,8 +154,7 @@ def moved_contact(
             value = _exactly(face, paths, axis, cut.distance)
             moved = _line(surface, name, value, float(last[_PATHS // 2, 1 - axis]), outline, title)
             return MovedContact(moved, None, f"{moved}, {cut.distance:g} inside")
-    x, at = _places_inside(face, curve, cut.distance, outline)
-    through = make_interp_spline(x, at, _DEGREE)
+    through = _through(face, _inside(face, curve, cut.distance, outline))
     points = np.column_stack([through.c, np.zeros(len(through.c))])
     moved_curve = TrimCurve(
         name=f"edge {word} moved {cut.distance:g} into its face",
@@ -306,8 +309,20 @@ def _met(lines: Sequence[FloatArray], axis: int, at: float, start: float, sign: 
     return nearest
 
 
-def _places_inside(face: Face, curve: _Curve, distance: float, outline: Outline) -> tuple[FloatArray, FloatArray]:
-    """Return places of an edge, and the parameters at a distance from them, as far as the edges at both its ends."""
+def _through(face: Face, at: FloatArray) -> Any:
+    """Return a spline through parameters, by lengths in space: the edge's own parameter may be no smoother than C1."""
+    points = face.jet(at, 0)[0, 0]
+    s = np.append(0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1)))
+    for _ in range(_REFINED):
+        slope = make_interp_spline(s, points, _DEGREE).derivative()
+        half, middle = np.diff(s) / 2, (s[1:] + s[:-1]) / 2
+        speeds = np.linalg.norm(slope(middle[:, None] + half[:, None] * _GAUSS[0]), axis=2)
+        s = np.append(0.0, np.cumsum(half * (speeds @ _GAUSS[1])))
+    return make_interp_spline(s, at, _DEGREE)
+
+
+def _inside(face: Face, curve: _Curve, distance: float, outline: Outline) -> FloatArray:
+    """Return parameters at a distance from places of an edge, as far as the edges of the face at both its ends."""
     start, end = curve.ends
     if not curve.closed:
         inside = start + (np.arange(_PATHS) + 0.5) / _PATHS * (end - start)
@@ -321,4 +336,4 @@ def _places_inside(face: Face, curve: _Curve, distance: float, outline: Outline)
         # The curve ends where it began, perhaps a turn later.
         ends = curve.spline.evaluate(x[[0, -1]])[:, :2]
         at[-1] = at[0] + ends[1] - ends[0]
-    return x, at
+    return np.asarray(at)

@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pyiges
 import pytest
+import pyvista
 from OCP.BRep import BRep_Tool
 from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeFace
 from OCP.BRepPrimAPI import (
@@ -23,12 +24,21 @@ from OCP.TopAbs import TopAbs_ShapeEnum
 from OCP.TopExp import TopExp_Explorer
 from OCP.TopoDS import TopoDS
 
-from semispline import BSplineCurve, BSplineSurface, FileError, InputError, SemiStructuredSurface
+from semispline import (
+    BSplineCurve,
+    BSplineSurface,
+    FileError,
+    InputError,
+    SemiStructuredSurface,
+    list_surfaces,
+    plane,
+    revolve,
+)
 from semispline.solver.io.faces import MILLIMETRES, describe, picked
 from semispline.solver.io.occ import read_occ
 from semispline.solver.io.occ_writing import occ_bytes, occ_surface
 from semispline.solver.io.rhino import open_3dm
-from semispline.solver.io.surface_files import read_surface, read_surfaces, split_spec, write_surface
+from semispline.solver.io.surface_files import read_surface, read_surfaces, split_spec, write_surface, write_surfaces
 from semispline.solver.judge.de_boor import surface_points
 
 IMPELLER = Path(pyiges.__file__).parent / "examples" / "impeller.igs"
@@ -405,3 +415,25 @@ def test_meshes_of_collapsed_surfaces_have_no_empty_triangles(tmp_path):
     mesh = pyvista.read(str(tmp_path / "mesh.ply"))
     assert np.isfinite(mesh.point_data.active_normals).all()
     assert mesh.compute_cell_sizes()["Area"].min() > 0
+
+
+@pytest.mark.parametrize("suffix", [".step", ".igs", ".brep", ".3dm"])
+def test_several_surfaces_stay_in_their_order(tmp_path, suffix):
+    path = tmp_path / f"three{suffix}"
+    rational = revolve(BSplineCurve(1, [0, 0, 1, 1], [[2, 0, 0], [3, 0, 1]]), (0, 0, 0), (0, 0, 1))
+    three = [patch(), rational, plane([0, 0, 5], [1, 0, 0], [0, 2, 0])]
+    write_surfaces(path, three, "cm")
+    assert len(list_surfaces(path)) == 3
+    for number, surface in enumerate(three):
+        found = read_surface(f"{path}#{number}")
+        assert found.control_points == pytest.approx(surface.control_points, rel=1e-14, abs=1e-14)
+        assert found.is_rational == surface.is_rational
+
+
+def test_a_mesh_holds_all_surfaces_and_json_one(tmp_path):
+    floor, shelf = (plane([0, 0, z], [1, 0, 0], [0, 2, 0]) for z in (0, 5))
+    write_surfaces(tmp_path / "two.ply", [floor, shelf])
+    assert pyvista.read(tmp_path / "two.ply").bounds[4:] == pytest.approx((0, 5))
+    with pytest.raises(FileError, match=r"\.json holds one surface, expected \.step .* for 2"):
+        write_surfaces(tmp_path / "two.json", [floor, shelf])
+    assert not (tmp_path / "two.json").exists()

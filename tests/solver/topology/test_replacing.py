@@ -24,6 +24,10 @@ def chamfered_box():
     return maker.Shape()
 
 
+def ball():
+    return BRepPrimAPI_MakeSphere(2.0).Shape()
+
+
 def kinds_beyond(graph, between):
     return sorted(graph.faces.kind[graph.uses.face[row]] for row in rows_beyond(graph, between))
 
@@ -88,8 +92,8 @@ def test_a_chamfer_is_taken_between_its_long_edges():
         (rounded_box, 0, ("e1", "e1"), "--edge-b: found 'e1' as at A, expected another edge of face #0"),
         (rounded_box, 0, ("e0", "e9"), "--edge-b: found 'e9', but face #0 .* its edges are e0 to e"),
         (rounded_box, 0, ("u0", "e1"), "--edge-a: found 'u0', expected an edge of face #0 .*, as e0"),
-        (lambda: BRepPrimAPI_MakeSphere(2.0).Shape(), 0, (None, None), "face #0 .* has no two opposite edges with one other face beyond each: e0 .* is a point"),
-        (lambda: BRepPrimAPI_MakeSphere(2.0).Shape(), 0, ("e0", "e1"), "is a point|is a seam: this face lies on both its sides"),
+        (ball, 0, (None, None), "no two opposite edges with .*: e0 .* is a point"),
+        (ball, 0, ("e0", "e1"), "is a point|is a seam: this face lies on both its sides"),
         (lambda: without(rounded_pin(), 0), 0, (None, None), "no other face lies beyond it"),
     ],
 )  # fmt: skip

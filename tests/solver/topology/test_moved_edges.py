@@ -1,0 +1,130 @@
+"""Contacts moved into the faces of parts: how far, as far as which edges, and what is refused."""
+
+import numpy as np
+import pytest
+from OCP.BRepPrimAPI import BRepPrimAPI_MakeBox, BRepPrimAPI_MakeCone, BRepPrimAPI_MakeCylinder, BRepPrimAPI_MakeWedge
+
+from helpers.parts import written
+from semispline import EdgeError, OptionError, blend_edges, list_edges, plane, write_surface
+from semispline.solver.splines import cut_to_edge, parse_edge
+from semispline.solver.topology import moved_edges, parse_cut
+
+
+@pytest.fixture
+def pin(tmp_path):
+    """A cylinder of radius 5 and height 8: #0 is round, #1 the upper plane."""
+    return written(BRepPrimAPI_MakeCylinder(5.0, 8.0).Shape(), tmp_path / "pin.brep")
+
+
+def specs(path, a=0, b=1):
+    return f"{path}#{a}", f"{path}#{b}"
+
+
+def edge_points(end):
+    """Points of the natural edge that a base has."""
+    part, natural = cut_to_edge(end.surface, end.edge)
+    axis = "uv".index(natural[0])
+    along = np.linspace(*part.domain[1 - axis], 9)
+    at = np.full(9, part.domain[axis][int(natural[1])])
+    return part.evaluate(*((at, along) if axis == 0 else (along, at)))
+
+
+def test_a_rim_is_moved_into_both_faces(pin):
+    a, b = moved_edges(specs(pin), (None, None), ("1.5", "2"))
+    assert edge_points(a)[:, 2] == pytest.approx(6.5, abs=1e-12)
+    assert (a.curve, a.said) == (None, f"e0 of {pin}#0 moved to v=6.5-, 1.5 inside")
+    # A circle in a plane is no line of constant parameter: it becomes a free curve, concentric.
+    assert b.is_free
+    assert b.said == f"e0 of {pin}#1 moved to a free curve, 2 inside"
+    points = b.surface.evaluate(*b.curve.pcurve.evaluate(np.linspace(*b.curve.pcurve.knots[[0, -1]], 50))[:, :2].T)
+    # Interpolated: a hundredth of what a free contact may be off its edge, 1e-5 of the length.
+    assert np.linalg.norm(points[:, :2], axis=1) == pytest.approx(3.0, abs=1e-7 * 6 * np.pi)
+    assert points[:, 2] == pytest.approx(8.0, abs=1e-12)
+    (result,) = blend_edges(a, b)
+    assert result.warnings == ()
+    assert result.band_b.gap <= 1e-12
+    # It lies on the side of the material: below the plane and inside of the cylinder.
+    inner = result.surface.to_bspline().evaluate(np.full(5, 0.5), np.linspace(*result.surface.domain[1], 5))
+    assert (np.linalg.norm(inner[:, :2], axis=1) < 5).all()
+    assert (inner[:, 2] < 8).all()
+
+
+@pytest.mark.parametrize(
+    ("cuts", "words"),
+    [
+        (("8.5", "1"), r"--cut-a 8.5: 8.5 reaches beyond the face, expected a distance below 8$"),
+        (("1", "5.5"), r"--cut-b 5.5: 5.5 reaches beyond the face, expected a distance below 5$"),
+        (("v=9", "1"), r"--cut-a v=9: v=9 lies beyond the face, expected v between 0 and 8$"),
+        (("v=-1", "1"), r"--cut-a v=-1: v=-1 lies beyond the face"),
+        (("u=1", "1"), r"--cut-a u=1: found u, but along the edge v1 v is constant"),
+        (("1", "u=1"), r"--cut-b u=1: the edge is a free curve, along which no parameter is constant; give a distance"),
+    ],
+)
+def test_beyond_the_face_the_largest_distance_is_said(pin, cuts, words):
+    with pytest.raises(EdgeError, match=words):
+        moved_edges(specs(pin), (None, None), cuts)
+
+
+def test_just_within_is_taken(pin):
+    a, b = moved_edges(specs(pin), (None, None), ("7.999", "4.99"))
+    assert parse_edge(a.edge).at == pytest.approx(0.001, abs=1e-12)
+    assert b.is_free
+
+
+def test_a_parameter_and_one_contact_that_stays(pin):
+    a, b = moved_edges(specs(pin), (None, None), ("v=3", None))
+    assert (a.edge, b.curve, b.edge) == ("v=3-", None, "e0")
+
+
+def test_a_slanted_face_is_cut_as_far_as_its_edges(tmp_path):
+    """Across a wedge that is 10 wide below and 4 above, 6 high: one unit up it is 9 wide."""
+    path = written(BRepPrimAPI_MakeWedge(10.0, 6.0, 8.0, 4.0).Shape(), tmp_path / "wedge.brep")
+    widths = []
+    for face in range(6):
+        for entry in list_edges(path, face).edges:
+            along = np.subtract(entry.end, entry.start)
+            if abs(entry.length - 10) > 1e-9 or entry.neighbour is None:
+                continue
+            end, _ = moved_edges(specs(path, face, entry.neighbour), (None, None), ("1", "1"))
+            points = edge_points(end)
+            widths.append(float(np.linalg.norm(points[-1] - points[0])))
+            assert np.cross(points[-1] - points[0], along) == pytest.approx(np.zeros(3), abs=1e-9)
+    # Two edges of 10, each in a rectangle and in a trapezium.
+    assert sorted(widths) == pytest.approx([9.0, 9.0, 10.0, 10.0])
+
+
+def test_a_distance_on_a_cone_is_one_along_its_lines(tmp_path):
+    path = written(BRepPrimAPI_MakeCone(5.0, 2.0, 4.0).Shape(), tmp_path / "cone.brep")
+    # Its lines fall by 3 on 4, and are 5 long.
+    end, _ = moved_edges(specs(path, 0, 1), (None, None), ("2", "1"))
+    points = edge_points(end)
+    assert np.linalg.norm(points[:, :2], axis=1) == pytest.approx(2.0 + 2 * 3 / 5, abs=1e-12)
+    with pytest.raises(EdgeError, match=r"expected a distance below 5$"):
+        moved_edges(specs(path, 0, 1), (None, None), ("5.01", "1"))
+
+
+def test_surfaces_without_faces_are_cut_up_to_their_ends(tmp_path):
+    floor, wall = tmp_path / "floor.json", tmp_path / "wall.json"
+    write_surface(floor, plane([0, 0, 0], [4, 0, 0], [0, 5, 0]))
+    write_surface(wall, plane([4, 0, 0], [0, 0, 3], [0, 5, 0]))
+    a, b = moved_edges((str(floor), str(wall)), ("u1", "u0"), ("1", "0.5"))
+    assert edge_points(a)[:, 0] == pytest.approx(3.0)
+    assert edge_points(b)[:, 2] == pytest.approx(0.5)
+    with pytest.raises(EdgeError, match=r"--cut-b 3.5: .* below 3$"):
+        moved_edges((str(floor), str(wall)), ("u1", "u0"), ("1", "3.5"))
+    with pytest.raises(EdgeError, match="only two faces of one file, PATH#N and PATH#M, can share one"):
+        moved_edges((str(floor), str(wall)), (None, None), ("1", "1"))
+
+
+def test_faces_that_share_no_edge_or_several(tmp_path):
+    path = written(BRepPrimAPI_MakeBox(2.0, 3.0, 5.0).Shape(), tmp_path / "box.brep")
+    with pytest.raises(EdgeError, match=r"#0 and .*#1 share no edge"):
+        moved_edges(specs(path, 0, 1), (None, None), ("0.5", "0.5"))
+    with pytest.raises(EdgeError, match="--edge-b: found one edge of two"):
+        moved_edges(specs(path, 0, 2), ("e0", None), ("0.5", "0.5"))
+
+
+@pytest.mark.parametrize("word", ["", "0", "-1", "nan", "inf", "u=", "w=1", "u=nan", "1,2", "u=0.3+"])
+def test_words_of_cuts_that_mean_nothing(word):
+    with pytest.raises(OptionError, match=r"--cut-a: found .*, expected a distance above 0 in model units, as 2.5"):
+        parse_cut(word, "--cut-a")
