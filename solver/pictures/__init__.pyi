@@ -1,11 +1,9 @@
-from .deviation import Deviation as Deviation
 from .deviation import TrueFace as TrueFace
 from .plotting import BASE_COLOR as BASE_COLOR
 from .plotting import BLEND_COLOR as BLEND_COLOR
 from .plotting import CURVE_COLORS as CURVE_COLORS
 from .plotting import PALETTE as PALETTE
 from .plotting import Drawn as Drawn
-from .plotting import Picture as Picture
 from .plotting import check_picture as check_picture
 from .plotting import render as render
 from .profiles import profile_plots as profile_plots

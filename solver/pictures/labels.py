@@ -22,8 +22,8 @@ from semispline.solver.arrays import FloatArray
 NOTHING = -1
 # A face that is nowhere seen so many pixels to all sides is seen along itself: what is left are stray pixels.
 _LEAST = 2.0
-# A point of an edge is seen where its face is within so many pixels.
-_NEAR = 4
+# Points along an edge; one is seen where its face is within so many pixels.
+_ALONG, _NEAR = 101, 4
 # Around a text, pixels; steps outwards, in heights of the text, and directions in which room is sought.
 _PAD, _RINGS, _WAYS = 3, (1.0, 1.6, 2.4, 3.4, 4.6, 6.0, 8.0), 16
 _FACE_INK, _EDGE_INK = "black", "#0b3c8c"
@@ -128,15 +128,18 @@ def edge_anchor(seen: Seen, face: int, pixels: FloatArray, text: str, height: in
         Of the text.
     """
     rows, columns = seen.shape
+    # A straight edge may have no points but its ends.
+    along = np.append(0.0, np.cumsum(np.linalg.norm(np.diff(pixels, axis=0), axis=1)))
+    even = np.linspace(0, along[-1], _ALONG)
+    pixels = np.stack([np.interp(even, along, pixels[:, d]) for d in range(2)], axis=1)
     at = np.rint(pixels).astype(int)
     is_seen = np.array([bool((_window(seen, x, y, _NEAR) == face).any()) for x, y in at.tolist()])
     runs = np.split(np.arange(len(at)), np.flatnonzero(np.diff(is_seen)) + 1)
     runs = [run for run in runs if is_seen[run[0]]]
     if not runs:
         return None
-    best = max(runs, key=lambda run: float(np.linalg.norm(np.diff(pixels[run], axis=0), axis=1).sum()))
-    length = np.append(0.0, np.cumsum(np.linalg.norm(np.diff(pixels[best], axis=0), axis=1)))
-    x, y = pixels[best[int(np.argmin(np.abs(length - length[-1] / 2)))]].tolist()
+    best = max(runs, key=len)
+    x, y = pixels[best[len(best) // 2]].tolist()
     reach = 2 * height
     own = np.argwhere(_window(seen, round(x), round(y), reach) == face)
     corner = np.array([max(round(x) - reach, 0), max(round(y) - reach, 0)])

@@ -63,6 +63,8 @@ _SIZE, _SIZE_OF_SEVERAL = (1600, 1200), (1200, 900)
 _SCALE, _NAMES = 0.1, 0.024
 # Edges of one face among many are named where it has so much room, in half heights of a name.
 _ROOM = 2.5
+# Widths of lines, in pixels of the finer picture that each is made from.
+_NARROW, _BROAD = 2, 12
 # Lines lie this much before their surface, of the extent: they are on it, and half of them would be hidden.
 _BEFORE = 2e-3
 
@@ -307,7 +309,7 @@ class _Scene:
         starts = np.cumsum([0, *(len(line) for line in lines)])
         joined = [[len(line), *range(start, start + len(line))] for start, line in zip(starts, lines, strict=False)]
         outline = pyvista_module("mesh").PolyData(np.concatenate(lines), lines=np.concatenate(joined))
-        plotter.add_mesh(outline, color="#202020", line_width=5 if self.heavy_edges else 2, lighting=False)
+        plotter.add_mesh(outline, color="#202020", line_width=_BROAD if self.heavy_edges else _NARROW, lighting=False)
 
     def _add_lifted(self, plotter: Any, view: View) -> None:
         """Add control polygons in front of all surfaces."""

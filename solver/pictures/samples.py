@@ -54,9 +54,14 @@ class Sampled:
     @cached_property
     def area(self) -> FloatArray:
         """What each point stands for: a third of the triangles around it, shape (K,)."""
-        a, b, c = (self.points[corner] for corner in self.triangles.T)
-        third = np.linalg.norm(np.cross(b - a, c - a), axis=1) / 6
-        return np.bincount(self.triangles.ravel(), np.repeat(third, 3), len(self.points)).astype(np.float64)
+        triangles, times = self.triangles, 1
+        if self.own is None:
+            # By both diagonals of each cell: the same whichever way a surface runs.
+            turned = np.arange(len(self.points)).reshape(self.geometry.point.shape[:2])[::-1].ravel()
+            triangles, times = np.concatenate([triangles, turned[triangles]]), 2
+        a, b, c = (self.points[corner] for corner in triangles.T)
+        third = np.linalg.norm(np.cross(b - a, c - a), axis=1) / 6 / times
+        return np.bincount(triangles.ravel(), np.repeat(third, 3), len(self.points)).astype(np.float64)
 
     @property
     def borders(self) -> list[FloatArray]:

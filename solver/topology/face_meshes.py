@@ -49,24 +49,40 @@ class FaceMesh:
         return found[0], found[1]
 
     def finer(self, surface: Surface, length: float, most: int) -> FaceMesh:
-        """Return the face with each triangle cut in four until no side is longer, or `most` triangles are reached."""
+        """Return the face with longer sides halved until there are none, or before there are `most` triangles."""
         mesh = self
-        while 4 * len(mesh.triangles) <= most:
+        while True:
             points = surface.evaluate(*mesh.within(surface))
-            sides = points[mesh.triangles] - points[np.roll(mesh.triangles, 1, axis=1)]
-            if np.linalg.norm(sides, axis=2).max(initial=0.0) <= length:
-                break
-            mesh = mesh._halved()
-        return mesh
+            sides = np.sort(mesh.triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
+            edges, of = np.unique(sides, axis=0, return_inverse=True)
+            is_long = np.linalg.norm(points[edges[:, 0]] - points[edges[:, 1]], axis=1) > length
+            cuts = is_long[of.reshape(-1, 3)]
+            if not cuts.any() or len(cuts) + np.count_nonzero(cuts) > most:
+                return mesh
+            middles = np.full(len(edges), -1)
+            middles[is_long] = len(mesh.parameters) + np.arange(np.count_nonzero(is_long))
+            parameters = np.concatenate([mesh.parameters, mesh.parameters[edges[is_long]].mean(axis=1)])
+            mesh = FaceMesh(parameters, _with_middles(mesh.triangles, middles[of.reshape(-1, 3)]))
 
-    def _halved(self) -> FaceMesh:
-        a, b, c = self.triangles.T
-        sides = np.sort(np.concatenate([np.stack(pair, axis=1) for pair in ((a, b), (b, c), (c, a))]), axis=1)
-        edges, of = np.unique(sides, axis=0, return_inverse=True)
-        ab, bc, ca = (of.ravel() + len(self.parameters)).reshape(3, -1)
-        middles = self.parameters[edges].mean(axis=1)
-        cut = [np.stack(corners, axis=1) for corners in ((a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca))]
-        return FaceMesh(np.concatenate([self.parameters, middles]), np.concatenate(cut))
+
+def _with_middles(triangles: Triangles, middles: Triangles) -> Triangles:
+    """Return triangles cut in two, three or four where the sides ab, bc, ca have middles; -1 where they have none."""
+    count = np.count_nonzero(middles >= 0, axis=1)
+    found = [triangles[count == 0]]
+    for sides in (1, 2, 3):
+        corners, cut = triangles[count == sides], middles[count == sides]
+        # Turned so that the sides that are cut come first.
+        first = np.argmax((cut >= 0) & (np.roll(cut, 1, axis=1) < 0), axis=1) if sides < 3 else np.zeros(len(cut), int)
+        turn = (first[:, None] + np.arange(3)) % 3
+        a, b, c = np.take_along_axis(corners, turn, axis=1).T
+        ab, bc, ca = np.take_along_axis(cut, turn, axis=1).T
+        parts = {
+            1: [(a, ab, c), (ab, b, c)],
+            2: [(ab, b, bc), (a, ab, bc), (a, bc, c)],
+            3: [(a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca)],
+        }[sides]
+        found += [np.stack(part, axis=1) for part in parts]
+    return np.concatenate(found)
 
 
 @dataclass(frozen=True, eq=False)

@@ -102,3 +102,16 @@ def test_a_profile_on_a_face_has_what_its_contact_has():
     # The edge climbs from 0.02 to 0.06 above the floor.
     assert profile.means["gap"] == pytest.approx(0.04)
     assert profile.length[-1] == pytest.approx(np.hypot(2, 0.04))
+
+
+def test_a_mean_is_over_the_length_and_not_over_the_parameter():
+    # y is 4 t^2, and the gap t: its integral over y is 2/3 of the length.
+    nets = [
+        [[x, y, h] for y, h in zip((0.0, 0.0, 4.0), heights, strict=True)]
+        for x, heights in ((0.0, (0, 0, 0)), (0.0, (0, 0.5, 1)))
+    ]
+    left, right = (
+        BSplineSurface(1, 2, K, K2, [[[x + p[0], *p[1:]] for p in net] for x in ends])
+        for net, ends in zip(nets, ((-1.0, 0.0), (0.0, 1.0)), strict=True)
+    )
+    assert profile_of(Base(left, "u1"), Base(right, "u0")).means["gap"] == pytest.approx(2 / 3, rel=1e-4)
