@@ -191,17 +191,18 @@ curvature of a face along a free trim curve; blends are exact to it. Limits: gap
 (0.001 mm at the most where the file has a unit; off the curve the edge's tolerance), 0.01 degree, 2 % of curvature
 across, along and mixed.
 
-`blend PART#N B --edge-a e3` takes such an edge, as `list PART --edges N` numbers it, and so does `near=x,y,z`; of a face
-that is cut by the edge only the band is blended, and the blend is exact to that. Then the face itself is measured at the
-blend's own edge: *gap to the face*, *off the trim curve*, angle and curvature stand in the result (`band_a`, `band_b`) and
-in the report, with where the curve comes from: the feet of the edge in space, or, where the edge is further from the face
-than its tolerance, the curve in the parameters. What misses a limit is refused.
+`blend PART#N B --edge-a e3` takes such an edge, as `list PART --edges N` numbers it, and so does `near=x,y,z`; of a
+face that is cut by the edge only the band is blended, and the blend is exact to that. Then the face itself is measured
+at the blend's own edge: *gap to the face*, *off the trim curve*, angle and curvature stand in the result (`band_a`,
+`band_b`) and in the report, with where the curve comes from: the feet of the edge in space, or, where the edge is
+further from the face than its tolerance, the curve in the parameters. What misses a limit is refused.
 
-- `--limits exact`: as between any two surfaces. The default for planes, whose bands are flat; only *off* is approximate.
+- `--limits exact`: as between any two surfaces. The default for planes, whose bands are flat; only *off* is
+  approximate.
 - `--limits cad`: the limits above. The default for all other faces, for which `exact` is refused.
-- A curve is cut at its corners and where the face's curvature jumps across it. Each part is a blend of its own, `e3[0]`,
-  `e3[1]`, .. from its start, written into one file (`.json`: numbered ones). Parts of A and B go together by place; where
-  their numbers differ, or the places do not tell, name one of each: `--edge-a e3[0] --edge-b u1[0,0.5]`.
+- A curve is cut at its corners and where the face's curvature jumps across it. Each part is a blend of its own,
+  `e3[0]`, `e3[1]`, .. from its start, written into one file (`.json`: numbered ones). Parts of A and B go together by
+  place; where their numbers differ, or the places do not tell, name one of each: `--edge-a e3[0] --edge-b u1[0,0.5]`.
 - `check` measures on the face itself, without a band: against an edge of any surface, or the free edge of another face.
 - Above 90 degrees the blend folds back over the face. 3dm files show no curves in the parameters: feet are taken.
 

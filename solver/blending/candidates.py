@@ -227,6 +227,7 @@ def _away_from_ends(layout: Layout, search: _Search) -> Layout:
     if problem.exits.u_turn:
         # Here p2 is worth more than a window that is not met.
         return best
+    tried = best.problem.p2
     for every in (False, True):
         # Alpha and p2 can be traded one for the other until the window ends: such a side, or both, goes without p2.
         at_end = _at_end(best)
@@ -234,8 +235,10 @@ def _away_from_ends(layout: Layout, search: _Search) -> Layout:
             SecondParameter() if (every or ended) and second.free else second
             for ended, second in zip(at_end, best.problem.p2, strict=True)
         )
-        if any(at_end) and p2 != best.problem.p2:
-            without = search(layout.options, replace(best.problem, p2=cast("_TwoP2", p2)), None, "without p2")
+        # Where both are at an end the first try was without both.
+        if any(at_end) and p2 not in (tried, best.problem.p2):
+            tried = cast("_TwoP2", p2)
+            without = search(layout.options, replace(best.problem, p2=tried), None, "without p2")
             best = without if without is not None and _pays_without_p2(without, best) else best
     return best
 

@@ -153,7 +153,8 @@ def _solved(problem: BlendProblem, refusable: tuple[int, ...], known: FairSoluti
     np.empty(_WORKSPACE)
     layers, exponents = problem.shape_layers()
     unknowns = make_unknowns(problem, exponents)
-    u, rows, narrow = problem.form.u, problem.rows, narrow_width(problem)
+    # A seam that perhaps is not C2 is a line.
+    u, rows, narrow, seam = problem.form.u, problem.rows, narrow_width(problem), problem.seam_order in (0, 1)
 
     grids: list[FairObjective] = []
 
@@ -183,14 +184,14 @@ def _solved(problem: BlendProblem, refusable: tuple[int, ...], known: FairSoluti
     points = [_with_finite_model(rough.point(start)) for start in starts]
     ends = _descended_abreast(rough, points[:exact], _NEAR) + ([] if exact is None else points[exact:])
     nodes = HIGH_ORDER_NODES_U if max(problem.a.order, problem.b.order) > 2 else NODES_U
-    search = grid(across(u, nodes), along(rows, 1, narrow))
+    search = grid(across(u, nodes), along(rows, 1, narrow, seam=seam))
 
     @cache
     def finer(times: int) -> FairObjective:
-        return grid(across(u, 2 * nodes), along(rows, times, narrow))
+        return grid(across(u, 2 * nodes), along(rows, times, narrow, seam=seam))
 
     times_v = _finer_times(search)
-    between = grid(across(u, ROUGH_U), along(rows, 1, narrow)) if search.table.size > _LARGE else None
+    between = grid(across(u, ROUGH_U), along(rows, 1, narrow, seam=seam)) if search.table.size > _LARGE else None
     levels = [(level, tolerance) for level, tolerance in ((between, _NEAR), (search, _END)) if level is not None]
     found = None
     # A rough grid may be blind to what makes a candidate worse than another: the finer one says which is best.

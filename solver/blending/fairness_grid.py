@@ -76,22 +76,26 @@ class Across:
     ends: FloatArray
 
 
-def along(rows: tuple[Basis, ...], times: int = 1, narrow: float = 0.0) -> Along:
-    """Return the nodes in v, `times` as many; clusters of knots below the width `narrow` count as one line."""
+def along(rows: tuple[Basis, ...], times: int = 1, narrow: float = 0.0, *, seam: bool = False) -> Along:
+    """Return the nodes in v, `times` as many; clusters of knots below the width `narrow` count as one line.
+
+    `seam` says that the surface closes along v, and that H may jump where it does.
+    """
     breaks = merge_breakpoints(*(breakpoints(row.knots) for row in rows))
     kept = _kept(breaks, narrow)
     each = max(NODES_V, -(-LEAST_V // len(kept))) * times
     # n points are exact to degree 2 n - 1.
     nodes, weights = gauss_rule(breaks, 2 * each - 1)
     places = (breaks[kept] + breaks[kept + 1]) / 2
-    below, above = breaks[kept[:-1] + 1], breaks[kept[1:]]
-    lines = _are_lines(rows, below, above)
+    # The last line is the seam.
+    below, above = breaks[kept + 1], np.roll(breaks[kept], -1)
+    lines = np.append(_are_lines(rows, below[:-1], above[:-1]), seam)
     return Along(
         nodes[:, kept],
         weights[:, kept],
         places,
         np.stack([below[lines], above[lines]]),
-        np.stack([places[:-1][lines], places[1:][lines]]),
+        np.stack([places[lines], np.roll(places, -1)[lines]]),
     )
 
 

@@ -23,6 +23,8 @@ from semispline.solver.splines import (
 
 # A shift below this part of the rim is none.
 _NO_SHIFT = 1e-9
+# Spans for each that a blend has: what faces what is then a matter of angle, to .001 degree.
+_FINER = 4
 _LINE = np.array([0.0, 0.0, 1.0, 1.0])
 
 
@@ -57,7 +59,7 @@ def run_by_angle(base: Base) -> Base:
     conic = recognised_conic(rows, along)
     if conic is None:
         return base
-    smooth, basis = conic.smooth_rows(2)
+    smooth, basis = conic.smooth_rows(2, _FINER)
     if not (smooth[..., 3] > 0).all():
         return base
     points, weights = euclidean(smooth if base.side[1] == "0" else smooth[::-1])

@@ -51,7 +51,7 @@ def iso_curve(surface: Surface, u: float | None = None, v: float | None = None) 
         raise OptionError(f"u, v: found u = {u}, v = {v}, expected one of them: that which is constant on the curve")
     if u is not None:
         at = checked_parameters([real_number(u, "u", InputError)], surface.knots_u, "u")
-        matrix = basis_matrix(surface.degree_u, surface.knots_u, at)
+        matrix = basis_matrix(surface.degree_u, surface.knots_u, at).copy()
         matrix.eliminate_zeros()
         if isinstance(surface, SemiStructuredSurface):
             return combined_curves(surface.control_curves, matrix)[0]

@@ -8,6 +8,8 @@ went into loading it.
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -205,14 +207,36 @@ def reversed_knots(knots: FloatArray) -> FloatArray:
 
 
 def basis_matrix(degree: int, knots: FloatArray, x: FloatArray) -> SparseMatrix:
-    """Return the sparse matrix of basis values, shape (len(x), n); right-continuous, left at the end of the domain."""
+    """Return the sparse matrix of basis values, shape (len(x), n); right-continuous, left at the end of the domain.
+
+    It is read-only: each derivative on one grid asks for the same few, which are kept.
+    """
     if not len(x):
         from scipy.sparse import csr_array
 
         return csr_array((0, len(knots) - degree - 1))
+    at = np.ascontiguousarray(x, dtype=np.float64)
+    if len(at) > _MOST_KEPT:
+        return _basis_matrix(degree, knots, at)
+    return _kept_basis_matrix(degree, np.asarray(knots, dtype=np.float64).tobytes(), at.tobytes())
+
+
+# Making a matrix for a few places takes longer than using it; for more, memory counts.
+_MOST_KEPT = 500
+
+
+@lru_cache(maxsize=64)
+def _kept_basis_matrix(degree: int, knots: bytes, x: bytes) -> SparseMatrix:
+    return _basis_matrix(degree, np.frombuffer(knots), np.frombuffer(x))
+
+
+def _basis_matrix(degree: int, knots: FloatArray, x: FloatArray) -> SparseMatrix:
     from scipy.interpolate import BSpline
 
-    return BSpline.design_matrix(np.ascontiguousarray(x, dtype=np.float64), knots, degree)
+    matrix = BSpline.design_matrix(x, knots, degree)
+    for part in (matrix.data, matrix.indices, matrix.indptr):
+        part.setflags(write=False)
+    return matrix
 
 
 def derivative_points(degree: int, knots: FloatArray, points: FloatArray, order: int = 1) -> FloatArray:

@@ -22,7 +22,7 @@ from .free_contact import FreeContact as FreeContact
 from .free_contact import measure_free_contact as measure_free_contact
 from .listing import place_lines as place_lines
 from .listing import places_record as places_record
-from .moved_edges import moved_edges as moved_edges
+from .moving import moved_edges as moved_edges
 from .place import Place as Place
 from .place import Places as Places
 from .place import PlaceSide as PlaceSide

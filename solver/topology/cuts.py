@@ -284,11 +284,21 @@ def _exactly(face: Face, paths: Paths, axis: int, distance: float) -> float:
 
 
 def _line(surface: BSplineSurface, name: EdgeName, at: float, middle: float, outline: Outline, title: str) -> EdgeName:
-    """Return the name of a line, as far as the edges of the face at both sides of its middle."""
+    """Return the name of a line, as far as the edges of the face at both sides of its middle.
+
+    Where it runs past the end of its edge without meeting the next one, at a corner that juts into the face, it ends
+    beside that end.
+    """
     axis = 0 if name.direction == "u" else 1
     first, last = surface.domain[1 - axis]
-    lines = [*outline.ends, *outline.others]
-    low, high = middle - _met(lines, axis, at, middle, -1.0), middle + _met(lines, axis, at, middle, 1.0)
+    own = name.part or (first, last)
+
+    def reach(sign: float) -> float:
+        ends, others = (_met(lines, axis, at, middle, sign) for lines in (outline.ends, outline.others))
+        beside = sign * (own[1 if sign > 0 else 0] - middle)
+        return ends if np.isfinite(ends) and ends <= others else min(others, beside)
+
+    low, high = middle - reach(-1.0), middle + reach(1.0)
     near = _SNAP * (last - first)
     low, high = (first if low <= first + near else low), (last if high >= last - near else high)
     if not high - low > near:

@@ -65,7 +65,7 @@ def run_in_memory(queue: deque[Job], hosts: list[Host]) -> Iterator[tuple[Job, O
             assert job is not None
             try:
                 outcome = host.pipe.recv()
-            except EOFError:
+            except (EOFError, ConnectionResetError):
                 raise SystemExit("the tests cannot be collected; see build/mutants/slot-*/host") from None
             yield job, outcome
 

@@ -98,6 +98,26 @@ def test_the_tests_of_a_file_come_first_then_those_of_its_room_and_its_doctest_i
     assert chosen_for(mutant, table, Path(), 12.0) == [quick, doctest, near, other, beside, slow]
 
 
+def test_a_name_of_another_file_is_another_name(tmp_path):
+    files = {
+        "judge/gauge.py": "LIMIT = 1e-9\n",
+        "judge/other.py": "LIMIT = 1e-6\ndef f(x):\n    return x < LIMIT\n",
+        "judge/near.py": "from semispline.solver.judge.gauge import LIMIT\ndef f(x):\n    return x < LIMIT\n",
+        "io/far.py": "from semispline.solver.judge import LIMIT\ndef f(x):\n    return x < LIMIT\n",
+        "io/else.py": "from semispline.solver.judge.other import LIMIT\ndef f(x):\n    return x < LIMIT\n",
+    }
+    for name, text in files.items():
+        path = tmp_path / "solver" / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text)
+    mutant, _ = mutants_of("solver/judge/gauge.py", files["judge/gauge.py"].encode())
+    lines = {f"solver/{name}": {3: {f"tests/test.py::test_{name}"}} for name in files}
+    table = Table({test: 0.1 for by_line in lines.values() for tests in by_line.values() for test in tests}, lines, [])
+    table.lines["solver/judge/gauge.py"].clear()
+    shown = chosen_for(mutant, table, tmp_path, 0.2)
+    assert set(shown) == {"tests/test.py::test_judge/near.py", "tests/test.py::test_io/far.py"}
+
+
 def test_a_survivor_is_shown_what_is_new_and_a_killed_one_rests_on_its_function_and_its_killer(tmp_path):
     tests = tmp_path / "test_f.py"
     tests.write_text("def test_a():\n    assert f(1)\n\n\ndef test_b():\n    assert f(2)\n")

@@ -420,3 +420,21 @@ def test_closed_rims_refuse_a_linear_alpha():
     above = BSplineSurface(2, 2, [0, 0, 0, 1, 1, 1], knots, np.array(rows) * [1.5, 1.5, -1] + [0, 0, 1.5])
     with pytest.raises(OptionError, match="alpha_v: found linear on closed contacts, expected auto or constant"):
         blend(Base(tube, "u0"), Base(above, "u0"), alpha_v="linear")
+
+
+@pytest.mark.parametrize(
+    ("at_end", "searched"), [((True, True), [(False, False)]), ((False, True), [(True, False), (False, False)])]
+)
+def test_no_search_without_p2_is_made_twice(at_end, searched):
+    problem = state_problem(*facing(57)).problem
+    assert [second.free for second in problem.p2] == [True, True]
+    fair = FairSolution(1.0, 1.0, (0.0, 0.0), value=1.0, slope=0.0, tried=1, refused={}, at_end=at_end)
+    layout = candidates.Layout(BlendOptions(box=(0.5, 2.0)), problem, Found(1.0, 1.0, "reduced", fair=fair))
+    asked = []
+
+    def search(options, problem, known, remark):
+        asked.append(tuple(second.free for second in problem.p2))
+
+    # What finds nothing leaves the layout as it is.
+    assert candidates._away_from_ends(layout, search) is layout
+    assert asked == searched

@@ -386,3 +386,15 @@ def test_where_a_rim_starts_on_another_does_not_depend_on_its_domain():
     ]
     assert 0.85 < shifts[0] < 0.95
     assert shifts == pytest.approx([shifts[0]] * 3, abs=1e-12)
+
+
+@pytest.mark.parametrize("turned", [0.123, 0.3, 0.61])
+@pytest.mark.parametrize("count", [3, 4])
+def test_rims_face_each_other_by_angle_wherever_they_start(turned, count):
+    a = Base(cylinder(arcs(TURN * np.linspace(0, 1, 5))), "u1")
+    b = Base(cylinder(arcs(TURN * (np.linspace(0, 1, count + 1) + turned)), 2.0, (3.0, 4.0)), "u0")
+    matched = matched_edges(a, b, "no")
+    seam_a = a.derivative(np.array([a.range_along[0]]), 0, 0)[0]
+    facing = b.derivative(np.array([b.range_along[0] + matched.shift]), 0, 0)[0]
+    # Eleven points run up to 1.2 degrees ahead of the angle; what faces what is found on spans a fourth as long.
+    assert np.degrees(np.arctan2(facing[1], facing[0]) - np.arctan2(seam_a[1], seam_a[0])) == pytest.approx(0, abs=1e-3)

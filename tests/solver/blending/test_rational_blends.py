@@ -7,6 +7,7 @@ import pytest
 
 from helpers.cases import CASES
 from helpers.rational import FULL, HALF, QUARTER, THIRDS, cylinder, meridian, random_pair, repaced
+from helpers.shapes import arc, extruded, line
 from helpers.sweeps import first_ones
 from semispline import (
     Base,
@@ -34,7 +35,9 @@ def radii(surface, n=40):
     return np.linalg.norm(points[..., :2], axis=2)
 
 
-@pytest.mark.parametrize("cuts", [(QUARTER, QUARTER), (HALF, HALF), (FULL, FULL), (FULL, THIRDS)])
+@pytest.mark.parametrize(
+    "cuts", [(QUARTER, QUARTER), (HALF, HALF), (FULL, FULL), (FULL, THIRDS), (FULL, tuple(x + 0.77 for x in THIRDS))]
+)
 @pytest.mark.parametrize("continuity", ["G2", "G3"])
 def test_two_pipes_of_one_radius_are_joined_by_that_pipe(cuts, continuity):
     a, b = cylinder(5.0, 0.0, 4.0, cuts[0]), cylinder(5.0, 14.0, 4.0, cuts[1])
@@ -54,6 +57,18 @@ def test_free_rows_do_not_pull_pipes_together(cuts, continuity):
     # By thin plate with v as long as it is they do.
     pulled = blend(Base(a, "u1"), Base(b, "u0"), continuity=continuity, v_scale="length")
     assert np.abs(radii(pulled.surface) / 5 - 1).max() > 0.02
+
+
+def test_a_jump_of_curvature_at_the_seam_counts_in_the_search():
+    """Racetracks whose lines and half circles meet at four places, one of them the seam."""
+    track = [*line((0, -1), (2, -1)), *arc((2, 0), 1.0, -90, 90), *line((2, 1), (0, 1)), *arc((0, 0), 1.0, 90, 270)]
+    low = extruded(track, 3.0, along="v")
+    high = transform(low, np.diag([0.8, 0.8, 1.0]), [0.2, 0, 8.0])
+    result = blend(Base(low, "u1"), Base(high, "u0"))
+    shape = result.shape.fairness
+    assert shape.jumps > 0.9 * shape.value
+    assert result.objective.value == pytest.approx(shape.value, rel=0.01)
+    assert all(warning.startswith("G1 inside: curvature jumps") for warning in result.warnings)
 
 
 @pytest.mark.parametrize("inner", [(0.5, 0.6, 0.9), (0.7, 0.8, 0.9), (0.05, 0.1, 0.9), (0.9, 0.93, 0.97)])

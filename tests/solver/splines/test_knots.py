@@ -10,6 +10,7 @@ from helpers.sweeps import examples
 from semispline.solver.errors import KnotError
 from semispline.solver.splines.knots import (
     affine_knots,
+    basis_matrix,
     breakpoints,
     checked_knots,
     clamped,
@@ -84,3 +85,22 @@ def test_small_vectors():
 def test_vectors_that_would_overflow_are_refused(knots, message):
     with pytest.raises(KnotError, match=message):
         checked_knots(knots, 1, 3)
+
+
+@pytest.mark.parametrize("count", [3, 501])
+def test_basis_values_that_are_shared_cannot_be_changed(count):
+    """Of few places they are kept, by the content of knots and places."""
+    knots, x = uniform_knots(3, 4).copy(), np.linspace(0, 1, count)
+    matrix = basis_matrix(3, knots, x)
+    for part in (matrix.data, matrix.indices, matrix.indptr):
+        with pytest.raises(ValueError, match="read-only"):
+            part[0] = 0
+    # Arrays that are changed in place ask for other values.
+    before, knots[4] = matrix.toarray(), 0.125
+    changed = basis_matrix(3, knots, x).toarray()
+    x[1] += 1e-3
+    moved = basis_matrix(3, knots, x).toarray()
+    for found in (before, changed, moved):
+        assert found.sum(axis=1) == pytest.approx(np.ones(count))
+    assert np.abs(before - changed).max() > 1e-3
+    assert np.abs(changed - moved).max() > 1e-5

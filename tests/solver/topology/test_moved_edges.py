@@ -2,12 +2,17 @@
 
 import numpy as np
 import pytest
+from OCP.BRepAlgoAPI import BRepAlgoAPI_Cut
 from OCP.BRepPrimAPI import BRepPrimAPI_MakeBox, BRepPrimAPI_MakeCone, BRepPrimAPI_MakeCylinder, BRepPrimAPI_MakeWedge
+from OCP.gp import gp_Pnt
 
 from helpers.parts import written
 from semispline import EdgeError, OptionError, blend_edges, list_edges, plane, write_surface
 from semispline.solver.splines import cut_to_edge, parse_edge
 from semispline.solver.topology import moved_edges, parse_cut
+
+# .ci/run lets each file be read by a process of its own.
+pytestmark = pytest.mark.usefixtures("read_here")
 
 
 @pytest.fixture
@@ -91,6 +96,20 @@ def test_a_slanted_face_is_cut_as_far_as_its_edges(tmp_path):
             assert np.cross(points[-1] - points[0], along) == pytest.approx(np.zeros(3), abs=1e-9)
     # Two edges of 10, each in a rectangle and in a trapezium.
     assert sorted(widths) == pytest.approx([9.0, 9.0, 10.0, 10.0])
+
+
+def test_beside_a_corner_that_juts_into_the_face_a_contact_ends_where_its_edge_does(tmp_path):
+    """On an L of arms 5 broad, the lines one inside of both edges at the inner corner run on into the other arm."""
+    corner = BRepPrimAPI_MakeBox(gp_Pnt(5.0, 5.0, -1.0), 9.0, 9.0, 9.0).Shape()
+    path = written(BRepAlgoAPI_Cut(BRepPrimAPI_MakeBox(10.0, 10.0, 4.0).Shape(), corner).Shape(), tmp_path / "l.brep")
+    edges = next(edges for face in range(8) if len((edges := list_edges(path, face)).edges) == 6)
+    found = []
+    for entry in edges.edges:
+        end, _ = moved_edges(specs(path, edges.face, entry.neighbour), (None, None), ("1", "1"))
+        points = edge_points(end)
+        found.append((entry.length, float(np.linalg.norm(points[-1] - points[0]))))
+    # Two long edges, two at the ends of the arms, two at the inner corner.
+    assert np.array(sorted(found)) == pytest.approx(np.array([(5.0, 5.0)] * 4 + [(10.0, 10.0)] * 2))
 
 
 def test_a_distance_on_a_cone_is_one_along_its_lines(tmp_path):

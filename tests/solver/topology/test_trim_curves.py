@@ -102,10 +102,17 @@ def test_edges_are_read_by_a_process_of_its_own(tmp_path):
     (band,) = curve.bands()
     assert band.source == "foot"
     assert band.edge_to_face <= curve.tolerance
+    # What the process raises comes through.
     with pytest.raises(FileError, match="faces, counted from 0"):
         read_trim_curves(path, [(99, 0)])
+
+
+@pytest.mark.usefixtures("read_here")
+def test_edges_that_are_no_curves_are_refused(tmp_path):
+    shape, _ = WHOLE["cylinder"]
+    cylinder = written(shape(), tmp_path / "part.brep")
     with pytest.raises(EdgeError, match=r"e99: the face has \d+ edges"):
-        read_trim_curves(path, [(face, 99)])
+        read_trim_curves(cylinder, [(0, 99)])
     degenerate = graph_of(BRepPrimAPI_MakeSphere(8.0).Shape()).uses
     ball = written(BRepPrimAPI_MakeSphere(8.0).Shape(), tmp_path / "ball.brep")
     with pytest.raises(EdgeError, match="it is a point; choose another edge"):
