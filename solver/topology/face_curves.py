@@ -29,6 +29,8 @@ _NODES, _GRID = 240, 60
 _SAME_POINT = 1e-6
 # An edge is on the face where it stays within its tolerance, or within this fraction of its length.
 ON_FACE = 1e-5
+# Of the range of a parameter.
+_ROUNDING = 1e-12
 # A pcurve may leave the domain of the face by this fraction.
 _OUTSIDE = 1e-6
 
@@ -67,7 +69,10 @@ class FaceCurve:
     def wrapped(self, x: FloatArray) -> FloatArray:
         """Return parameters that run on over the end of a closed curve in its range."""
         start, end = self.ends
-        return np.where(x > end, x - (end - start), np.where(x < start, x + (end - start), x))
+        # What is past an end by rounding is that end, of an open curve too.
+        beyond = _ROUNDING * (end - start)
+        turned = np.where(x > end + beyond, x - (end - start), np.where(x < start - beyond, x + (end - start), x))
+        return np.clip(turned, start, end)
 
     def at(self, x: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return (s, t) and their derivatives, shapes (K, 2)."""

@@ -22,6 +22,8 @@ from semispline.solver.topology.half_edges import SAMPLES, EdgeGraph, Faces, use
 Curve = tuple[int, FloatArray, FloatArray]
 # Where the search for a foot begins: a grid of so many places each way, the best of them, and more where these fail.
 _GRID, _STARTS, _MORE_STARTS = 33, 4, 64
+# Where the distance of a curve is wanted alone.
+_SPREAD, _BETWEEN = 201, 1.25
 _STEPS, _LEAST_STEPS, _DONE = 12, 3, 1e-12
 _POLE = 1e-14
 # Rows that agree to this fraction of the size close a surface.
@@ -76,8 +78,10 @@ def edges_in_order(face: RhinoFace) -> list[tuple[int, int, bool]]:
 
 
 def distance_from(surface: BSplineSurface, curve: Curve) -> float:
-    """Return how far a curve is from a surface, by samples."""
-    return float(_projected(surface, [curve], np.inf)[0][0])
+    """Return how far a curve is from a surface: by samples, and a quarter more for what lies between them."""
+    degree, knots, net = curve
+    places = np.linspace(knots[degree], knots[len(knots) - degree - 1], _SPREAD)
+    return _BETWEEN * float(_feet(surface, curve_evaluator(degree, knots, net)(places)[0], _STARTS)[1].max())
 
 
 def _size(curves: Sequence[Curve]) -> float:

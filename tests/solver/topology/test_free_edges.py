@@ -19,6 +19,7 @@ from helpers.parts import polygon, written
 from semispline import (
     BandError,
     Base,
+    BSplineCurve,
     ContactError,
     EdgeError,
     blend_edges,
@@ -34,7 +35,9 @@ from semispline.solver.options import BlendOptions
 from semispline.solver.topology.bands import band_along
 from semispline.solver.topology.bases import EdgeBase, bases_along, free_curves, paired_bases
 from semispline.solver.topology.edge_blends import blend_bases
+from semispline.solver.topology.face_curves import edge_on_face
 from semispline.solver.topology.face_edges import is_of_a_face, resolve_edges, split_part
+from semispline.solver.topology.face_jets import Face
 from semispline.solver.topology.free_contact import measure_free_contact
 from semispline.solver.topology.trim_curves import TrimCurve, read_trim_curves
 
@@ -249,6 +252,18 @@ def test_one_part_of_a_curve_does_not_need_the_others():
         assert (band.surface.control_points == both[k].surface.control_points).all()
     with pytest.raises(EdgeError, match="part: found -1, but the curve has 2"):
         band_along(face, curve, part=-1)
+
+
+def test_an_open_curve_whose_parameter_ends_at_zero_does_not_begin_again_there():
+    """A parameter past the end by rounding is the end; a closed curve goes on."""
+    floor = plane([0, 0, 0], [10, 0, 0], [0, 10, 0])
+    arc = BSplineCurve(2, [-9.753, -9.753, -9.753, 0, 0, 0], [[1, 1, 0], [5, 4, 0], [9, 1, 0]])
+    curve = edge_on_face(Face(floor), arc, None, 0.0)
+    past = np.array([1e-300, 1e-13, -9.753 - 1e-14])
+    assert curve.wrapped(past).tolist() == [0.0, 0.0, -9.753]
+    assert curve.wrapped(np.array([1.0])) == pytest.approx([-8.753])
+    (band,) = band_along(floor, None, edge=arc)
+    assert band.gap <= 1e-12
 
 
 def test_curves_come_in_the_unit_of_their_surfaces():
