@@ -22,6 +22,7 @@ from semispline import (
     BSplineCurve,
     ContactError,
     EdgeError,
+    blend,
     blend_edges,
     edge_bases,
     list_edges,
@@ -362,3 +363,13 @@ def test_corners_of_a_pcurve_are_kept_where_it_is_taken_over_to_other_parameters
     points = curve.surface.evaluate(*curve.pcurve.evaluate(x)[:, :2].T)
     # The feet of a plane are exact up to rounding; both run evenly.
     assert np.linalg.norm(points - curve.edge.evaluate(x), axis=1).max() <= 1e-12
+
+
+def test_without_a_band_limits_are_those_of_both_contacts():
+    a, b = Base(plane([0, 0, 0], [2, 0, 0], [0, 3, 0]), "u1"), Base(plane([4, 0, 1], [2, 0, 0], [0, 3, 0]), "u0")
+    for limits, angle, chosen in (("auto", 1e-9, "exact"), ("exact", 1e-9, "exact"), ("cad", 0.01, "cad")):
+        result = blend(a, b, limits=limits, **QUICK)
+        assert result.options.limits == chosen
+        for contact in (result.contact_a, result.contact_b):
+            assert contact.allowed["angle_degrees"] == pytest.approx(angle, rel=0.5)
+            assert contact.angle_degrees <= 1e-9
