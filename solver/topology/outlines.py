@@ -39,9 +39,9 @@ class Outline:
 
 
 def curved_edges(graph: EdgeGraph, row: int) -> list[int]:
-    """Return the edges of the face of a use, itself among them, of which samples do not tell all."""
+    """Return the edges of the face of a use of which samples do not tell all, and itself: it may slant."""
     uses = graph.uses
-    return [x for x in _drawn(graph, row) if uses.pcurve[x] != "line"]
+    return [x for x in _drawn(graph, row) if uses.pcurve[x] != "line" or x == row]
 
 
 def outline_of(graph: EdgeGraph, row: int, surface: BSplineSurface, curves: Mapping[int, TrimCurve]) -> Outline:

@@ -5,15 +5,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from OCP.BRepAlgoAPI import BRepAlgoAPI_Cut
-from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeFace
+from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeFace, BRepBuilderAPI_MakePolygon
 from OCP.BRepPrimAPI import (
     BRepPrimAPI_MakeBox,
     BRepPrimAPI_MakeCone,
     BRepPrimAPI_MakeCylinder,
     BRepPrimAPI_MakeHalfSpace,
+    BRepPrimAPI_MakePrism,
     BRepPrimAPI_MakeWedge,
 )
-from OCP.gp import gp_Dir, gp_Pln, gp_Pnt
+from OCP.gp import gp_Dir, gp_Pln, gp_Pnt, gp_Vec
 
 from helpers.parts import written
 from semispline import EdgeError, OptionError, blend_edges, list_edges, plane, write_surface
@@ -56,6 +57,12 @@ def edge_points(end):
     return part.evaluate(*((at, along) if axis == 0 else (along, at)))
 
 
+def free_points(end):
+    """Points of the free curve that a contact was moved to."""
+    along = np.linspace(*end.curve.pcurve.knots[[0, -1]], 50)
+    return end.surface.evaluate(*end.curve.pcurve.evaluate(along)[:, :2].T)
+
+
 def test_a_rim_is_moved_into_both_faces(pin):
     a, b = moved_edges(specs(pin), (None, None), ("1.5", "2"))
     assert edge_points(a)[:, 2] == pytest.approx(6.5, abs=1e-12)
@@ -63,7 +70,7 @@ def test_a_rim_is_moved_into_both_faces(pin):
     # A circle in a plane is no line of constant parameter: it becomes a free curve, concentric.
     assert b.is_free
     assert b.said == f"e0 of {pin}#1 moved to a free curve, 2 inside"
-    points = b.surface.evaluate(*b.curve.pcurve.evaluate(np.linspace(*b.curve.pcurve.knots[[0, -1]], 50))[:, :2].T)
+    points = free_points(b)
     # Interpolated: a hundredth of what a free contact may be off its edge, 1e-5 of the length.
     assert np.linalg.norm(points[:, :2], axis=1) == pytest.approx(3.0, abs=1e-7 * 6 * np.pi)
     assert points[:, 2] == pytest.approx(8.0, abs=1e-12)
@@ -197,3 +204,22 @@ def test_a_curve_that_is_taken_over_another_turn_is_moved_all_the_same(tmp_path,
     # Of an edge that is a polyline of steps of 0.008.
     assert away == pytest.approx(1.0, abs=1e-4)
     assert (at[:, 1] < 8 + slope * x).all()
+
+
+def test_a_straight_edge_that_slants_in_a_plane_is_moved(tmp_path):
+    """Below a prism over the triangle (0, 0), (10, 0), (3, 7), each side is moved into the triangle by one."""
+    corners = np.array([[0.0, 0.0], [10.0, 0.0], [3.0, 7.0]])
+    outline = BRepBuilderAPI_MakePolygon()
+    for x, y in corners:
+        outline.Add(gp_Pnt(x, y, 0.0))
+    outline.Close()
+    floor = BRepBuilderAPI_MakeFace(outline.Wire()).Face()
+    path = written(BRepPrimAPI_MakePrism(floor, gp_Vec(0.0, 0.0, 4.0)).Shape(), tmp_path / "prism.brep")
+    face = next(n for n in range(5) if len(edges := list_edges(path, n).edges) == 3)
+    for entry in edges:
+        end, _ = moved_edges(specs(path, face, entry.neighbour), (None, None), ("1", "1"))
+        points = edge_points(end) if end.curve is None else free_points(end)
+        along = np.subtract(entry.end, entry.start)
+        away = np.linalg.norm(np.cross(points - np.array(entry.start), along / np.linalg.norm(along)), axis=1)
+        # Interpolated, where it is a free contact.
+        assert away == pytest.approx(1.0, abs=1e-7)
