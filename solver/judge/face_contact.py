@@ -157,7 +157,9 @@ def measure_face_profile(
         at_end = _at_an_end(moved, feet)
         values["gap"] = np.where(at_end, np.abs(np.sum(to_foot * normal, axis=1)), away)
         values["off"] = np.linalg.norm(apart - np.sum(apart * normal, axis=1)[:, None] * normal, axis=1)
-        ahead = np.sum(np.cross(normal, slope) * own.into, axis=1) * (1.0 if edge.keep == "left" else -1.0)
+        # At a corner of the edge the nearest point may be on the part beyond: that it runs the same way holds for all.
+        along = own.along * (1.0 if np.sum(slope * own.along) > 0 else -1.0)
+        ahead = np.sum(np.cross(normal, along) * own.into, axis=1) * (1.0 if edge.keep == "left" else -1.0)
         values["angle_degrees"] = np.where((ahead > 0) == same_side, angle, 180.0 - angle)
     size = float(np.ptp(bounding_box(other), axis=0).max())
     values |= _curvature_jumps(jets, (side, normal), size, order)
