@@ -141,7 +141,10 @@ def measure_face_profile(
         raise EdgeError(
             f"face: the edge is {away[k]:.3g} away from it at ({x:.5g}, {y:.5g}, {z:.5g}), expected an edge on it"
         )
-    of_face = _face_jet(moved, feet, own.into if same_side else -own.into, order)
+    towards = own.into / np.maximum(np.linalg.norm(own.into, axis=1), 1e-300)[:, None] * (1 if same_side else -1)
+    # An end may lie on a knot line across the edge: the side of it is that of the edge.
+    towards[0], towards[-1] = towards[0] + own.along[0], towards[-1] - own.along[-1]
+    of_face = _face_jet(moved, feet, towards, order)
     normal, side = _normal(of_face), _normal(own.jet)
     # Of two ways to look at a surface that which agrees.
     side *= np.where(np.sum(side * normal, axis=1) < 0, -1.0, 1.0)[:, None]
