@@ -115,6 +115,7 @@ from .solver.topology.bands import band_along as band_along
 from .solver.topology.bases import EdgeBase as EdgeBase
 from .solver.topology.bases import edge_bases as edge_bases
 from .solver.topology.edge_blends import blend_edges as blend_edges
+from .solver.topology.edge_moving import moved_edges as moved_edges
 from .solver.topology.face_edges import FaceEdge as FaceEdge
 from .solver.topology.face_edges import FaceEdges as FaceEdges
 from .solver.topology.face_edges import ResolvedEdge as ResolvedEdge

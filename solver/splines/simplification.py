@@ -102,7 +102,7 @@ def reduce_curve_degree(curve: BSplineCurve, degree: int) -> CurveApproximation:
     >>> found = reduce_curve_degree(parabola, 1)
     >>> found.curve.control_points, round(found.error, 12)
     (array([[0., 0., 0.],
-           [2., 0., 0.]]), 2.0)
+           [2., 0., 0.]]), 1.0)
     """
     require(curve, "curve", BSplineCurve)
     with _positive_weights():

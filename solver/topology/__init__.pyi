@@ -9,6 +9,7 @@ from .edge_blends import blend_bases as blend_bases
 from .edge_blends import blend_edges as blend_edges
 from .edge_listing import edge_lines as edge_lines
 from .edge_listing import edges_record as edges_record
+from .edge_moving import moved_edges as moved_edges
 from .face_edges import FaceEdge as FaceEdge
 from .face_edges import FaceEdges as FaceEdges
 from .face_edges import ResolvedEdge as ResolvedEdge
@@ -22,7 +23,6 @@ from .free_contact import FreeContact as FreeContact
 from .free_contact import measure_free_contact as measure_free_contact
 from .listing import place_lines as place_lines
 from .listing import places_record as places_record
-from .moving import moved_edges as moved_edges
 from .place import Place as Place
 from .place import Places as Places
 from .place import PlaceSide as PlaceSide

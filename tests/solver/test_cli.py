@@ -9,11 +9,11 @@ import pyiges
 import pytest
 from typer.testing import CliRunner
 
-import semispline
 from helpers.bases import facing_pair
 from semispline import BSplineSurface, ComputationError, SemiStructuredSurface
 from semispline.solver.cli import app
 from semispline.solver.io.surface_files import read_surface, write_surface
+from semispline.solver.topology import edge_blends
 
 IMPELLER = Path(pyiges.__file__).parent / "examples" / "impeller.igs"
 K = [0.0, 0.0, 1.0, 1.0]
@@ -162,7 +162,7 @@ def test_failed_computation_is_status_3(pair, monkeypatch):
     def fail(*_, **__):
         raise ComputationError("the solver gave up\nafter a while; try fewer middle curves")
 
-    monkeypatch.setattr(semispline.solver.blending, "blend", fail)
+    monkeypatch.setattr(edge_blends, "blend", fail)
     (pair / "c.json").write_text("old")
     done = run("blend", pair / "a.json", pair / "b.json", *edges(), "-o", pair / "c.json")
     assert done.exit_code == 3

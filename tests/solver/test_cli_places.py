@@ -11,6 +11,9 @@ from semispline import list_surfaces, read_surface
 from semispline.solver.cli import app
 from semispline.solver.io import read_occ
 
+# .ci/run lets each file be read by a process of its own.
+pytestmark = pytest.mark.usefixtures("read_here")
+
 
 def run(*words):
     return CliRunner().invoke(app, list(words))

@@ -320,6 +320,7 @@ STORED_OPTIONS = (
         u_knots=[0.25, 0.5],
         middle_knots=[[0.5], []],
         strict=True,
+        limits="cad",
     ),
     BlendOptions(
         alpha=((0.5, 0.25), None),
