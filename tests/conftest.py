@@ -57,7 +57,7 @@ def pytest_collection_modifyitems(config, items):
         items[:] = reordered(items, seed)
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
 def whole():
     """Whether all cases of a sweep are asked for, or a few of each kind."""
     return IS_WHOLE

@@ -216,8 +216,9 @@ def _trim_curve(outline: Outline, title: str) -> _Curve:
     if trim is None or trim.pcurve is None:
         raise EdgeError(f"{title}: the file shows no curve in the parameters of the face, from which to measure")
     first, last = float(trim.pcurve.knots[0]), float(trim.pcurve.knots[-1])
-    ends = trim.surface.evaluate(*trim.pcurve.evaluate(np.array([first, last]))[:, :2].T)
-    closed = bool(np.linalg.norm(ends[0] - ends[1]) <= _CLOSED * Face(trim.surface).size)
+    face = Face(trim.surface)
+    ends = face.jet(trim.pcurve.evaluate(np.array([first, last]))[:, :2], 0)[0, 0]
+    closed = bool(np.linalg.norm(ends[0] - ends[1]) <= _CLOSED * face.size)
     return _Curve((first, last), 1.0 if trim.keep == "left" else -1.0, trim.pcurve, closed)
 
 

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 from math import prod
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from semispline.solver.topology.between import Between
 from semispline.solver.topology.chamfers import Chamfer, chamfer_parts
+from semispline.solver.topology.clearance import clearance
 from semispline.solver.topology.fillets import bases_of, score_parts
 from semispline.solver.topology.gaps import Gap, gap_parts
 from semispline.solver.topology.half_edges import NONE, EdgeGraph
@@ -97,24 +97,6 @@ def sharp_entry(graph: EdgeGraph, relations: Relations, use: int) -> Entry:
     place = Place("sharp edge", (), first, second, ((), ()), prod(parts.values()), parts, measures, closed)
     words = ("sharp edge", *_kinds(graph, first.face, second.face), str(convex))
     return Entry(place, words, (length,), (angle,))
-
-
-def clearance(graph: EdgeGraph, *rows: int) -> float:
-    """Return how far the nearest edge of either face is that does not touch the edge; its length where there is none.
-
-    Samples are compared: it is an estimate.
-    """
-    uses, near = graph.uses, 1e-6 * graph.size
-    found = [float(np.linalg.norm(np.diff(uses.points[rows[0]], axis=0), axis=1).sum())]
-    for row in rows:
-        at = uses.of_face(int(uses.face[row]))
-        points = uses.points[at]
-        ends = points[:, [0, -1], None] - uses.points[row, [0, -1]]
-        touches = np.einsum("kabd,kabd->kab", ends, ends).min(axis=(1, 2)) <= near**2
-        free = (uses.edge[at] != uses.edge[row]) & ~touches & (uses.pcurve[at] != "none")
-        if free.any():
-            found.append(float(cKDTree(points[free].reshape(-1, 3)).query(uses.points[row])[0].min()))
-    return min(found[1:], default=found[0])
 
 
 def _between_entry(

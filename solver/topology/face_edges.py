@@ -14,7 +14,7 @@ from semispline.solver.splines import Surface, parse_edge
 from semispline.solver.topology.edge_names import EdgeKind, line_tolerance, named_edge
 from semispline.solver.topology.half_edges import NONE, EdgeGraph
 from semispline.solver.topology.measuring import MeasuredEdges, measured_edges
-from semispline.solver.topology.near import NEAR, nearest_edge
+from semispline.solver.topology.near import NEAR, nearest_edge, point_of
 from semispline.solver.topology.relations import relate
 
 if TYPE_CHECKING:
@@ -215,7 +215,9 @@ def resolve_edges(
     words = [word.strip() for _, word in edges]
     asked = [is_of_a_face(word) for word in words]
     for word, special, name in zip(words, asked, names, strict=True):
-        if not special:
+        if word.startswith(NEAR):
+            point_of(word, name)
+        elif not special:
             parse_edge(word, name)
     specs = [spec for spec, _ in edges]
     measured = _measured(specs, words)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -39,9 +39,9 @@ class Outline:
 
 
 def curved_edges(graph: EdgeGraph, row: int) -> list[int]:
-    """Return the edges of the face of a use, itself among them, of which samples do not tell all."""
+    """Return the edges of the face of a use of which samples do not tell all, and itself: it may slant."""
     uses = graph.uses
-    return [x for x in _drawn(graph, row) if uses.pcurve[x] != "line"]
+    return [x for x in _drawn(graph, row) if uses.pcurve[x] != "line" or x == row]
 
 
 def outline_of(graph: EdgeGraph, row: int, surface: BSplineSurface, curves: Mapping[int, TrimCurve]) -> Outline:
@@ -53,7 +53,8 @@ def outline_of(graph: EdgeGraph, row: int, surface: BSplineSurface, curves: Mapp
         if x != row:
             line = _polyline(graph, x, surface, curves.get(x))
             (ends if x in near or _touches(graph, x, row) else others).append(line)
-    return Outline(curves.get(row), ends, others)
+    trim = curves.get(row)
+    return Outline(None if trim is None else _beside(trim, own_parameters(graph, row, surface)), ends, others)
 
 
 def _drawn(graph: EdgeGraph, row: int) -> list[int]:
@@ -72,11 +73,20 @@ def _polyline(graph: EdgeGraph, row: int, surface: BSplineSurface, trim: TrimCur
     samples = own_parameters(graph, row, surface)
     if trim is None or trim.pcurve is None:
         return samples
+    pcurve = _beside(trim, samples).pcurve
+    assert pcurve is not None
+    return pcurve.evaluate(spread(np.unique(pcurve.knots), _POINTS))[:, :2]
+
+
+def _beside(trim: TrimCurve, samples: FloatArray) -> TrimCurve:
+    """Return a curve on the turn of its samples: of a closed surface it may run a turn beside the other edges."""
+    if trim.pcurve is None:
+        return trim
+    face = Face(trim.surface)
     line = trim.pcurve.evaluate(spread(np.unique(trim.pcurve.knots), _POINTS))[:, :2]
-    # It may have been taken over a turn beside the others.
-    face = Face(surface)
-    turns = np.round((samples.mean(axis=0) - line.mean(axis=0)) / face.widths)
-    return np.asarray(line + np.where(face.closed, turns, 0.0) * face.widths)
+    turns = np.where(face.closed, np.round((samples.mean(axis=0) - line.mean(axis=0)) / face.widths), 0.0)
+    shift = np.append(turns * face.widths, 0.0)
+    return replace(trim, pcurve=replace(trim.pcurve, control_points=trim.pcurve.control_points + shift))
 
 
 def own_parameters(graph: EdgeGraph, row: int, surface: BSplineSurface) -> FloatArray:

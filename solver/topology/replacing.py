@@ -178,7 +178,8 @@ def _stated(graph: EdgeGraph, between: Between, a: ResolvedEdge, b: ResolvedEdge
     rows = [side.uses[0] for side in (between.a, between.b)]
     contacts = uses.name(rows[0]), uses.name(rows[1])
     angles = float(relations.median[rows[0]]), float(relations.median[rows[1]])
-    turn = f"turns by {between.turn:.3g} degrees" + (f", radius {between.radius:.4g}" if between.curvature else "")
+    turns = between.turn > _STRAIGHT
+    turn = f"turns by {between.turn:.3g} degrees, radius {between.radius:.4g}" if turns else "does not turn"
     return ReplacedPair(
         face=between.face,
         contacts=contacts,

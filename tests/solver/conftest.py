@@ -17,6 +17,15 @@ def read_here(whole, monkeypatch):
         monkeypatch.setattr(foreign, "call", called_here)
 
 
+@pytest.fixture(scope="module")
+def reads_here(whole):
+    """The same for all tests of a file, and for what they share."""
+    with pytest.MonkeyPatch.context() as patch:
+        if not whole:
+            patch.setattr(foreign, "call", called_here)
+        yield
+
+
 def called_here(module, arguments, seconds, megabytes):
     """Do what `workers.call` does, without its process: what is found goes through pickle all the same."""
     assert min(seconds, megabytes) > 0

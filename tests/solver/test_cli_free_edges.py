@@ -19,7 +19,7 @@ from semispline.solver.judge import in_cad_limits, measure_contact, measure_crea
 from semispline.solver.options import BlendOptions
 
 # .ci/run lets each file be read by a process of its own.
-pytestmark = pytest.mark.usefixtures("read_here")
+pytestmark = pytest.mark.usefixtures("reads_here")
 
 # Shapes are looked at elsewhere.
 QUICK = ("--alpha", "natural")

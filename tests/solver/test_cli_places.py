@@ -12,7 +12,7 @@ from semispline.solver.cli import app
 from semispline.solver.io import read_occ
 
 # .ci/run lets each file be read by a process of its own.
-pytestmark = pytest.mark.usefixtures("read_here")
+pytestmark = pytest.mark.usefixtures("reads_here")
 
 
 def run(*words):

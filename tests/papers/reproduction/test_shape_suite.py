@@ -159,7 +159,7 @@ def test_the_search_on_a_mesh_has_a_column_of_its_own(monkeypatch):
     monkeypatch.syspath_prepend(Path(__file__).parents[3] / "benchmarks" / "shapes")
     tables = importlib.import_module("tables")
     shapes = [replace(GOOD, search_seconds=x) for x in (0.1, 0.4, 0.9, None)]
-    head, _, line = tables._ratios([row(shape) for shape in (*shapes, Refused("no"))]).splitlines()
+    head, _, line, *_ = tables._ratios([row(shape) for shape in (*shapes, Refused("no"))]).splitlines()
     cells = dict(zip(*([x.strip() for x in text.strip("|").split("|")] for text in (head, line)), strict=True))
     # Blends of 0.1 s each.
     assert cells["mesh searched in"] == "3"
@@ -167,6 +167,16 @@ def test_the_search_on_a_mesh_has_a_column_of_its_own(monkeypatch):
     assert cells["mesh search, most"] == "9.00"
     line = tables._ratios([row(GOOD)]).splitlines()[2]
     assert line.endswith("| 0 | – | – |")
+
+
+def test_pairs_that_take_more_than_four_times_the_time_of_energy_are_named(monkeypatch):
+    monkeypatch.syspath_prepend(Path(__file__).parents[3] / "benchmarks" / "shapes")
+    tables = importlib.import_module("tables")
+    slow, quick = (
+        replace(row(GOOD), seed=seed, energy=replace(GOOD, seconds=0.1 / x)) for seed, x in ((7, 4.1), (8, 3.9))
+    )
+    assert tables._ratios([slow, quick]).splitlines()[-1].endswith("; above that: facing-007 4.1.")
+    assert tables._ratios([quick]).splitlines()[-1].endswith("; above that: none.")
 
 
 def test_bounds_of_alpha_alone_are_counted():

@@ -418,7 +418,7 @@ def test_meshes_of_collapsed_surfaces_have_no_empty_triangles(tmp_path):
 
 
 @pytest.mark.parametrize("suffix", [".step", ".igs", ".brep", ".3dm"])
-def test_several_surfaces_stay_in_their_order(tmp_path, suffix):
+def test_several_surfaces_stay_in_their_order(tmp_path, suffix, read_here):
     path = tmp_path / f"three{suffix}"
     rational = revolve(BSplineCurve(1, [0, 0, 1, 1], [[2, 0, 0], [3, 0, 1]]), (0, 0, 0), (0, 0, 1))
     three = [patch(), rational, plane([0, 0, 5], [1, 0, 0], [0, 2, 0])]

@@ -293,6 +293,9 @@ def test_edges_that_lie_on_each_other_are_a_tie(tmp_path):
 
 def test_points_are_numbers():
     assert point_of("near=1,-2.5,1e-3").tolist() == [1.0, -2.5, 1e-3]
+    # Before a file is read, and with the option that was wrong.
+    with pytest.raises(EdgeError, match=r"^--edge-b: found 'near=1,2', expected near=x,y,z"):
+        resolve_edges([("a.step", "u0"), ("b.step", "near=1,2")])
 
 
 @pytest.mark.usefixtures("read_here")

@@ -20,7 +20,7 @@ from semispline.solver.topology.face_meshes import FaceMesh, grid_within
 from semispline.solver.topology.rhino_meshes import _through_poles
 
 # .ci/run lets each file be read by a process of its own.
-pytestmark = pytest.mark.usefixtures("read_here")
+pytestmark = pytest.mark.usefixtures("reads_here")
 
 FLOOR = plane([0, 0, 0], [1, 0, 0], [0, 1, 0])
 SQUARE = np.array([[0.0, 0], [1, 0], [1, 1], [0, 1], [0, 0]])

@@ -1,15 +1,30 @@
 """Contacts moved into the faces of parts: how far, as far as which edges, and what is refused."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from OCP.BRepAlgoAPI import BRepAlgoAPI_Cut
-from OCP.BRepPrimAPI import BRepPrimAPI_MakeBox, BRepPrimAPI_MakeCone, BRepPrimAPI_MakeCylinder, BRepPrimAPI_MakeWedge
-from OCP.gp import gp_Pnt
+from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeFace, BRepBuilderAPI_MakePolygon
+from OCP.BRepPrimAPI import (
+    BRepPrimAPI_MakeBox,
+    BRepPrimAPI_MakeCone,
+    BRepPrimAPI_MakeCylinder,
+    BRepPrimAPI_MakeHalfSpace,
+    BRepPrimAPI_MakePrism,
+    BRepPrimAPI_MakeWedge,
+)
+from OCP.gp import gp_Dir, gp_Pln, gp_Pnt, gp_Vec
 
 from helpers.parts import written
 from semispline import EdgeError, OptionError, blend_edges, list_edges, plane, write_surface
 from semispline.solver.splines import cut_to_edge, parse_edge
 from semispline.solver.topology import moved_edges, parse_cut
+from semispline.solver.topology.cuts import moved_contact
+from semispline.solver.topology.face_jets import Face
+from semispline.solver.topology.outlines import outline_of
+from semispline.solver.topology.reading import read_edges
+from semispline.solver.topology.trim_curves import read_trim_curves
 
 # .ci/run lets each file be read by a process of its own.
 pytestmark = pytest.mark.usefixtures("read_here")
@@ -19,6 +34,14 @@ pytestmark = pytest.mark.usefixtures("read_here")
 def pin(tmp_path):
     """A cylinder of radius 5 and height 8: #0 is round, #1 the upper plane."""
     return written(BRepPrimAPI_MakeCylinder(5.0, 8.0).Shape(), tmp_path / "pin.brep")
+
+
+def slanted_pin():
+    """A cylinder of radius 5, cut off by the plane z = 8 + x / 2."""
+    half_space = BRepPrimAPI_MakeHalfSpace(
+        BRepBuilderAPI_MakeFace(gp_Pln(gp_Pnt(0, 0, 8), gp_Dir(-0.5, 0, 1))).Face(), gp_Pnt(0, 0, 50)
+    )
+    return BRepAlgoAPI_Cut(BRepPrimAPI_MakeCylinder(5.0, 20.0).Shape(), half_space.Solid()).Shape()
 
 
 def specs(path, a=0, b=1):
@@ -34,6 +57,12 @@ def edge_points(end):
     return part.evaluate(*((at, along) if axis == 0 else (along, at)))
 
 
+def free_points(end):
+    """Points of the free curve that a contact was moved to."""
+    along = np.linspace(*end.curve.pcurve.knots[[0, -1]], 50)
+    return end.surface.evaluate(*end.curve.pcurve.evaluate(along)[:, :2].T)
+
+
 def test_a_rim_is_moved_into_both_faces(pin):
     a, b = moved_edges(specs(pin), (None, None), ("1.5", "2"))
     assert edge_points(a)[:, 2] == pytest.approx(6.5, abs=1e-12)
@@ -41,7 +70,7 @@ def test_a_rim_is_moved_into_both_faces(pin):
     # A circle in a plane is no line of constant parameter: it becomes a free curve, concentric.
     assert b.is_free
     assert b.said == f"e0 of {pin}#1 moved to a free curve, 2 inside"
-    points = b.surface.evaluate(*b.curve.pcurve.evaluate(np.linspace(*b.curve.pcurve.knots[[0, -1]], 50))[:, :2].T)
+    points = free_points(b)
     # Interpolated: a hundredth of what a free contact may be off its edge, 1e-5 of the length.
     assert np.linalg.norm(points[:, :2], axis=1) == pytest.approx(3.0, abs=1e-7 * 6 * np.pi)
     assert points[:, 2] == pytest.approx(8.0, abs=1e-12)
@@ -147,3 +176,50 @@ def test_faces_that_share_no_edge_or_several(tmp_path):
 def test_words_of_cuts_that_mean_nothing(word):
     with pytest.raises(OptionError, match=r"--cut-a: found .*, expected a distance above 0 in model units, as 2.5"):
         parse_cut(word, "--cut-a")
+
+
+@pytest.mark.parametrize("turns", [-1, 0, 1])
+def test_a_curve_that_is_taken_over_another_turn_is_moved_all_the_same(tmp_path, turns):
+    path = written(slanted_pin(), tmp_path / "slanted.brep")
+    graph = read_edges(path)
+    row = next(x for x in range(len(graph.uses)) if graph.faces.kind[graph.uses.face[x]] == "cylinder"
+               and graph.uses.pcurve[x] not in ("line", "none"))  # fmt: skip
+    face, number = int(graph.uses.face[row]), int(graph.uses.number[row])
+    (trim,) = read_trim_curves(path, [(face, number)])
+    (period,) = np.ptp(trim.surface.domain[0], keepdims=True)
+    away = np.array([turns * period, 0.0, 0.0])
+    turned = replace(trim, pcurve=replace(trim.pcurve, control_points=trim.pcurve.control_points + away))
+    outline = outline_of(graph, row, trim.surface, {row: turned})
+    moved = moved_contact(trim.surface, None, parse_cut("1"), outline, 1e-6, "cut", "e0")
+    points = Face(trim.surface).jet(
+        moved.curve.pcurve.evaluate(np.linspace(*moved.curve.pcurve.knots[[0, -1]], 60))[:, :2], 0
+    )
+    slope, x = 0.5, points[0, 0][:, 0]
+    # In the rolled-out cylinder the edge is z = 8 + x / 2; no point of it is nearer than 1, some are that near.
+    across = np.linspace(-np.pi, np.pi, 4001)
+    edge = np.column_stack([5 * across, 8 + slope * 5 * np.cos(across)])
+    at = np.column_stack([5 * np.arctan2(points[0, 0][:, 1], x), points[0, 0][:, 2]])
+    inner = np.abs(at[:, 0]) < 12
+    away = np.linalg.norm(at[inner, None] - edge, axis=2).min(axis=1)
+    # Of an edge that is a polyline of steps of 0.008.
+    assert away == pytest.approx(1.0, abs=1e-4)
+    assert (at[:, 1] < 8 + slope * x).all()
+
+
+def test_a_straight_edge_that_slants_in_a_plane_is_moved(tmp_path):
+    """Below a prism over the triangle (0, 0), (10, 0), (3, 7), each side is moved into the triangle by one."""
+    corners = np.array([[0.0, 0.0], [10.0, 0.0], [3.0, 7.0]])
+    outline = BRepBuilderAPI_MakePolygon()
+    for x, y in corners:
+        outline.Add(gp_Pnt(x, y, 0.0))
+    outline.Close()
+    floor = BRepBuilderAPI_MakeFace(outline.Wire()).Face()
+    path = written(BRepPrimAPI_MakePrism(floor, gp_Vec(0.0, 0.0, 4.0)).Shape(), tmp_path / "prism.brep")
+    face = next(n for n in range(5) if len(edges := list_edges(path, n).edges) == 3)
+    for entry in edges:
+        end, _ = moved_edges(specs(path, face, entry.neighbour), (None, None), ("1", "1"))
+        points = edge_points(end) if end.curve is None else free_points(end)
+        along = np.subtract(entry.end, entry.start)
+        away = np.linalg.norm(np.cross(points - np.array(entry.start), along / np.linalg.norm(along)), axis=1)
+        # Interpolated, where it is a free contact.
+        assert away == pytest.approx(1.0, abs=1e-7)

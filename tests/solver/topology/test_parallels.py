@@ -5,6 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from helpers.sweeps import examples
 from semispline import BSplineCurve, plane, revolve, transform
 from semispline.solver.splines import EdgeName
 from semispline.solver.topology.cuts import Cut, moved_contact
@@ -52,6 +53,7 @@ def test_a_distance_in_a_plane(edge, axis, coordinate):
     assert points[:, axis] == pytest.approx(coordinate, abs=1e-13)
 
 
+@examples(25)
 @given(st.floats(0.1, 9.0), st.floats(0.2, 6.0))
 def test_a_distance_along_and_round_a_cylinder(distance, radius):
     surface = tube(radius)
@@ -84,6 +86,7 @@ def test_a_free_curve_in_a_plane_is_parallel():
     assert paths.point[-1][:, :2] == pytest.approx(at + 0.8 * normal, abs=1e-12)
 
 
+@examples(25)
 @given(st.floats(-1.2, 1.2), st.floats(0.2, 3.0), st.sampled_from([1.0, -1.0]))
 def test_on_a_cylinder_paths_are_straight_lines_of_the_unrolled_sheet(slant, distance, sign):
     radius = 2.0
@@ -133,6 +136,7 @@ def test_crossings_are_where_lines_are():
     assert found[1] == pytest.approx([0.1, 0.3, 0.5, 0.7, np.inf])
 
 
+@examples(25)
 @given(st.floats(0.5, 4.0))
 def test_paths_into_a_circle_cross_in_its_middle(radius):
     floor = Face(plane([-5, -5, 0], [10, 0, 0], [0, 10, 0]))

@@ -5,17 +5,33 @@ import shlex
 from math import prod
 
 import pytest
-from OCP.BRepPrimAPI import BRepPrimAPI_MakeBox, BRepPrimAPI_MakeSphere
-from OCP.gp import gp_Trsf, gp_Vec
+from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeFace, BRepBuilderAPI_MakePolygon
+from OCP.BRepPrimAPI import (
+    BRepPrimAPI_MakeBox,
+    BRepPrimAPI_MakeCylinder,
+    BRepPrimAPI_MakePrism,
+    BRepPrimAPI_MakeSphere,
+)
+from OCP.gp import gp_Pnt, gp_Trsf, gp_Vec
 from typer.testing import CliRunner
 
 from helpers.parts import compound, graph_of, moved, rounded_box, without, written
 from helpers.random_parts import known_part
 from semispline import FileError, find_places
 from semispline.solver.cli import app
+from semispline.solver.topology import moved_edges
 from semispline.solver.topology.listing import place_lines, places_record
 from semispline.solver.topology.place import KINDS
 from semispline.solver.topology.places import places_of
+
+
+def prism(corners, height):
+    """A prism over a polygon in z = 0."""
+    polygon = BRepBuilderAPI_MakePolygon()
+    for x, y in corners:
+        polygon.Add(gp_Pnt(x, y, 0.0))
+    polygon.Close()
+    return BRepPrimAPI_MakePrism(BRepBuilderAPI_MakeFace(polygon.Wire()).Face(), gp_Vec(0, 0, height)).Shape()
 
 
 def test_places_of_a_box_with_rounds():
@@ -87,6 +103,34 @@ def test_a_sharp_edge_is_cut_by_less_than_the_face_has():
         assert cuts[0] == cuts[1]
         assert 0.3 * place.measures["clearance"] < cuts[0] <= place.measures["clearance"] / 3
         assert place.measures["clearance"] in (pytest.approx(2.0), pytest.approx(3.0))
+
+
+@pytest.mark.parametrize(
+    ("shape", "reached"),
+    [
+        # The rims of a tall pin: into the disc no further than its radius.
+        (BRepPrimAPI_MakeCylinder(3.0, 60.0).Shape(), {3.0}),
+        # A prism of triangles 6 wide and 4 high: from the base the two other sides leave nothing at 4, from these, of
+        # length 5, at 24 / 5; the square sides are 20 long.
+        (prism([(0, 0), (6, 0), (3, 4)], 20.0), {4.0, 4.8, 5.0, 6.0}),
+    ],
+    ids=["pin", "prism"],
+)
+def test_the_clearance_of_sharp_edges_is_that_within_their_faces(tmp_path, shape, reached):
+    path = written(shape, tmp_path / "part.brep")
+    for place in find_places(path).of_kind("sharp edge"):
+        # Nine samples, 5 / 8 apart, stand beside the foot of the apex: they see it too near by 4.8 / 1.4 times that at
+        # the most.
+        assert any(x - 5 / 16 * 4.8 / 1.4 <= place.measures["clearance"] <= x * (1 + 1e-9) for x in reached)
+
+
+def test_the_command_of_the_rim_of_a_tall_pin_stays_within_its_disc(tmp_path):
+    place = find_places(written(BRepPrimAPI_MakeCylinder(3.0, 60.0).Shape(), tmp_path / "pin.brep")).found[0]
+    words = shlex.split(place.commands[0])
+    option = {word: words[k + 1] for k, word in enumerate(words[:-1]) if word.startswith("--")}
+    edges = option["--edge-a"], option["--edge-b"]
+    ends = moved_edges((words[2], words[3]), edges, (option["--cut-a"], option["--cut-b"]))
+    assert [end.spec for end in ends] == words[2:4]
 
 
 def test_nothing_found_says_what_was_refused(tmp_path):
