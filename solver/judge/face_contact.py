@@ -30,6 +30,8 @@ _PER_SPAN, _GRID = 30, 80
 _STEPS = 30
 # So far beside a foot, of the domain, lies the point whose derivatives are those of the kept side of a knot line.
 _BESIDE = 1e-9
+# Ends of an edge nearer than this, of its length, are one point.
+_SAME_POINT = 1e-6
 # An edge that is farther from the face than this, of its length, is not one of it.
 _NOT_ON_IT = 0.05
 
@@ -141,7 +143,11 @@ def measure_face_profile(
         raise EdgeError(
             f"face: the edge is {away[k]:.3g} away from it at ({x:.5g}, {y:.5g}, {z:.5g}), expected an edge on it"
         )
-    of_face = _face_jet(moved, feet, own.into if same_side else -own.into, order)
+    towards = own.into / np.maximum(np.linalg.norm(own.into, axis=1), 1e-300)[:, None] * (1 if same_side else -1)
+    if np.linalg.norm(points[0] - points[-1]) > _SAME_POINT * length[-1]:
+        # An end may lie on a knot line across the edge: the side of it is that of the edge.
+        towards[0], towards[-1] = towards[0] + own.along[0], towards[-1] - own.along[-1]
+    of_face = _face_jet(moved, feet, towards, order)
     normal, side = _normal(of_face), _normal(own.jet)
     # Of two ways to look at a surface that which agrees.
     side *= np.where(np.sum(side * normal, axis=1) < 0, -1.0, 1.0)[:, None]
@@ -264,9 +270,10 @@ def _face_jet(face: BSplineSurface, feet: FloatArray, towards: FloatArray, order
     step = np.nan_to_num(np.stack(_solved(s, t, towards), axis=1))
     step *= _BESIDE / np.maximum(np.abs(step / (high - low)).max(axis=1), 1e-300)[:, None]
     # Elsewhere a step would only cost digits.
+    lines = [breaks if closed else breaks[1:-1] for breaks, closed in zip(face.breakpoints, _closed(face), strict=True)]
     on_line = [
-        (np.abs(feet[:, d, None] - breaks).min(axis=1) <= 2 * _BESIDE * (high - low)[d])
-        for d, breaks in enumerate(face.breakpoints)
+        np.abs(feet[:, d, None] - breaks).min(axis=1, initial=np.inf) <= 2 * _BESIDE * (high - low)[d]
+        for d, breaks in enumerate(lines)
     ]
     step = np.where(np.stack(on_line, axis=1), step, 0.0)
     at = np.clip(feet + step, low, high)

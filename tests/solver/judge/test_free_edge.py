@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from helpers.free_curves import cubic, cylinder, ellipse_on_cylinder, free_form, line
-from semispline import Base, blend, extrude, plane
+from helpers.free_curves import bent_face, cubic, cylinder, ellipse_on_cylinder, free_form, line
+from semispline import Base, band_along, blend, extrude, plane
 from semispline.solver.judge import (
     FreeEdge,
     exact_face_limits,
@@ -97,6 +97,17 @@ def test_two_faces_at_the_edge_that_they_share():
     assert found.curvature_jump_relative <= 1e-6
     # The same part twice folds back.
     assert measure_face_contact(kept, kept).angle_degrees == pytest.approx(180)
+
+
+@pytest.mark.parametrize("start", [-1.0, 0.0])
+def test_an_end_on_a_knot_line_across_the_edge_is_compared_with_the_side_of_the_edge(start):
+    """A face whose curvature along x jumps at x = 0 by 7 %, and an edge that ends or begins there."""
+    face = bent_face(0.07)
+    edge = FreeEdge(face, line((start, 0.3), (start + 1.0, 0.6)), False, "left")
+    (band,) = band_along(face, edge.curve)
+    # A band is within 2 %; that of the other side would be 7 % off.
+    assert measure_face_contact(band.base, edge, same_side=True).curvature_jump_relative <= 0.02
+    assert measure_face_contact(band.base, face, same_side=True).curvature_jump_relative <= 0.02
 
 
 def test_exact_limits_are_those_of_contacts_with_rounding_by_the_size_of_the_face():
