@@ -110,8 +110,8 @@ def show_command(
         typer.echo(f"mean {found.mean:.3g} {unit}")
     if picture.unnamed_edges:
         typer.echo(
-            f"edges not named for want of room: {picture.unnamed_edges}; `semispline show PATH#N --labels` names "
-            "those of one face",
+            f"edges not named, since no view shows them or leaves room: {picture.unnamed_edges}; `semispline show PATH#N "
+            "--labels` names those of one face, --views has other sides",
             err=True,
         )
     if picture.unseen:
