@@ -74,8 +74,9 @@ def test_an_edge_is_named_on_its_own_face_beside_its_seen_middle():
     assert 200 < y < 220
     assert edge_anchor(seen, flat, 5, line, "e3", HEIGHT) is None
     # Out of the picture.
-    assert edge_anchor(seen, flat, 0, line + [1000, 1000, 0], "e3", HEIGHT) is None
-    assert edge_anchor(seen, flat, 0, line - [1000, 1000, 0], "e3", HEIGHT) is None
+    out = np.array([1000, 1000, 0])
+    assert edge_anchor(seen, flat, 0, line + out, "e3", HEIGHT) is None
+    assert edge_anchor(seen, flat, 0, line - out, "e3", HEIGHT) is None
 
 
 def test_an_edge_behind_a_part_of_its_own_face_is_hidden():
