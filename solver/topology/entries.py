@@ -7,15 +7,17 @@ from dataclasses import dataclass
 from math import prod
 
 import numpy as np
+from scipy.optimize import linear_sum_assignment
 
+from semispline.solver.arrays import FloatArray
 from semispline.solver.topology.between import Between
 from semispline.solver.topology.chamfers import Chamfer, chamfer_parts
 from semispline.solver.topology.clearance import clearance
 from semispline.solver.topology.fillets import bases_of, score_parts
 from semispline.solver.topology.gaps import Gap, gap_parts
-from semispline.solver.topology.half_edges import NONE, EdgeGraph
+from semispline.solver.topology.half_edges import NONE, EdgeGraph, Integers, Uses
 from semispline.solver.topology.place import Place, PlaceSide
-from semispline.solver.topology.relations import Relations
+from semispline.solver.topology.relations import Relations, to_polyline
 from semispline.solver.topology.sides import Side
 
 
@@ -70,7 +72,7 @@ def chain_entry(graph: EdgeGraph, relations: Relations, members: Sequence[Betwee
 def gap_entry(graph: EdgeGraph, gap: Gap) -> Entry:
     """Return the place of a gap."""
     parts = gap_parts(gap)
-    a, b = (_naked_side(graph, side) for side in (gap.a, gap.b))
+    a, b = _naked_sides(graph, gap)
     measures = {
         "length": gap.length,
         "width": gap.width,
@@ -149,13 +151,39 @@ def _beyond(graph: EdgeGraph, relations: Relations, side: Side) -> PlaceSide:
     return PlaceSide(*first, more=tuple(others))
 
 
-def _naked_side(graph: EdgeGraph, side: Side) -> PlaceSide:
-    """Return the longest edge of a side of a hole, and the others."""
+def _naked_sides(graph: EdgeGraph, gap: Gap) -> tuple[PlaceSide, PlaceSide]:
+    """Return both sides of a gap, of each the edge that is named first: the longest of the side with more edges.
+
+    The first edges face each other. Of as many edges on both sides all do, one by one; else those of a side follow in
+    the order of their lengths.
+    """
     uses = graph.uses
-    length = np.linalg.norm(np.diff(uses.points[list(side.uses)], axis=1), axis=2).sum(axis=1)
-    first, *others = [side.uses[i] for i in np.argsort(-length, kind="stable")]
-    more = tuple((int(uses.face[row]), uses.name(row)) for row in others)
-    return PlaceSide(int(uses.face[first]), uses.name(first), more)
+    lines = [[uses.points[use] for use in side.uses] for side in (gap.a, gap.b)]
+    lengths = [np.array([np.linalg.norm(np.diff(line, axis=0), axis=1).sum() for line in side]) for side in lines]
+    apart = np.array([[_apart(one, other) for other in lines[1]] for one in lines[0]])
+    order_a, order_b = (np.argsort(-x, kind="stable") for x in lengths)
+    if len(order_a) == len(order_b):
+        order_b = linear_sum_assignment(apart)[1][order_a]
+    elif len(order_a) > len(order_b):
+        order_b = _with_first(order_b, int(np.argmin(apart[order_a[0]])))
+    else:
+        order_a = _with_first(order_a, int(np.argmin(apart[:, order_b[0]])))
+    a, b = ([side.uses[k] for k in order] for side, order in ((gap.a, order_a), (gap.b, order_b)))
+    return _side_of(uses, a), _side_of(uses, b)
+
+
+def _apart(one: FloatArray, other: FloatArray) -> float:
+    """Return how far two sampled edges lie apart: the mean from either to the nearest point of the other."""
+    return float(to_polyline(one, other).mean() + to_polyline(other, one).mean())
+
+
+def _with_first(order: Integers, first: int) -> Integers:
+    return np.concatenate([[first], order[order != first]])
+
+
+def _side_of(uses: Uses, rows: Sequence[int]) -> PlaceSide:
+    (face, edge), *more = [(int(uses.face[row]), uses.name(row)) for row in rows]
+    return PlaceSide(face, edge, tuple(more))
 
 
 def _kinds(graph: EdgeGraph, *faces: int) -> tuple[str, ...]:
