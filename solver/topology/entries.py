@@ -8,6 +8,7 @@ from math import prod
 
 import numpy as np
 from scipy.optimize import linear_sum_assignment
+from scipy.spatial.distance import cdist
 
 from semispline.solver.arrays import FloatArray
 from semispline.solver.topology.between import Between
@@ -17,7 +18,7 @@ from semispline.solver.topology.fillets import bases_of, score_parts
 from semispline.solver.topology.gaps import Gap, gap_parts
 from semispline.solver.topology.half_edges import NONE, EdgeGraph, Integers, Uses
 from semispline.solver.topology.place import Place, PlaceSide
-from semispline.solver.topology.relations import Relations, to_polyline
+from semispline.solver.topology.relations import Relations
 from semispline.solver.topology.sides import Side
 
 
@@ -158,23 +159,32 @@ def _naked_sides(graph: EdgeGraph, gap: Gap) -> tuple[PlaceSide, PlaceSide]:
     the order of their lengths.
     """
     uses = graph.uses
-    lines = [[uses.points[use] for use in side.uses] for side in (gap.a, gap.b)]
-    lengths = [np.array([np.linalg.norm(np.diff(line, axis=0), axis=1).sum() for line in side]) for side in lines]
-    apart = np.array([[_apart(one, other) for other in lines[1]] for one in lines[0]])
-    order_a, order_b = (np.argsort(-x, kind="stable") for x in lengths)
-    if len(order_a) == len(order_b):
-        order_b = linear_sum_assignment(apart)[1][order_a]
-    elif len(order_a) > len(order_b):
-        order_b = _with_first(order_b, int(np.argmin(apart[order_a[0]])))
-    else:
-        order_a = _with_first(order_a, int(np.argmin(apart[:, order_b[0]])))
+    lines = [uses.points[list(side.uses)] for side in (gap.a, gap.b)]
+    order_a, order_b = (
+        np.argsort(-np.linalg.norm(np.diff(x, axis=1), axis=2).sum(axis=1), kind="stable") for x in lines
+    )
+    if max(len(order_a), len(order_b)) > 1:
+        apart = _apart(*lines)
+        if len(order_a) == len(order_b):
+            order_b = linear_sum_assignment(apart)[1][order_a]
+        elif len(order_a) > len(order_b):
+            order_b = _with_first(order_b, int(np.argmin(apart[order_a[0]])))
+        else:
+            order_a = _with_first(order_a, int(np.argmin(apart[:, order_b[0]])))
     a, b = ([side.uses[k] for k in order] for side, order in ((gap.a, order_a), (gap.b, order_b)))
     return _side_of(uses, a), _side_of(uses, b)
 
 
-def _apart(one: FloatArray, other: FloatArray) -> float:
-    """Return how far two sampled edges lie apart: the mean from either to the nearest point of the other."""
-    return float(to_polyline(one, other).mean() + to_polyline(other, one).mean())
+def _apart(a: FloatArray, b: FloatArray) -> FloatArray:
+    """Return how far edges lie apart, of every second sample the mean to the nearest of the other; shape (n_a, n_b).
+
+    Parameters
+    ----------
+    a, b : ndarray, shapes (n_a, N, 3) and (n_b, N, 3)
+    """
+    a, b = a[:, ::2], b[:, ::2]
+    away = cdist(a.reshape(-1, 3), b.reshape(-1, 3)).reshape(*a.shape[:2], *b.shape[:2])
+    return np.asarray(away.min(axis=3).mean(axis=1) + away.min(axis=1).mean(axis=2))
 
 
 def _with_first(order: Integers, first: int) -> Integers:
