@@ -13,6 +13,7 @@ from .edge_moving import moved_edges as moved_edges
 from .face_edges import FaceEdge as FaceEdge
 from .face_edges import FaceEdges as FaceEdges
 from .face_edges import ResolvedEdge as ResolvedEdge
+from .face_edges import is_near as is_near
 from .face_edges import is_of_a_face as is_of_a_face
 from .face_edges import list_edges as list_edges
 from .face_edges import resolve_edge as resolve_edge

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import shlex
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from math import floor, log10
 
@@ -30,7 +30,7 @@ def with_commands(graph: EdgeGraph, relations: Relations, place: Place, betweens
         Face -> how it lies between the faces that are to be blended.
     """
     if not place.faces:
-        return replace(place, commands=(_two_faces(graph.path, place),))
+        return replace(place, commands=tuple(_two_faces(graph.path, place)))
     edges = (_edges_to_name(graph, relations, betweens[face]) for face in place.faces)
     commands = (replacing(graph.path, face, names) for face, names in zip(place.faces, edges, strict=True))
     return replace(place, commands=tuple(commands))
@@ -62,14 +62,19 @@ def _edges_to_name(graph: EdgeGraph, relations: Relations, between: Between) -> 
     return graph.uses.name(rows[0]), graph.uses.name(rows[1])
 
 
-def _two_faces(path: str, place: Place) -> str:
-    a, b = place.a, place.b
-    words = ["semispline", "blend", f"{_safe(path)}#{a.face}", f"{_safe(path)}#{b.face}"]
-    words += ["--edge-a", a.edge, "--edge-b", b.edge]
+def _two_faces(path: str, place: Place) -> Iterator[str]:
+    """Yield the command of two edges; of a gap with as many on both sides, of each edge and the one that faces it."""
+    sides = [[(side.face, side.edge), *side.more] for side in (place.a, place.b)]
+    cuts: list[str] = []
     if place.kind == "sharp edge":
         distance = f"{_two_digits(place.measures['clearance'] * _OF_CLEARANCE):g}"
-        words += ["--cut-a", distance, "--cut-b", distance]
-    return shlex.join([*words, "-o", f"{place.kind.partition(' ')[0]}-{a.face}-{b.face}.step"])
+        cuts = ["--cut-a", distance, "--cut-b", distance]
+    for a, b in zip(*sides, strict=True) if len(sides[0]) == len(sides[1]) else [(sides[0][0], sides[1][0])]:
+        words = ["semispline", "blend", *(f"{_safe(path)}#{face}" for face, _ in (a, b))]
+        words += ["--edge-a", a[1], "--edge-b", b[1], *cuts]
+        # Two faces may have several edges in common.
+        out = "-".join([place.kind.partition(" ")[0], *(f"{face}{edge}" for face, edge in (a, b))])
+        yield shlex.join([*words, "-o", f"{out}.step"])
 
 
 def _safe(path: str) -> str:

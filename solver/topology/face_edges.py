@@ -147,9 +147,14 @@ class ResolvedEdge:
         return split_part(self.edge)[1]
 
 
+def is_near(word: str) -> bool:
+    """Tell whether a word names an edge by a point."""
+    return word.strip().startswith(NEAR)
+
+
 def is_of_a_face(word: str) -> bool:
     """Tell whether a word names an edge of a face in a file: e3, e3[0], near=x,y,z."""
-    return bool(_OF_A_FACE.fullmatch(split_part(word)[0])) or word.strip().startswith(NEAR)
+    return bool(_OF_A_FACE.fullmatch(split_part(word)[0])) or is_near(word)
 
 
 def split_part(word: str) -> tuple[str, int | None]:

@@ -310,4 +310,4 @@ def test_a_small_edge_of_a_large_model_is_the_faces_own(tmp_path):
     assert face_warnings((found.spec, found.edge, found.loaded)) == ()
     # The same line, asked for as a line of the surface, is told to be off.
     (loaded,) = read_surfaces([f"{path}#0"])
-    assert "lies outside of the face" in face_warnings((found.spec, found.edge, loaded))[0]
+    assert "is no edge of the face" in face_warnings((found.spec, found.edge, loaded))[0]

@@ -95,6 +95,54 @@ def test_commands_name_file_and_edges_for_a_shell(name):
     assert {place.kind for place in places.found} >= {"fillet", "gap", "sharp edge"}
 
 
+def sheets_with_broken_edges(cuts_a, cuts_b):
+    """Two sheets 10 long that face each other over 2, their edges broken at cuts along y."""
+    faces = []
+    for x, far, cuts in ((0, -8, cuts_a), (2, 10, cuts_b)):
+        polygon = BRepBuilderAPI_MakePolygon()
+        for y in (0, *cuts, 10):
+            polygon.Add(gp_Pnt(x, y, 0))
+        polygon.Add(gp_Pnt(far, 10, 0))
+        polygon.Add(gp_Pnt(far, 0, 0))
+        polygon.Close()
+        faces.append(BRepBuilderAPI_MakeFace(polygon.Wire()).Face())
+    return compound(faces)
+
+
+def facing(graph, command):
+    """The middles along y of the edges that a command names, and the file that it writes."""
+    words = shlex.split(command)
+    found = []
+    for spec, option in ((words[2], "--edge-a"), (words[3], "--edge-b")):
+        rows = graph.uses.of_face(int(spec.partition("#")[2]))
+        found.append(graph.uses.points[rows.start + int(words[words.index(option) + 1][1:]), 4, 1])
+    return (*found, words[-1])
+
+
+def test_of_a_gap_with_several_edges_each_is_named_with_the_one_that_faces_it():
+    graph = graph_of(sheets_with_broken_edges((1, 6), (1.2, 5.8)))
+    place = next(place for place in places_of(graph).of_kind("gap") if place.measures["length"] == pytest.approx(10))
+    found = [facing(graph, command) for command in place.commands]
+    assert [(round(a, 6), round(b, 6)) for a, b, _ in found] in (
+        [(3.5, 3.5), (8, 7.9), (0.5, 0.6)],
+        [(3.5, 3.5), (7.9, 8), (0.6, 0.5)],
+    )
+    assert len({out for *_, out in found}) == 3
+    assert not any("#" in line and "one edge of several" in line for line in place_lines(places_of(graph)))
+
+
+def test_of_a_gap_with_other_numbers_of_edges_one_pair_is_named_and_the_rest_said():
+    graph = graph_of(sheets_with_broken_edges((1, 6), (4.5,)))
+    places = places_of(graph)
+    place = next(place for place in places.of_kind("gap") if place.measures["length"] == pytest.approx(10))
+    # The longest of the three faces the shorter one of the two.
+    ((a, b, _),) = (facing(graph, command) for command in place.commands)
+    assert sorted([round(a, 6), round(b, 6)]) == [2.25, 3.5]
+    said = [line for line in place_lines(places) if line.startswith("    # one edge of several: side ")]
+    assert len(said) == 2
+    assert sum(line.count(" e") - line.count(" edge") for line in said) == 3
+
+
 def test_a_sharp_edge_is_cut_by_less_than_the_face_has():
     for place in places_of(graph_of(BRepPrimAPI_MakeBox(2.0, 3.0, 5.0).Shape())).found:
         words = shlex.split(place.commands[0])
