@@ -74,8 +74,9 @@ class BlendOptions:
         fairest shape in units of an arc's, 1/4 to 4, or to 16 where exits and chords disagree, 1/8 to 2 for G3 and G4.
     v_scale : {"paper", "unit", "length", "stretched"}, optional
         What (11) takes the length of the v-domain for: itself, 1, mean contact length over mean gap, or 3.5 times that,
-        with which the free rows of G1 do not pull pipes together. But for the first one the blend does not depend on
-        the units of v nor on the order of the bases.
+        with which the free rows of G1 do not pull pipes together. Of G0 and C0, where no tangent holds them, they do by
+        a tenth of the radius: "length" is the default there, "stretched" leaves 1 %, and makes random pairs less fair.
+        But for the first one the blend does not depend on the units of v nor on the order of the bases.
     u_knots : sequence of float, optional
         Inner knots of U instead of uniform ones.
     middle_knots : "fourth", "paper", or a sequence of sequences of float, optional

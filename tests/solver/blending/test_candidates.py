@@ -236,7 +236,7 @@ def test_p2_stays_where_it_is_worth_more_than_an_end_that_is_not_met():
     # One side goes without, then both.
     first, *others = (c.verdict for c in result.candidates)
     assert first == "chosen"
-    assert [text.split(" ")[:3] for text in others] == [["without", "p2:", "fairness"]] * 2
+    assert [text.split(":")[0] for text in others] == ["without p2 of b", "without p2 of a and b"]
 
 
 @pytest.mark.parametrize(
