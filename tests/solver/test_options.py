@@ -212,7 +212,13 @@ def test_the_degree_leaves_neither_inner_knots_nor_middle_curves(continuity, deg
 
 @pytest.mark.parametrize(
     ("continuity", "v_scale"),
-    [("G2", "length"), (("G1", "G4"), "stretched"), ("C1", "stretched"), (("C0", "G2"), "straight"), ("G0", "straight")],
+    [
+        ("G2", "length"),
+        (("G1", "G4"), "stretched"),
+        ("C1", "stretched"),
+        (("C0", "G2"), "straight"),
+        ("G0", "straight"),
+    ],
 )
 def test_the_lower_order_decides_how_long_v_is(continuity, v_scale):
     assert BlendOptions(continuity=continuity).decided().v_scale == v_scale
