@@ -17,7 +17,7 @@ Flip: TypeAlias = Literal["auto", "yes", "no"]
 # A pair has the values at both ends of v.
 Alpha: TypeAlias = float | tuple[float, float] | Literal["fair", "energy", "natural"]
 AlphaV: TypeAlias = Literal["auto", "constant", "linear"]
-VScale: TypeAlias = Literal["paper", "unit", "length", "stretched"]
+VScale: TypeAlias = Literal["paper", "unit", "length", "stretched", "straight"]
 Auto: TypeAlias = Literal["auto"]
 Limits: TypeAlias = Literal["exact", "cad"]
 
@@ -28,6 +28,8 @@ _MOST_BOX = 1e20
 _MOST_BULGE = 100.0
 # Rows that a side owns at least: position, first and second derivative.
 ROWS_PER_SIDE = 3
+# By the lower order of both sides: what it leaves free may not pull together what lies far apart.
+_V_SCALES: dict[int, VScale] = {0: "straight", 1: "stretched"}
 
 
 def _option(default: Any, form: str, metavar: str, text: str, *, sides: Literal["", "both", "each"] = "") -> Any:
@@ -72,11 +74,11 @@ class BlendOptions:
     box : (float, float), optional
         Admissible alpha^2 and beta^2. For least energy in units of their natural sizes, 1/8 to 8 unless given; for the
         fairest shape in units of an arc's, 1/4 to 4, or to 16 where exits and chords disagree, 1/8 to 2 for G3 and G4.
-    v_scale : {"paper", "unit", "length", "stretched"}, optional
-        What (11) takes the length of the v-domain for: itself, 1, mean contact length over mean gap, or 3.5 times that,
-        with which the free rows of G1 do not pull pipes together. Of G0 and C0, where no tangent holds them, they do by
-        a tenth of the radius: "length" is the default there, "stretched" leaves 1 %, and makes random pairs less fair.
-        But for the first one the blend does not depend on the units of v nor on the order of the bases.
+    v_scale : {"paper", "unit", "length", "stretched", "straight"}, optional
+        What (11) takes the length of the v-domain for: itself, 1, mean contact length over mean gap, 3.5 times that
+        (on closed contacts at least 2 pi), with which the free rows of G1 do not pull pipes together, or 100, with
+        which those of G0 and C0 run as straight as can be from one contact to the other. But for the first one the
+        blend does not depend on the units of v nor on the order of the bases.
     u_knots : sequence of float, optional
         Inner knots of U instead of uniform ones.
     middle_knots : "fourth", "paper", or a sequence of sequences of float, optional
@@ -129,7 +131,7 @@ class BlendOptions:
         None, "range", "LOW HIGH", "Range of a searched alpha² and beta², times an arc's (energy: their natural sizes)."
     )
     v_scale: VScale | None = _option(
-        None, "text", "SCALE", "Length of v in the energy: paper (as it is), unit, length or stretched."
+        None, "text", "SCALE", "Length of v in the energy: paper (as it is), unit, length, stretched or straight."
     )
     u_knots: Sequence[float] | None = _option(
         None, "numbers", "K1,K2,...", "Inner knots in u, in (0, 1); uniform if left out."
@@ -272,7 +274,7 @@ class BlendOptions:
             "alpha_v": "constant" if papers or (self.alpha_v == "auto" and nothing_searched) else self.alpha_v,
             "p2": "zero" if self.p2 == "auto" and without_p2 else self.p2,
             "limits": "exact" if self.limits == "auto" else self.limits,
-            "v_scale": self.v_scale or ("paper" if papers else "stretched" if 1 in self.orders else "length"),
+            "v_scale": self.v_scale or ("paper" if papers else _V_SCALES.get(min(self.orders), "length")),
             "middle_knots": ("paper" if papers else "fourth") if self.middle_knots is None else self.middle_knots,
         }
         return replace(self, **cast("dict[str, Any]", unsaid))

@@ -42,8 +42,11 @@ from semispline.solver.splines import (
 )
 
 # The rows that G1 leaves free pull pipes together, by 4 to 7 %; stretched by this factor along v by less than 1 %.
-# Random pairs are as fair in the median, and less by an eighth in the mean.
-STRETCH = 3.5
+# Random pairs are as fair in the median, and less by an eighth in the mean. However far apart, closed contacts are at
+# least so long that v is the angle about a pipe: the pull grows with the fourth power of its inverse.
+STRETCH, LEAST_AROUND = 3.5, 2 * np.pi
+# So long that the second derivatives across alone count: what G0 and C0 leave free is straight.
+STRAIGHT = 100.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -328,8 +331,7 @@ def make_problem(a: Side, b: Side, options: BlendOptions) -> BlendProblem:
     p2_a, p2_b = (second_parameter(side, i, options) for i, side in enumerate((a, b)))
     form = EnergyForm(u, rows)
     if options.v_scale != "paper":
-        stretch = STRETCH if options.v_scale == "stretched" else 1.0
-        length = 1.0 if options.v_scale == "unit" else stretch * sum(means.lengths) / 2 / means.gap
+        length = _length_of_v(options.v_scale, sum(means.lengths) / 2 / means.gap, closed=closed >= 0)
         form = EnergyForm(u, tuple(Basis(row.degree, affine_knots(row.knots, 0.0, length)) for row in rows))
     return BlendProblem(
         form,
@@ -345,6 +347,13 @@ def make_problem(a: Side, b: Side, options: BlendOptions) -> BlendProblem:
         weights,
         (cure_a, cure_b),
     )
+
+
+def _length_of_v(v_scale: str | None, length: float, *, closed: bool) -> float:
+    """Return what the energy takes the length of v for; contacts are `length` gaps long."""
+    if v_scale == "stretched":
+        return max(STRETCH * length, LEAST_AROUND if closed else 0.0)
+    return {"unit": 1.0, "straight": STRAIGHT}.get(str(v_scale), length)
 
 
 def _check_bends_continuously(u: Basis) -> None:

@@ -210,6 +210,23 @@ def test_the_degree_leaves_neither_inner_knots_nor_middle_curves(continuity, deg
     assert (decided.degree_u, decided.middle_curves) == (degree, 0)
 
 
+@pytest.mark.parametrize(
+    ("continuity", "v_scale"),
+    [
+        ("G2", "length"),
+        (("G1", "G4"), "stretched"),
+        ("C1", "stretched"),
+        (("C0", "G2"), "straight"),
+        ("G0", "straight"),
+    ],
+)
+def test_the_lower_order_decides_how_long_v_is(continuity, v_scale):
+    assert BlendOptions(continuity=continuity).decided().v_scale == v_scale
+    assert BlendOptions(continuity=continuity, v_scale="unit").decided().v_scale == "unit"
+    if "G4" not in continuity:
+        assert BlendOptions(continuity=continuity, alpha="energy").decided().v_scale == "paper"
+
+
 @pytest.mark.parametrize("edge", [0.01, 100.0])
 def test_bulges_have_a_range_with_two_ends(edge):
     assert BlendOptions(bulge=edge).bulges == (edge, edge)
