@@ -171,7 +171,7 @@ def smoothed(
     faster = excess ** (1 / (len(cuts) - 1))
     new, basis = rows, along
     if abs(excess - 1) > LINE_TOLERANCE:
-        new, basis = _sped_up(rows, along, cuts, faster)
+        new, basis = sped_up(rows, along, cuts, faster)
     else:
         faster = 1.0
     # Derivatives before a line are now 2 f / (1 + f) times as large, those after it 2 / (1 + f) times, f = `faster`.
@@ -204,7 +204,7 @@ def _moved(knots: FloatArray, cuts: FloatArray, ends: FloatArray) -> FloatArray:
     return np.asarray(moved)
 
 
-def _sped_up(rows: FloatArray, along: Basis, cuts: FloatArray, faster: float) -> tuple[FloatArray, Basis]:
+def sped_up(rows: FloatArray, along: Basis, cuts: FloatArray, faster: float) -> tuple[FloatArray, Basis]:
     """Return the rows with each segment run through by v = (1 - e) s + e s^2, s over the same segment.
 
     Their derivative at its end is then `faster` times as large, measured by that at its start, as it was.
