@@ -10,7 +10,7 @@ Source: `semispline.derivations.chains`.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -23,6 +23,10 @@ from semispline.solver.errors import EdgeError
 CLOSED = 1e-8
 # Angles in degrees: contacts that turn by more have a corner, by less a kink that is no one's wish.
 CORNER, KINK = 0.1, 1e-6
+# Curvatures at both sides that differ by this, over the larger one, jump.
+BENT = 1e-6
+# Ends that lie apart by less than this part of their coordinates are one point.
+_MOVED = 1e-13
 # What rounding leaves of it asks for nothing.
 _ROUNDING = 1e-13
 # Speeds of a closed chain that come back to the first one, and weights that are flat, to this.
@@ -83,7 +87,9 @@ class Joint:
     residuals : tuple of float
         Of the derivatives along v, by order in u: what is left, relative to what they compare.
     moved : float
-        How far apart the edges end; each was moved by half of it.
+        How far apart the edges end, beyond rounding; each was moved by half of it.
+    curvatures : (float, float)
+        Of the contact, before and after.
     """
 
     point: tuple[float, float, float]
@@ -92,6 +98,17 @@ class Joint:
     crease_degrees: float
     residuals: tuple[float, ...]
     moved: float
+    curvatures: tuple[float, float]
+
+    def moved_by(self, offset: FloatArray) -> Joint:
+        """Return the joint in other coordinates."""
+        x, y, z = (np.array(self.point) + offset).tolist()
+        return replace(self, point=(x, y, z))
+
+    @property
+    def bends(self) -> bool:
+        """Whether the contact's own curvature jumps."""
+        return bool(abs(self.curvatures[1] - self.curvatures[0]) > BENT * max(self.curvatures))
 
 
 @dataclass(frozen=True, eq=False)
@@ -322,7 +339,8 @@ def _with_slopes(
         turn,
         crease,
         tuple(residuals),
-        float(np.linalg.norm(points[1] - points[0])),
+        _beyond_rounding(*points),
+        (_curvature(left[0]), _curvature(right[0])),
     )
 
 
@@ -372,6 +390,22 @@ def _take(piece: Coefficients, end: int, derivatives: FloatArray, span: float, w
 def _normal(derivatives: FloatArray) -> FloatArray:
     point = derivatives[0, 0]
     return np.cross(cartesian_slope(point, derivatives[1, 0]), cartesian_slope(point, derivatives[0, 1]))
+
+
+def _curvature(derivatives: FloatArray) -> float:
+    """Return the curvature of the contact from its derivatives along v."""
+    point, first, second = derivatives[:3]
+    if len(point) == 4:
+        position, slope = _place(point), cartesian_slope(point, first)
+        second = (second[:3] - second[3] * position - 2 * first[3] * slope) / point[3]
+        first = slope
+    speed = float(np.linalg.norm(first))
+    return float(np.linalg.norm(np.cross(first, second))) / speed**3 if speed else 0.0
+
+
+def _beyond_rounding(one: FloatArray, other: FloatArray) -> float:
+    apart = float(np.linalg.norm(other - one))
+    return 0.0 if apart <= _MOVED * max(float(np.abs(one).max()), float(np.abs(other).max())) else apart
 
 
 def _place(point: FloatArray) -> FloatArray:

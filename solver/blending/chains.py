@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -21,8 +21,9 @@ from semispline.solver.blending.reparametrisation import (
     elevation,
 )
 from semispline.solver.blending.weights import rows_from_derivatives
-from semispline.solver.errors import EdgeError
+from semispline.solver.errors import EdgeError, OptionError
 from semispline.solver.judge import Base, is_closed, local_origin, model_size
+from semispline.solver.options import Continuity
 from semispline.solver.splines import Basis, BSplineSurface, basis_matrix, clamped, euclidean, refinement_matrix
 
 # Ends of edges nearer than this, of the size of the faces, are one point, unless a file says otherwise.
@@ -53,8 +54,14 @@ class Chain:
     turned: tuple[bool, ...]
     closed: bool
 
-    def strip(self, order: int) -> Strip:
+    def strip(self, order: int, lengths: Sequence[float] | None = None) -> Strip:
         """Return the base that stands for the chain in a contact of the given order.
+
+        Parameters
+        ----------
+        order : int
+        lengths : sequence of float, optional
+            In v, that the smooth runs between its corners are to have, where they are as many.
 
         Raises
         ------
@@ -65,6 +72,8 @@ class Chain:
         order = max(order, 1)
         pieces = read_pieces(self.edges, self.turned, order, origin)
         joined = joined_pieces(pieces, closed=self.closed)
+        if lengths is not None:
+            joined = _with_lengths(joined, lengths)
         jets, along = _as_conic(pieces, joined, closed=self.closed) or _assembled(joined)
         first = self.edges[0]
         low, high = first.surface.domain["uv".index(first.side[0])]
@@ -73,7 +82,8 @@ class Chain:
         knots = np.repeat([0.0, width], order + 1)
         surface = BSplineSurface(order, along.degree, knots, along.knots, points + origin, weights)
         cuts = np.concatenate([[0.0], np.cumsum(joined.spans)])
-        return Strip(Base(surface, "u0"), joined.pieces, tuple(cuts.tolist()), joined.joints)
+        joints = tuple(joint if joint is None else joint.moved_by(origin) for joint in joined.joints)
+        return Strip(Base(surface, "u0"), joined.pieces, tuple(cuts.tolist()), joints)
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,6 +104,28 @@ class Strip:
     pieces: tuple[Piece, ...]
     cuts: tuple[float, ...]
     joints: tuple[Joint | None, ...]
+
+    @property
+    def lengths(self) -> tuple[float, ...]:
+        """How long, in v, the smooth runs between corners are."""
+        corners = [at for at, joint in zip(self.cuts, self.joints, strict=False) if joint is not None and joint.kind == "corner"]
+        return tuple(np.diff(np.unique([self.cuts[0], *corners, self.cuts[-1]])).tolist())
+
+
+def order_of_contact(continuity: Continuity, name: str) -> int:
+    """Return the order of a contact with a chain.
+
+    Raises
+    ------
+    OptionError
+        C1 or C2: the derivatives of one face are not those of the next.
+    """
+    if continuity in ("C1", "C2"):
+        raise OptionError(
+            f"continuity: found {continuity} at {name}, which is a chain, expected G{continuity[1]}: parameters of "
+            "several faces are not one"
+        )
+    return int(continuity[1])
 
 
 def chain(edges: Sequence[Base], *, tolerance: float | None = None) -> Chain:
@@ -140,6 +172,15 @@ def chain(edges: Sequence[Base], *, tolerance: float | None = None) -> Chain:
     first = ends[0][1] if turned[0] else ends[0][0]
     assert place is not None
     return Chain(bases, tuple(turned), bool(np.linalg.norm(place - first) <= within))
+
+
+def _with_lengths(joined: JoinedPieces, lengths: Sequence[float]) -> JoinedPieces:
+    """Return the pieces with spans such that each smooth run has its length."""
+    runs = np.cumsum([k > 0 and joint is not None and joint.kind == "corner" for k, joint in enumerate(joined.joints)])
+    if runs[-1] + 1 != len(lengths):
+        return joined
+    factors = np.asarray(lengths) / np.bincount(runs, weights=joined.spans)
+    return replace(joined, spans=joined.spans * factors[runs])
 
 
 def _as_conic(pieces: list[Piece], joined: JoinedPieces, *, closed: bool) -> tuple[FloatArray, Basis] | None:

@@ -10,6 +10,10 @@ import numpy as np
 
 from semispline.solver.arrays import FloatArray, require
 from semispline.solver.blending.candidates import Candidate, Layout, find_layout
+from semispline.solver.blending.chain_contact import chain_contact, not_inherited
+from semispline.solver.blending.chain_joints import Joint
+from semispline.solver.blending.chain_runs import facing_chains
+from semispline.solver.blending.chains import Chain, Strip, order_of_contact
 from semispline.solver.blending.matching import directions_to_try
 from semispline.solver.blending.measured_energy import MeasuredEnergy, measure_energy
 from semispline.solver.blending.placing import PlacedSides, place_sides
@@ -56,8 +60,8 @@ _EQUAL_TURNS = 1e-3
 
 
 def blend(
-    a: Base,
-    b: Base,
+    a: Base | Chain,
+    b: Base | Chain,
     options: BlendOptions | None = None,
     **named: Any,
 ) -> BlendResult:
@@ -65,8 +69,9 @@ def blend(
 
     Parameters
     ----------
-    a, b : Base
-        B-spline surfaces, rational or not, and the edges to be joined. Neither is changed.
+    a, b : Base or Chain
+        B-spline surfaces, rational or not, and the edges to be joined; or edges end to end, as `chain` returns them.
+        Neither is changed.
     options : BlendOptions, optional
         Or its fields by name: ``blend(a, b, continuity="G1", middle_curves=0)``.
 
@@ -77,7 +82,7 @@ def blend(
     Raises
     ------
     OptionError, EdgeError
-        An option or a base that cannot be used.
+        An option or a base that cannot be used: a chain knows contact of surfaces only, C0 or G0 to G4.
     ComputationError
         The solver failed.
     ContactError
@@ -97,26 +102,64 @@ def blend(
     >>> result.surface.n_control_points, round(result.alpha2, 2), round(result.beta2, 2)
     (12, 1.79, 1.79)
     """
-    started = time.perf_counter()
     said = named_options(options, named)
-    directions = _tied(a, b, said.flip)
+    return _strictly(_with_chains(a, b, said), said.strict)
+
+
+def _with_chains(a: Base | Chain, b: Base | Chain, said: BlendOptions) -> BlendResult:
+    """Blend strips in the place of chains, and measure what comes out on their faces."""
+    if not isinstance(a, Chain) and not isinstance(b, Chain):
+        return _blended(a, b, said)
+    facing = facing_chains(a, b, said.flip) if isinstance(a, Chain) and isinstance(b, Chain) else None
+    strips: list[Strip | None] = [None, None]
+    for k, one in enumerate(facing or (a, b)):
+        if isinstance(one, Chain):
+            lengths = strips[0].lengths if facing and strips[0] is not None else None
+            strips[k] = one.strip(order_of_contact(said.continuities[k], "ab"[k]), lengths)
+    bases = [x if strip is None else strip.base for x, strip in zip((a, b), strips, strict=True)]
+    joints = tuple(joint for strip in strips if strip is not None for joint in strip.joints if joint is not None)
+    result = _blended(*bases, said, Correspondence(flipped=False) if facing else None, joints)
+    contacts = [
+        chain_contact(x, strip, result.surface, which, result.continuity[k])
+        if isinstance(x, Chain) and strip is not None
+        else None
+        for k, (x, strip, which) in enumerate(zip((a, b), strips, "ab", strict=True))
+    ]
+    names = [edge if one is None else "+".join(one.edges) for edge, one in zip(result.edges, contacts, strict=True)]
+    return replace(result, edges=(names[0], names[1]), chain_a=contacts[0], chain_b=contacts[1])
+
+
+def _blended(
+    a: Base, b: Base, said: BlendOptions, matched: Correspondence | None = None, joints: tuple[Joint, ...] = ()
+) -> BlendResult:
+    """Blend two bases.
+
+    Parameters
+    ----------
+    matched : Correspondence, optional
+        How they correspond, where that is known.
+    joints : tuple of Joint
+        Of chains: what a blend inherits there is told apart.
+    """
+    started = time.perf_counter()
+    directions = _tied(a, b, said.flip) if matched is None else ("no",)
     solved: list[_Solved] = []
     failures: dict[Flip, ComputationError] = {}
     for flip in directions:
         try:
-            solved.append(_solved(a, b, said, flip))
+            solved.append(_solved(a, b, said, flip, matched))
         except ComputationError as failure:
             failures[flip] = failure
     seconds = time.perf_counter() - started
     while solved:
         least = solved[0] if len(solved) == 1 else _least_turning(solved)
         try:
-            result = _judged(a, b, least, seconds)
+            result = _judged(a, b, least, seconds, joints)
         except ComputationError as failure:
             failures[least.flip] = failure
             solved.remove(least)
         else:
-            return _strictly(_unwarned(a, b, said, result), said.strict)
+            return _unwarned(a, b, said, result, matched, joints)
     raise next(failures[flip] for flip in directions if flip in failures)
 
 
@@ -133,9 +176,9 @@ class _Solved:
     energy: MeasuredEnergy
 
 
-def _solved(a: Base, b: Base, said: BlendOptions, flip: Flip) -> _Solved:
+def _solved(a: Base, b: Base, said: BlendOptions, flip: Flip, matched: Correspondence | None) -> _Solved:
     """Solve for the blend: the few numbers that are not linear, then everything that is."""
-    placed = place_sides(a, b, said, flip)
+    placed = place_sides(a, b, said, flip, matched)
     layout, candidates = find_layout(*placed.scaled, said)
     found = bulged(layout.found, layout.options.bulges)
     surface = _surface(layout.problem, found, placed.sides, placed.frame)
@@ -154,7 +197,7 @@ def _least_turning(solved: list[_Solved]) -> _Solved:
     return next(one for one, turn in zip(solved, turns, strict=True) if turn <= min(turns) + _EQUAL_TURNS)
 
 
-def _judged(a: Base, b: Base, solved: _Solved, seconds: float) -> BlendResult:
+def _judged(a: Base, b: Base, solved: _Solved, seconds: float, joints: tuple[Joint, ...]) -> BlendResult:
     """Let the judge measure a blend, and refuse what misses its limits."""
     placed, layout, found, surface = solved.placed, solved.layout, solved.found, solved.surface
     sides, frame, matched = placed.sides, placed.frame, placed.matched
@@ -170,7 +213,7 @@ def _judged(a: Base, b: Base, solved: _Solved, seconds: float) -> BlendResult:
     creases = measure_creases(surface, c1_lines=problem.is_cured or problem.is_rational)
     shape = _measured_shape(surface, a, b, chosen)
     warnings = (
-        shape_warnings(shape, regularity, creases, options=chosen, cures=problem.cures)
+        shape_warnings(shape, regularity, not_inherited(creases, surface, joints), options=chosen, cures=problem.cures)
         + bound_warnings(problem, layout.found)
         + stopped_warning(layout.found, chosen)
         + (fairness_warning(found.fairness, shape.fairness.value) if chosen.bulges == (1.0, 1.0) else ())
@@ -245,7 +288,7 @@ def state_problem(a: Base, b: Base, options: BlendOptions | None = None, **named
     if len(tied := _tied(a, b, said.flip)) > 1:
         less_turning = blend(a, b, replace(said, method="reduced", strict=False))
         tied = ("yes" if less_turning.flipped else "no",)
-    placed = place_sides(a, b, said, tied[0])
+    placed = place_sides(a, b, said, tied[0], None)
     return StatedProblem(make_problem(*placed.scaled, said), placed.sides, placed.frame, placed.matched)
 
 
@@ -361,7 +404,14 @@ def _checked_contacts(
     return contact_a, contact_b
 
 
-def _unwarned(a: Base, b: Base, said: BlendOptions, result: BlendResult) -> BlendResult:
+def _unwarned(
+    a: Base,
+    b: Base,
+    said: BlendOptions,
+    result: BlendResult,
+    matched: Correspondence | None,
+    joints: tuple[Joint, ...],
+) -> BlendResult:
     """Return the blend without the middle curve that was chosen, where that leaves nothing to be warned of.
 
     A little fairness is not worth a warning. A U-turn keeps one.
@@ -371,7 +421,7 @@ def _unwarned(a: Base, b: Base, said: BlendOptions, result: BlendResult) -> Blen
         return result
     try:
         flip: Flip = "yes" if result.flipped else "no"
-        plain = blend(a, b, replace(said, middle_curves=0, flip=flip, strict=False))
+        plain = _blended(a, b, replace(said, middle_curves=0, flip=flip), matched, joints)
     except ComputationError:
         return result
     if plain.warnings:

@@ -34,11 +34,11 @@ class PlacedSides:
     matched: Correspondence
 
 
-def place_sides(a: Base, b: Base, options: BlendOptions, flip: Flip) -> PlacedSides:
-    """Bring both contacts to one parameter v and to coordinates of size 1."""
+def place_sides(a: Base, b: Base, options: BlendOptions, flip: Flip, matched: Correspondence | None) -> PlacedSides:
+    """Bring both contacts to one parameter v and to coordinates of size 1; as `matched`, where that is known."""
     at_a, at_b = options.continuities
     sides = make_side(a, at_a, "base a"), make_side(b, at_b, "base b")
-    matched = matched_edges(a, b, flip)
+    matched = matched or matched_edges(a, b, flip)
     # Far from the origin each operation would round by the distance: there is but one rounding, of the result.
     origin = local_origin(a.surface, b.surface)
     local = matched_sides(sides[0].moved(origin, 1.0), sides[1].moved(origin, 1.0), matched)

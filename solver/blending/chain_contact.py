@@ -1,0 +1,186 @@
+"""How a blend meets each face of a chain: measured on the faces themselves."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from semispline.solver.blending.chain_joints import KINK, Joint
+from semispline.solver.blending.chains import Chain, Strip
+from semispline.solver.errors import ContactError
+from semispline.solver.judge import Base, Contact, Crease, measure_contact, shortfalls, untold
+from semispline.solver.options import Continuity
+from semispline.solver.splines import SemiStructuredSurface, boundary_curve, bounding_box, closest_point
+
+# Of the size of the blend: a line that ends nearer to a joint ends there.
+_AT_A_JOINT = 1e-6
+# Of the range along the contact: shorter stretches are none.
+_SHORT = 1e-7
+
+
+@dataclass(frozen=True)
+class FaceOfChain:
+    """How a blend meets one face of a chain.
+
+    Attributes
+    ----------
+    edge : str
+    range : (float, float)
+        Where along the blend's edge, in its own parameter.
+    contact : Contact
+        Of the face, as a, and the blend.
+    """
+
+    edge: str
+    range: tuple[float, float]
+    contact: Contact
+
+
+@dataclass(frozen=True)
+class ChainContact:
+    """How a blend meets a chain.
+
+    Attributes
+    ----------
+    edges : tuple of str
+    faces : tuple of FaceOfChain
+        In the order of the blend's parameter; a face across whose edge the blend's seam runs is there twice.
+    joints : tuple of Joint
+    closed : bool
+    degree, control_points : int
+        Along, of the base that the chain makes.
+    """
+
+    edges: tuple[str, ...]
+    faces: tuple[FaceOfChain, ...]
+    joints: tuple[Joint, ...]
+    closed: bool
+    degree: int
+    control_points: int
+
+    def __str__(self) -> str:
+        smooth = sum(joint.kind == "smooth" for joint in self.joints)
+        kind = "closed" if self.closed else "open"
+        return (
+            f"chain of {len(self.edges)} edges, {kind}, C1 at {smooth} of {len(self.joints)} joints; degree "
+            f"{self.degree}, {self.control_points} points"
+        )
+
+    def notes(self) -> tuple[str, ...]:
+        """Return what there is to say of the joints."""
+        return tuple(note for k, joint in enumerate(self.joints) for note in _notes(k, joint))
+
+    def worst(self, name: str) -> float:
+        """Return the largest of a measure of `Contact` over the faces."""
+        return max(float(getattr(face.contact, name)) for face in self.faces)
+
+
+def _notes(k: int, joint: Joint) -> Iterator[str]:
+    x, y, z = joint.point
+    title = f"joint {k} at ({x:.5g}, {y:.5g}, {z:.5g})"
+    if joint.kind == "corner":
+        yield f"{title}: corner of {joint.turn_degrees:.3g} degrees, the blend is split there"
+    elif joint.kind == "creased":
+        sharp = max(joint.turn_degrees, joint.crease_degrees)
+        yield f"{title}: the faces are creased by {sharp:.2g} degrees, the blend inherits it"
+    if joint.kind != "corner" and joint.bends:
+        before, after = joint.curvatures
+        yield f"{title}: curvature along the contact jumps from {before:.4g} to {after:.4g}, the blend inherits it"
+    if joint.moved:
+        yield f"{title}: the edges meet within {joint.moved:.2g}, each was moved by half of it"
+
+
+def chain_contact(
+    chain: Chain, strip: Strip, surface: SemiStructuredSurface, which: str, wanted: Continuity
+) -> ChainContact:
+    """Measure how a blend meets each face of a chain, and refuse what misses its limits.
+
+    Parameters
+    ----------
+    chain : Chain
+    strip : Strip
+        The base that it was blended as.
+    surface : SemiStructuredSurface
+        The blend: at u = 0 for `which` "a", at u = 1 for "b".
+    which : {"a", "b"}
+    wanted : str
+
+    Raises
+    ------
+    ContactError
+        Naming the edge.
+    """
+    order = max(2, int(wanted[1]))
+    found = []
+    for edge, span, face in _stretches(chain, strip, surface, "u0" if which == "a" else "u1"):
+        own = Base(surface, f"{'u0' if which == 'a' else 'u1'}[{span[0]!r},{span[1]!r}]")
+        contact = measure_contact(face, own, flip="auto", order=order)
+        name = chain.edges[edge].edge
+        if lacking := [*untold(contact, wanted), *shortfalls(contact, wanted)]:
+            raise ContactError(f"contact {which}: edge {edge} ({name}) of the chain: {'; '.join(map(str, lacking))}")
+        found.append(FaceOfChain(name, span, contact))
+    along = strip.base.surface
+    return ChainContact(
+        edges=tuple(base.edge for base in chain.edges),
+        faces=tuple(found),
+        joints=tuple(joint for joint in strip.joints if joint is not None),
+        closed=chain.closed,
+        degree=along.degree_v,
+        control_points=along.control_points.shape[1],
+    )
+
+
+def not_inherited(
+    creases: Sequence[Crease], surface: SemiStructuredSurface, joints: Sequence[Joint]
+) -> tuple[Crease, ...]:
+    """Return the creases that do not lie at a joint of a chain where the faces, or the contact, are no smoother."""
+    if not joints or not creases:
+        return tuple(creases)
+    within = _AT_A_JOINT * float(np.ptp(bounding_box(surface), axis=0).max())
+    rough = [joint.point for joint in joints if joint.kind != "smooth"]
+    bent = [joint.point for joint in joints if joint.kind == "smooth" and joint.bends]
+
+    def lies_at(crease: Crease, points: list[tuple[float, float, float]]) -> bool:
+        if crease.parameter == "u" or not points:
+            return False
+        ends = surface.evaluate(np.array(surface.domain[0]), np.full(2, crease.at))
+        return bool(np.linalg.norm(np.array(points)[:, None] - ends, axis=2).min() <= within)
+
+    return tuple(
+        crease
+        for crease in creases
+        if not lies_at(crease, rough + bent if crease.angle_degrees <= KINK else rough)
+    )
+
+
+def _stretches(
+    chain: Chain, strip: Strip, surface: SemiStructuredSurface, edge: str
+) -> Iterator[tuple[int, tuple[float, float], Base]]:
+    """Yield each edge with the range of the blend's parameter along it, and the part of it that lies there."""
+    curve = boundary_curve(surface, edge)
+    first, last = (float(x) for x in surface.domain[1])
+    inner = {float(first), float(last)}
+    for joint in strip.joints:
+        if joint is not None:
+            inner.add(float(np.ravel(closest_point(curve, joint.point).parameters)[0]))
+    breaks = np.array(sorted(inner))
+    breaks = breaks[np.append(True, np.diff(breaks) > _SHORT * (last - first))]
+    breaks[-1] = last
+    edges = [boundary_curve(base.surface, base.side) for base in chain.edges]
+    for low, high in zip(breaks[:-1].tolist(), breaks[1:].tolist(), strict=True):
+        middle = curve.evaluate(np.array([(low + high) / 2]))[0]
+        k = int(np.argmin([closest_point(one, middle).distance for one in edges]))
+        base = chain.edges[k]
+        ends = [float(np.ravel(closest_point(edges[k], x).parameters)[0]) for x in curve.evaluate(np.array([low, high]))]
+        start, end = base.range_along
+        part = sorted(_snapped(x, start, end) for x in ends)
+        yield k, (low, high), Base(base.surface, f"{base.side}[{part[0]!r},{part[1]!r}]")
+
+
+def _snapped(x: float, start: float, end: float) -> float:
+    for place in (start, end):
+        if abs(x - place) < _SHORT * (end - start):
+            return float(place)
+    return x
