@@ -132,12 +132,10 @@ def chain_contact(
     )
 
 
-def not_inherited(
+def told_apart(
     creases: Sequence[Crease], surface: SemiStructuredSurface, joints: Sequence[Joint]
-) -> tuple[Crease, ...]:
-    """Return the creases that do not lie at a joint of a chain where the faces, or the contact, are no smoother."""
-    if not joints or not creases:
-        return tuple(creases)
+) -> tuple[list[Crease], list[Crease]]:
+    """Return the blend's own creases, and those that lie at a joint where faces, or the contact, are no smoother."""
     within = _AT_A_JOINT * float(np.ptp(bounding_box(surface), axis=0).max())
     rough = [joint.point for joint in joints if joint.kind != "smooth"]
     bent = [joint.point for joint in joints if joint.kind == "smooth" and joint.bends]
@@ -148,11 +146,12 @@ def not_inherited(
         ends = surface.evaluate(np.array(surface.domain[0]), np.full(2, crease.at))
         return bool(np.linalg.norm(np.array(points)[:, None] - ends, axis=2).min() <= within)
 
-    return tuple(
-        crease
-        for crease in creases
-        if not lies_at(crease, rough + bent if crease.angle_degrees <= KINK else rough)
-    )
+    own: list[Crease] = []
+    inherited: list[Crease] = []
+    for crease in creases:
+        explained = lies_at(crease, rough + bent if crease.angle_degrees <= KINK else rough)
+        (inherited if explained else own).append(crease)
+    return own, inherited
 
 
 def _stretches(

@@ -10,7 +10,7 @@ import numpy as np
 
 from semispline.solver.arrays import FloatArray, require
 from semispline.solver.blending.candidates import Candidate, Layout, find_layout
-from semispline.solver.blending.chain_contact import chain_contact, not_inherited
+from semispline.solver.blending.chain_contact import chain_contact, told_apart
 from semispline.solver.blending.chain_joints import Joint
 from semispline.solver.blending.chain_runs import facing_chains
 from semispline.solver.blending.chains import Chain, Strip, order_of_contact
@@ -211,9 +211,10 @@ def _judged(a: Base, b: Base, solved: _Solved, seconds: float, joints: tuple[Joi
     regularity = measure_regularity(surface)
     # Cures leave rows that are C1: there curvature may jump.
     creases = measure_creases(surface, c1_lines=problem.is_cured or problem.is_rational)
+    own, inherited = told_apart(creases, surface, joints)
     shape = _measured_shape(surface, a, b, chosen)
     warnings = (
-        shape_warnings(shape, regularity, not_inherited(creases, surface, joints), options=chosen, cures=problem.cures)
+        shape_warnings(shape, regularity, own, options=chosen, cures=problem.cures, inherited=inherited)
         + bound_warnings(problem, layout.found)
         + stopped_warning(layout.found, chosen)
         + (fairness_warning(found.fairness, shape.fairness.value) if chosen.bulges == (1.0, 1.0) else ())
