@@ -6,13 +6,21 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from semispline.solver.blending.chain_joints import KINK, Joint
 from semispline.solver.blending.chains import Chain, Strip
 from semispline.solver.errors import ContactError
 from semispline.solver.judge import Base, Contact, Crease, measure_contact, shortfalls, untold
 from semispline.solver.options import Continuity
-from semispline.solver.splines import SemiStructuredSurface, boundary_curve, bounding_box, closest_point
+from semispline.solver.splines import (
+    BSplineCurve,
+    NaturalEdge,
+    SemiStructuredSurface,
+    boundary_curve,
+    bounding_box,
+    closest_point,
+)
 
 # Of the size of the blend: a line that ends nearer to a joint ends there.
 _AT_A_JOINT = 1e-6
@@ -121,7 +129,7 @@ def chain_contact(
         if lacking := [*untold(contact, wanted), *shortfalls(contact, wanted)]:
             raise ContactError(f"contact {which}: edge {edge} ({name}) of the chain: {'; '.join(map(str, lacking))}")
         found.append(FaceOfChain(name, span, contact))
-    along = strip.base.surface
+    along = strip.surface
     return ChainContact(
         edges=tuple(base.edge for base in chain.edges),
         faces=tuple(found),
@@ -155,7 +163,7 @@ def told_apart(
 
 
 def _stretches(
-    chain: Chain, strip: Strip, surface: SemiStructuredSurface, edge: str
+    chain: Chain, strip: Strip, surface: SemiStructuredSurface, edge: NaturalEdge
 ) -> Iterator[tuple[int, tuple[float, float], Base]]:
     """Yield each edge with the range of the blend's parameter along it, and the part of it that lies there."""
     curve = boundary_curve(surface, edge)
@@ -163,7 +171,7 @@ def _stretches(
     inner = {float(first), float(last)}
     for joint in strip.joints:
         if joint is not None:
-            inner.add(float(np.ravel(closest_point(curve, joint.point).parameters)[0]))
+            inner.add(_parameter(curve, joint.point))
     breaks = np.array(sorted(inner))
     breaks = breaks[np.append(True, np.diff(breaks) > _SHORT * (last - first))]
     breaks[-1] = last
@@ -172,10 +180,14 @@ def _stretches(
         middle = curve.evaluate(np.array([(low + high) / 2]))[0]
         k = int(np.argmin([closest_point(one, middle).distance for one in edges]))
         base = chain.edges[k]
-        ends = [float(np.ravel(closest_point(edges[k], x).parameters)[0]) for x in curve.evaluate(np.array([low, high]))]
+        ends = [_parameter(edges[k], x) for x in curve.evaluate(np.array([low, high]))]
         start, end = base.range_along
         part = sorted(_snapped(x, start, end) for x in ends)
         yield k, (low, high), Base(base.surface, f"{base.side}[{part[0]!r},{part[1]!r}]")
+
+
+def _parameter(curve: BSplineCurve, point: ArrayLike) -> float:
+    return float(np.ravel(closest_point(curve, point).parameters)[0])
 
 
 def _snapped(x: float, start: float, end: float) -> float:

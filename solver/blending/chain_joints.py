@@ -155,7 +155,9 @@ def joined_pieces(pieces: list[Piece], *, closed: bool) -> JoinedPieces:
     straight = [piece.is_straight for piece in pieces]
     for k, turn in enumerate(turns):
         if turn is not None:
-            rounding = pieces[k - 1].rounding_of_slopes()[1] / spans[k - 1] + pieces[k].rounding_of_slopes()[0] / spans[k]
+            rounding = (
+                pieces[k - 1].rounding_of_slopes()[1] / spans[k - 1] + pieces[k].rounding_of_slopes()[0] / spans[k]
+            )
             joints[k] = _with_slopes(ends, spans, found, straight, k, turn, rounding)
     continuity = tuple(int(joint is not None and joint.kind == "smooth") for joint in joints)
     return JoinedPieces(tuple(pieces), spans, tuple(found), tuple(joints), continuity)
@@ -170,7 +172,7 @@ def only_continuous(pieces: list[Piece], joined: JoinedPieces, *, closed: bool) 
 def _spans(pieces: list[Piece]) -> FloatArray:
     """Return how long each piece is to be, so that the contact has one speed at both sides of each joint."""
     speeds = [piece.end_speeds() for piece in pieces]
-    return np.cumprod([1.0, *(speeds[k + 1][0] / speeds[k][1] for k in range(len(pieces) - 1))])
+    return np.asarray(np.cumprod([1.0, *(speeds[k + 1][0] / speeds[k][1] for k in range(len(pieces) - 1))]))
 
 
 def _of_even_weights(pieces: list[Piece], *, closed: bool) -> list[Piece]:
@@ -180,7 +182,7 @@ def _of_even_weights(pieces: list[Piece], *, closed: bool) -> list[Piece]:
     ends, spans = [piece.at_ends() for piece in pieces], _spans(pieces)
     found = _with_values(pieces, ends, closed=closed)
     count, order = len(pieces), pieces[0].order
-    smooth = [k == 0 and not closed or _goes_on(ends, spans, found, k, order) for k in range(count)]
+    smooth = [(k == 0 and not closed) or _goes_on(ends, spans, found, k, order) for k in range(count)]
     return [
         piece if smooth[k] and (smooth[(k + 1) % count] or (k + 1 == count and not closed)) else with_equal_ends(piece)
         for k, piece in enumerate(pieces)
@@ -264,8 +266,9 @@ def _matching(derivatives: FloatArray, wanted: FloatArray, like: FloatArray, joi
         scale = max(float(np.linalg.norm(wanted[j])), extent * per_u**j)
         if left > CLOSED * scale:
             raise EdgeError(
-                f"joint {joint}: derivatives of order {j} across the contact differ by {left / scale:.1e} of themselves, "
-                f"expected {CLOSED:g}; the faces have to share the curve along which they leave the contact there"
+                f"joint {joint}: derivatives of order {j} across the contact differ by {left / scale:.1e} of "
+                f"themselves, expected {CLOSED:g}; the faces have to share the curve along which they leave the contact "
+                "there"
             )
         if j == 1 and by[_W, 1] <= 0:
             raise EdgeError(f"joint {joint}: the faces lie on different sides of the chain, expected one side")

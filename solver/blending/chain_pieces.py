@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from math import comb
 
 import numpy as np
 
 from semispline.solver.arrays import FloatArray
 from semispline.solver.blending.jumps import sped_up
-from semispline.solver.blending.knot_lines import bezier_pieces
 from semispline.solver.blending.reparametrisation import bezier_derivatives
 from semispline.solver.blending.sides import make_side
+from semispline.solver.blending.spans import bezier_pieces
 from semispline.solver.blending.weights import SEPARABLE, end_derivatives, spline_mean
 from semispline.solver.judge import Base
 from semispline.solver.splines import Basis, affine_knots, greville, inner_knots, reversed_knots, same_width
@@ -127,7 +128,7 @@ def _split(jets: FloatArray, along: Basis) -> list[tuple[FloatArray, Basis, tupl
     values, counts = np.unique(inner_knots(along.knots, q), return_counts=True)
     cuts = [float(along.knots[0]), *values[counts >= q].tolist(), float(along.knots[-1])]
     found = []
-    for low, high in zip(cuts[:-1], cuts[1:], strict=True):
+    for low, high in pairwise(cuts):
         first = int(np.searchsorted(along.knots, low, side="right")) - q - 1
         last = int(np.searchsorted(along.knots, high)) - 1
         inside = along.knots[(along.knots > low) & (along.knots < high)]

@@ -11,7 +11,6 @@ from semispline.solver.arrays import FloatArray
 from semispline.solver.blending.chain_joints import Coefficients, JoinedPieces, Joint, joined_pieces, only_continuous
 from semispline.solver.blending.chain_pieces import Piece, normalised_jets, read_pieces
 from semispline.solver.blending.conics import recognised_conic
-from semispline.solver.blending.knot_lines import bezier_pieces
 from semispline.solver.blending.reparametrisation import (
     Reparametrisation,
     bezier_derivatives,
@@ -20,11 +19,12 @@ from semispline.solver.blending.reparametrisation import (
     composed,
     elevation,
 )
+from semispline.solver.blending.spans import bezier_pieces, joined_spans
 from semispline.solver.blending.weights import rows_from_derivatives
 from semispline.solver.errors import EdgeError, OptionError
 from semispline.solver.judge import Base, is_closed, local_origin, model_size
 from semispline.solver.options import Continuity
-from semispline.solver.splines import Basis, BSplineSurface, basis_matrix, clamped, euclidean, refinement_matrix
+from semispline.solver.splines import Basis, BSplineSurface, basis_matrix, euclidean
 
 # Ends of edges nearer than this, of the size of the faces, are one point, unless a file says otherwise.
 _MEET = 1e-7
@@ -83,7 +83,7 @@ class Chain:
         surface = BSplineSurface(order, along.degree, knots, along.knots, points + origin, weights)
         cuts = np.concatenate([[0.0], np.cumsum(joined.spans)])
         joints = tuple(joint if joint is None else joint.moved_by(origin) for joint in joined.joints)
-        return Strip(Base(surface, "u0"), joined.pieces, tuple(cuts.tolist()), joints)
+        return Strip(surface, joined.pieces, tuple(cuts.tolist()), joints)
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,7 +92,8 @@ class Strip:
 
     Attributes
     ----------
-    base : Base
+    surface : BSplineSurface
+        Met at u0.
     pieces : tuple of Piece
     cuts : tuple of float
         Where the pieces begin along the base, and where the last one ends.
@@ -100,15 +101,24 @@ class Strip:
         At each but the last of `cuts`; None at the start of an open chain.
     """
 
-    base: Base
+    surface: BSplineSurface
     pieces: tuple[Piece, ...]
     cuts: tuple[float, ...]
     joints: tuple[Joint | None, ...]
 
     @property
+    def base(self) -> Base:
+        """The surface and its edge."""
+        return Base(self.surface, "u0")
+
+    @property
     def lengths(self) -> tuple[float, ...]:
         """How long, in v, the smooth runs between corners are."""
-        corners = [at for at, joint in zip(self.cuts, self.joints, strict=False) if joint is not None and joint.kind == "corner"]
+        corners = [
+            at
+            for at, joint in zip(self.cuts, self.joints, strict=False)
+            if joint is not None and joint.kind == "corner"
+        ]
         return tuple(np.diff(np.unique([self.cuts[0], *corners, self.cuts[-1]])).tolist())
 
 
@@ -185,7 +195,11 @@ def _with_lengths(joined: JoinedPieces, lengths: Sequence[float]) -> JoinedPiece
 
 def _as_conic(pieces: list[Piece], joined: JoinedPieces, *, closed: bool) -> tuple[FloatArray, Basis] | None:
     """Return pieces that are one conic together, joined continuously: `blend` runs through it by a smooth circle."""
-    if len(pieces) < 2 or pieces[0].jets.shape[2] == 3 or any(x is not None and x.kind != "smooth" for x in joined.joints):
+    if (
+        len(pieces) < 2
+        or pieces[0].jets.shape[2] == 3
+        or any(x is not None and x.kind != "smooth" for x in joined.joints)
+    ):
         return None
     jets, along = _assembled(only_continuous(pieces, joined, closed=closed))
     return None if recognised_conic(_rows(jets, 1.0), along) is None else (jets, along)
@@ -205,8 +219,8 @@ def _positive_rows(jets: FloatArray, along: Basis, width: float) -> tuple[FloatA
     least = _LEAST_WEIGHT * float(jets[0, :, 3].min())
     if least <= 0:
         raise EdgeError(
-            "chain: its weights cannot be made smooth and positive; use bases with more even weights along their edges, "
-            "or blend the edges one by one"
+            "chain: its weights cannot be made smooth and positive; use bases with more even weights along their "
+            "edges, or blend the edges one by one"
         )
     while (rows := _rows(jets, width))[..., 3].min() < least:
         width /= 2
@@ -224,9 +238,13 @@ def _assembled(joined: JoinedPieces) -> tuple[FloatArray, Basis]:
     parts = [bezier_pieces(piece.jets, piece.along) for piece in joined.pieces]
     degree = max(_degree(piece, own) for piece, own in zip(joined.pieces, joined.coefficients, strict=True))
     if degree > _MOST_DEGREE:
-        raise EdgeError(f"chain: degree {degree} along, expected at most {_MOST_DEGREE}; ask for a lower order of contact")
+        raise EdgeError(
+            f"chain: degree {degree} along, expected at most {_MOST_DEGREE}; ask for a lower order of contact"
+        )
     t = chebyshev_places(degree + 1)
-    places, points, smooth = [0.0], [], []
+    places: list[float] = [0.0]
+    points: list[FloatArray] = []
+    smooth: list[int] = []
     for piece, own, span, continuity, (breaks, spans) in zip(
         joined.pieces, joined.coefficients, joined.spans.tolist(), joined.continuity, parts, strict=True
     ):
@@ -243,16 +261,12 @@ def _assembled(joined: JoinedPieces) -> tuple[FloatArray, Basis]:
             by = Reparametrisation.of(own.at(low + (high - low) * t))
             values = composed(bezier_derivatives(bezier, high - low, t, len(bezier) - 1), by)
             points.append(bezier_points(values))
-    for one, other in zip(points[:-1], points[1:], strict=True):
-        middle = (one[:, -1] + other[:, 0]) / 2
-        one[:, -1] = other[:, 0] = middle
-    flat = np.concatenate([points[0][:, :1], *(piece[:, 1:] for piece in points)], axis=1)
-    found, along = _on_knots(flat, degree, np.array(places), smooth)
+    found, along = joined_spans(points, np.array(places), smooth)
     for at in _cut_splines(joined, places):
         # Where one spline was cut it comes back as smooth as it was.
         for order in range(_INNER_ORDER, min(piece.along.degree for piece in joined.pieces) + 1):
             smoother = [order if k == at else x for k, x in enumerate(smooth)]
-            fewer, basis = _on_knots(flat, degree, np.array(places), smoother)
+            fewer, basis = joined_spans(points, np.array(places), smoother)
             if _change(fewer, basis, found, along) > _NO_KNOT:
                 break
             smooth, found, along = smoother, fewer, basis
@@ -291,17 +305,6 @@ def _is_plain(own: Coefficients) -> bool:
     return not own.slopes.any() and bool((own.values == plain).all())
 
 
-def _on_knots(points: FloatArray, degree: int, places: FloatArray, smooth: Sequence[int]) -> tuple[FloatArray, Basis]:
-    """Return Bezier points, shape (order + 1, n, d), on knots of the multiplicity that their smoothness asks for."""
-    finest = clamped(np.repeat(places[1:-1], degree), degree, places[0], places[-1])
-    counts = [degree - x for x in smooth]
-    knots = clamped(np.repeat(places[1:-1], counts), degree, places[0], places[-1])
-    matrix = refinement_matrix(degree, knots, finest).toarray()
-    flat = points.transpose(1, 0, 2).reshape(len(matrix), -1)
-    coarse = np.linalg.lstsq(matrix, flat, rcond=None)[0].reshape(matrix.shape[1], len(points), -1)
-    return np.ascontiguousarray(coarse.transpose(1, 0, 2)), Basis(degree, knots)
-
-
 def _degree(piece: Piece, own: Coefficients) -> int:
     """Return the degree of the strip along a piece."""
     lam, w, q = own.degrees
@@ -309,7 +312,7 @@ def _degree(piece: Piece, own: Coefficients) -> int:
     shifted = lam
     for b in range(piece.order + 1):
         power = shifted
-        for a, degree in enumerate(piece.degrees[: piece.order + 1 - b]):
+        for degree in piece.degrees[: piece.order + 1 - b]:
             if b <= degree:
                 result = np.maximum(result, power + degree - b)
             power = _degree_of_product(power, w)

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
 from semispline.solver.arrays import FloatArray, finite_array
 from semispline.solver.errors import InputError, OptionError
@@ -146,7 +147,7 @@ def with_corners(basis: Basis, corners: FloatArray) -> Basis:
     return Basis(basis.degree, clamped(np.sort(kept), basis.degree, basis.knots[0], basis.knots[-1]))
 
 
-def _inner_counts(basis: Basis) -> tuple[FloatArray, FloatArray]:
+def _inner_counts(basis: Basis) -> tuple[FloatArray, NDArray[np.intp]]:
     return np.unique(inner_knots(basis.knots, basis.degree), return_counts=True)
 
 

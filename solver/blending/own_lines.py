@@ -14,7 +14,7 @@ from math import comb
 import numpy as np
 
 from semispline.solver.arrays import FloatArray
-from semispline.solver.blending.knot_lines import bezier_pieces, knot_lines
+from semispline.solver.blending.knot_lines import knot_lines
 from semispline.solver.blending.reparametrisation import (
     Reparametrisation,
     bezier_derivatives,
@@ -23,8 +23,9 @@ from semispline.solver.blending.reparametrisation import (
     composed,
     elevation,
 )
+from semispline.solver.blending.spans import bezier_pieces, joined_spans
 from semispline.solver.blending.weights import end_derivatives, rows_from_derivatives
-from semispline.solver.splines import Basis, affine_knots, clamped, refinement_matrix
+from semispline.solver.splines import Basis, affine_knots
 
 # What is left of the jump of the derivatives along v, relative to them, where tangent planes are one.
 _TOLERANCE = 1e-8
@@ -200,13 +201,8 @@ def _bent(
         by[0, 0] += 1.0
         by[1, 1] += 1.0
         points.append(bezier_points(composed(bezier_derivatives(piece, width, t, order), Reparametrisation.of(by))))
-    joined = np.concatenate([points[0][:, :1], *(piece[:, 1:] for piece in points)], axis=1)
-    finest = clamped(np.repeat(new[1:-1], degree), degree, new[0], new[-1])
     smooth = [1 if v in fades else min(q - int(np.sum(along.knots == v)), _INNER_ORDER) for v in breaks[1:-1].tolist()]
-    knots = clamped(np.repeat(new[1:-1], degree - np.array(smooth, dtype=int)), degree, new[0], new[-1])
-    matrix = refinement_matrix(degree, knots, finest).toarray()
-    flat = np.linalg.lstsq(matrix, joined.transpose(1, 0, 2).reshape(len(matrix), -1), rcond=None)[0]
-    return np.ascontiguousarray(flat.reshape(len(flat), order + 1, -1).transpose(1, 0, 2)), Basis(degree, knots)
+    return joined_spans(points, new, smooth)
 
 
 def _zeros(v: float, breaks: FloatArray, cuts: FloatArray, *, closed: bool) -> int:

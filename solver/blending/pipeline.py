@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
@@ -116,9 +116,9 @@ def _with_chains(a: Base | Chain, b: Base | Chain, said: BlendOptions) -> BlendR
         if isinstance(one, Chain):
             lengths = strips[0].lengths if facing and strips[0] is not None else None
             strips[k] = one.strip(order_of_contact(said.continuities[k], "ab"[k]), lengths)
-    bases = [x if strip is None else strip.base for x, strip in zip((a, b), strips, strict=True)]
+    base_a, base_b = (cast("Base", x) if strip is None else strip.base for x, strip in zip((a, b), strips, strict=True))
     joints = tuple(joint for strip in strips if strip is not None for joint in strip.joints if joint is not None)
-    result = _blended(*bases, said, Correspondence(flipped=False) if facing else None, joints)
+    result = _blended(base_a, base_b, said, Correspondence(flipped=False) if facing else None, joints)
     contacts = [
         chain_contact(x, strip, result.surface, which, result.continuity[k])
         if isinstance(x, Chain) and strip is not None

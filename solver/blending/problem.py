@@ -172,8 +172,9 @@ class BlendProblem:
             return -1
         basis = self.form.rows[row]
         middle = self.a.count <= row < len(self.rows) - self.b.count
-        order = basis.degree - 1 if middle and not self.seam_is_a_corner else self.seam_order
-        return min(order, basis.size // 2 - 1)
+        if middle and not (self.seam_order == 0 and self.seam_is_a_corner):
+            return min(basis.degree - 1, basis.size // 2 - 1)
+        return min(self.seam_order, basis.size // 2 - 1)
 
     @cached_property
     def free_system(self) -> FreeSystem | RationalSystem:

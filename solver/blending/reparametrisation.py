@@ -52,7 +52,7 @@ def bezier_derivatives(piece: FloatArray, width: float, t: FloatArray, most: int
 
 
 def composed(derivatives: FloatArray, by: Reparametrisation) -> FloatArray:
-    """Return d^j X / du^j, shape (n + 1, T, d), from derivatives of R by w and v, shape (n + 1, n + 1 or more, T, d)."""
+    """Return d^j X / du^j, shape (n + 1, T, d), from derivatives of R by w and v, shape (n + 1, n + 1, T, d)."""
     factors = _factorials(len(by.lam))
     lam, w, q = (x / factors[:, None] for x in (by.lam, by.w, by.q))
     return np.asarray(_product(lam[:, :, None], _composed(derivatives, w, q)) * factors[:, None, None])
