@@ -267,8 +267,7 @@ def _matching(derivatives: FloatArray, wanted: FloatArray, like: FloatArray, joi
         if left > CLOSED * scale:
             raise EdgeError(
                 f"joint {joint}: derivatives of order {j} across the contact differ by {left / scale:.1e} of "
-                f"themselves, expected {CLOSED:g}; the faces have to share the curve along which they leave the contact "
-                "there"
+                f"themselves, expected {CLOSED:g}; both faces have to leave the contact along one curve there"
             )
         if j == 1 and by[_W, 1] <= 0:
             raise EdgeError(f"joint {joint}: the faces lie on different sides of the chain, expected one side")

@@ -24,7 +24,7 @@ from semispline.solver.blending.weights import rows_from_derivatives
 from semispline.solver.errors import EdgeError, OptionError
 from semispline.solver.judge import Base, is_closed, local_origin, model_size
 from semispline.solver.options import Continuity
-from semispline.solver.splines import Basis, BSplineSurface, basis_matrix, euclidean
+from semispline.solver.splines import Basis, BSplineSurface, basis_matrix, boundary_curve, closest_point, euclidean
 
 # Ends of edges nearer than this, of the size of the faces, are one point, unless a file says otherwise.
 _MEET = 1e-7
@@ -83,7 +83,7 @@ class Chain:
         surface = BSplineSurface(order, along.degree, knots, along.knots, points + origin, weights)
         cuts = np.concatenate([[0.0], np.cumsum(joined.spans)])
         joints = tuple(joint if joint is None else joint.moved_by(origin) for joint in joined.joints)
-        return Strip(surface, joined.pieces, tuple(cuts.tolist()), joints)
+        return Strip(surface, self.edges, self.turned, joined.pieces, tuple(cuts.tolist()), joints)
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,6 +94,9 @@ class Strip:
     ----------
     surface : BSplineSurface
         Met at u0.
+    edges : tuple of Base
+    turned : tuple of bool
+        Of the chain.
     pieces : tuple of Piece
     cuts : tuple of float
         Where the pieces begin along the base, and where the last one ends.
@@ -102,9 +105,30 @@ class Strip:
     """
 
     surface: BSplineSurface
+    edges: tuple[Base, ...]
+    turned: tuple[bool, ...]
     pieces: tuple[Piece, ...]
     cuts: tuple[float, ...]
     joints: tuple[Joint | None, ...]
+
+    def place(self, x: float) -> float:
+        """Return the parameter along the strip of a place on the chain: x = k + s is the share s of edge k.
+
+        Raises
+        ------
+        OptionError
+            There is no such edge.
+        """
+        count = len(self.edges)
+        if not 0 <= x <= count:
+            raise OptionError(f"match: found {x:g} along a chain of {count} edges, expected 0 to {count}")
+        k = min(int(x), count - 1)
+        start, end = self.edges[k].range_along
+        at = end - (x - k) * (end - start) if self.turned[k] else start + (x - k) * (end - start)
+        if x in (0, count):
+            return self.cuts[0] if x == 0 else self.cuts[-1]
+        point = self.edges[k].derivative(np.array([at]), 0, 0)[0]
+        return float(np.ravel(closest_point(boundary_curve(self.surface, "u0"), point).parameters)[0])
 
     @property
     def base(self) -> Base:

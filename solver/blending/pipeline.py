@@ -4,16 +4,15 @@ from __future__ import annotations
 
 import time
 from dataclasses import dataclass, replace
-from typing import Any, cast
+from typing import Any
 
 import numpy as np
 
 from semispline.solver.arrays import FloatArray, require
 from semispline.solver.blending.candidates import Candidate, Layout, find_layout
-from semispline.solver.blending.chain_contact import chain_contact, told_apart
-from semispline.solver.blending.chain_joints import Joint
-from semispline.solver.blending.chain_runs import facing_chains
-from semispline.solver.blending.chains import Chain, Strip, order_of_contact
+from semispline.solver.blending.chain_bases import StatedBases, as_bases, on_chains
+from semispline.solver.blending.chain_contact import told_apart
+from semispline.solver.blending.chains import Chain
 from semispline.solver.blending.matching import directions_to_try
 from semispline.solver.blending.measured_energy import MeasuredEnergy, measure_energy
 from semispline.solver.blending.placing import PlacedSides, place_sides
@@ -103,44 +102,13 @@ def blend(
     (12, 1.79, 1.79)
     """
     said = named_options(options, named)
-    return _strictly(_with_chains(a, b, said), said.strict)
+    stated = as_bases(a, b, said)
+    return _strictly(on_chains(_blended(stated), stated), said.strict)
 
 
-def _with_chains(a: Base | Chain, b: Base | Chain, said: BlendOptions) -> BlendResult:
-    """Blend strips in the place of chains, and measure what comes out on their faces."""
-    if not isinstance(a, Chain) and not isinstance(b, Chain):
-        return _blended(a, b, said)
-    facing = facing_chains(a, b, said.flip) if isinstance(a, Chain) and isinstance(b, Chain) else None
-    strips: list[Strip | None] = [None, None]
-    for k, one in enumerate(facing or (a, b)):
-        if isinstance(one, Chain):
-            lengths = strips[0].lengths if facing and strips[0] is not None else None
-            strips[k] = one.strip(order_of_contact(said.continuities[k], "ab"[k]), lengths)
-    base_a, base_b = (cast("Base", x) if strip is None else strip.base for x, strip in zip((a, b), strips, strict=True))
-    joints = tuple(joint for strip in strips if strip is not None for joint in strip.joints if joint is not None)
-    result = _blended(base_a, base_b, said, Correspondence(flipped=False) if facing else None, joints)
-    contacts = [
-        chain_contact(x, strip, result.surface, which, result.continuity[k])
-        if isinstance(x, Chain) and strip is not None
-        else None
-        for k, (x, strip, which) in enumerate(zip((a, b), strips, "ab", strict=True))
-    ]
-    names = [edge if one is None else "+".join(one.edges) for edge, one in zip(result.edges, contacts, strict=True)]
-    return replace(result, edges=(names[0], names[1]), chain_a=contacts[0], chain_b=contacts[1])
-
-
-def _blended(
-    a: Base, b: Base, said: BlendOptions, matched: Correspondence | None = None, joints: tuple[Joint, ...] = ()
-) -> BlendResult:
-    """Blend two bases.
-
-    Parameters
-    ----------
-    matched : Correspondence, optional
-        How they correspond, where that is known.
-    joints : tuple of Joint
-        Of chains: what a blend inherits there is told apart.
-    """
+def _blended(stated: StatedBases) -> BlendResult:
+    """Blend two bases, in each direction that is left open."""
+    a, b, said, matched = stated.a, stated.b, stated.options, stated.matched
     started = time.perf_counter()
     directions = _tied(a, b, said.flip) if matched is None else ("no",)
     solved: list[_Solved] = []
@@ -154,12 +122,12 @@ def _blended(
     while solved:
         least = solved[0] if len(solved) == 1 else _least_turning(solved)
         try:
-            result = _judged(a, b, least, seconds, joints)
+            result = _judged(stated, least, seconds)
         except ComputationError as failure:
             failures[least.flip] = failure
             solved.remove(least)
         else:
-            return _unwarned(a, b, said, result, matched, joints)
+            return _unwarned(stated, result)
     raise next(failures[flip] for flip in directions if flip in failures)
 
 
@@ -197,8 +165,9 @@ def _least_turning(solved: list[_Solved]) -> _Solved:
     return next(one for one, turn in zip(solved, turns, strict=True) if turn <= min(turns) + _EQUAL_TURNS)
 
 
-def _judged(a: Base, b: Base, solved: _Solved, seconds: float, joints: tuple[Joint, ...]) -> BlendResult:
+def _judged(stated: StatedBases, solved: _Solved, seconds: float) -> BlendResult:
     """Let the judge measure a blend, and refuse what misses its limits."""
+    a, b = stated.a, stated.b
     placed, layout, found, surface = solved.placed, solved.layout, solved.found, solved.surface
     sides, frame, matched = placed.sides, placed.frame, placed.matched
     chosen, problem, energy = layout.options, layout.problem, solved.energy.value
@@ -211,7 +180,7 @@ def _judged(a: Base, b: Base, solved: _Solved, seconds: float, joints: tuple[Joi
     regularity = measure_regularity(surface)
     # Cures leave rows that are C1: there curvature may jump.
     creases = measure_creases(surface, c1_lines=problem.is_cured or problem.is_rational)
-    own, inherited = told_apart(creases, surface, joints)
+    own, inherited = told_apart(creases, surface, stated.joints)
     shape = _measured_shape(surface, a, b, chosen)
     warnings = (
         shape_warnings(shape, regularity, own, options=chosen, cures=problem.cures, inherited=inherited)
@@ -405,24 +374,18 @@ def _checked_contacts(
     return contact_a, contact_b
 
 
-def _unwarned(
-    a: Base,
-    b: Base,
-    said: BlendOptions,
-    result: BlendResult,
-    matched: Correspondence | None,
-    joints: tuple[Joint, ...],
-) -> BlendResult:
+def _unwarned(stated: StatedBases, result: BlendResult) -> BlendResult:
     """Return the blend without the middle curve that was chosen, where that leaves nothing to be warned of.
 
     A little fairness is not worth a warning. A U-turn keeps one.
     """
+    said = stated.options
     left = next((one for one in result.candidates if one.verdict == "chosen" and one.middle_curves), None)
     if left is None or said.middle_curves != "auto" or not result.warnings or result.shape.exits.is_u_turn:
         return result
     try:
         flip: Flip = "yes" if result.flipped else "no"
-        plain = _blended(a, b, replace(said, middle_curves=0, flip=flip), matched, joints)
+        plain = _blended(replace(stated, options=replace(said, middle_curves=0, flip=flip)))
     except ComputationError:
         return result
     if plain.warnings:
