@@ -225,22 +225,23 @@ def _with_values(pieces: list[Piece], ends: list[FloatArray], *, closed: bool) -
     found = []
     for k in range(len(pieces)):
         if k:
-            start = _matching(ends[k][:, :, 0], _values(ends[k - 1][:, :, 1], start), start, k)
+            start = _matching(ends[k][:, :, 0], end_values(ends[k - 1][:, :, 1], start), start, k)
         found.append(Coefficients(np.stack([start, start]), np.zeros((2, 3, order + 1))))
     if closed:
-        first = _values(ends[0][:, :, 0], found[0].values[0])
+        first = end_values(ends[0][:, :, 0], found[0].values[0])
         last = _matching(ends[-1][:, :, 1], first, start, 0)
         if np.abs(last - start).max() > _SAME * np.abs(start).max():
             found[-1] = Coefficients(np.stack([start, last]), np.zeros((2, 3, order + 1)))
     return found
 
 
-def _values(derivatives: FloatArray, by: FloatArray) -> FloatArray:
+def end_values(derivatives: FloatArray, by: FloatArray) -> FloatArray:
     """Return the derivatives by u at an end, shape (order + 1, d)."""
     return composed(derivatives[:, :, None], Reparametrisation.of(by))[:, 0]
 
 
-def _slopes(derivatives: FloatArray, by: FloatArray, slopes: FloatArray) -> FloatArray:
+def end_slopes(derivatives: FloatArray, by: FloatArray, slopes: FloatArray) -> FloatArray:
+    """Return the derivatives by u, and once along v, at an end, shape (order + 1, d)."""
     return slopes_along(derivatives[:, :, None], Reparametrisation.of(by), Reparametrisation.of(slopes))[:, 0]
 
 
@@ -258,7 +259,7 @@ def _matching(derivatives: FloatArray, wanted: FloatArray, like: FloatArray, joi
     extent = float(np.abs(wanted[0]).max()) or 1.0
     per_u = float(np.linalg.norm(wanted[min(1, order)])) / extent
     for j in range(1, order + 1):
-        rest = wanted[j] - _values(derivatives, by)[j]
+        rest = wanted[j] - end_values(derivatives, by)[j]
         columns = {_W: by[_LAMBDA, 0] * derivatives[1, 0]} | ({_LAMBDA: derivatives[0, 0]} if rational else {})
         solved, left = _solved(list(columns.values()), rest)
         for name, value in zip(columns, solved, strict=True):
@@ -361,9 +362,9 @@ class _LeftOver:
 def _left_over(
     left: FloatArray, right: FloatArray, one: Coefficients, other: Coefficients, spans: FloatArray, order: int
 ) -> _LeftOver:
-    before = _slopes(left, one.values[1], one.slopes[1]) / spans[0]
-    after = _slopes(right, other.values[0], other.slopes[0]) / spans[1]
-    values = _values(left, one.values[1])
+    before = end_slopes(left, one.values[1], one.slopes[1]) / spans[0]
+    after = end_slopes(right, other.values[0], other.slopes[0]) / spans[1]
+    values = end_values(left, one.values[1])
     rest = before[order] - after[order]
     along = float(np.linalg.norm(before[0]))
     # Derivatives that vanish, as of extrusions, are rounding: what they would be of a face as bent as it is wide.

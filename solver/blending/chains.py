@@ -68,22 +68,41 @@ class Chain:
         EdgeError
             Faces do not meet along one curve where edges meet.
         """
-        origin = local_origin(*(base.surface for base in self.edges))
-        order = max(order, 1)
-        pieces = read_pieces(self.edges, self.turned, order, origin)
+        pieces = self._pieces(order)
         joined = joined_pieces(pieces, closed=self.closed)
         if lengths is not None:
             joined = _with_lengths(joined, lengths)
-        jets, along = _as_conic(pieces, joined, closed=self.closed) or _assembled(joined)
+        return self._strip(joined, *(_as_conic(pieces, joined, closed=self.closed) or _assembled(joined)))
+
+    def rim_pieces(self, order: int) -> JoinedPieces:
+        """Return the pieces with nothing but their values made to agree; errors as `strip`."""
+        pieces = self._pieces(order)
+        return only_continuous(pieces, joined_pieces(pieces, closed=self.closed), closed=self.closed)
+
+    def rim(self, order: int, spans: FloatArray | None = None) -> Strip:
+        """Return a base of which rows are only continuous at joints, with spans as given; errors as `strip`."""
+        joined = self.rim_pieces(order)
+        joined = joined if spans is None else replace(joined, spans=spans)
+        return self._strip(joined, *_assembled(joined))
+
+    @property
+    def _origin(self) -> FloatArray:
+        return local_origin(*(base.surface for base in self.edges))
+
+    def _pieces(self, order: int) -> list[Piece]:
+        return read_pieces(self.edges, self.turned, max(order, 1), self._origin)
+
+    def _strip(self, joined: JoinedPieces, jets: FloatArray, along: Basis) -> Strip:
         first = self.edges[0]
         low, high = first.surface.domain["uv".index(first.side[0])]
         rows, width = _positive_rows(jets, along, high - low)
         points, weights = euclidean(rows)
-        knots = np.repeat([0.0, width], order + 1)
-        surface = BSplineSurface(order, along.degree, knots, along.knots, points + origin, weights)
+        degree = len(jets) - 1
+        knots = np.repeat([0.0, width], degree + 1)
+        surface = BSplineSurface(degree, along.degree, knots, along.knots, points + self._origin, weights)
         cuts = np.concatenate([[0.0], np.cumsum(joined.spans)])
-        joints = tuple(joint if joint is None else joint.moved_by(origin) for joint in joined.joints)
-        return Strip(surface, self.edges, self.turned, joined.pieces, tuple(cuts.tolist()), joints)
+        joints = tuple(joint if joint is None else joint.moved_by(self._origin) for joint in joined.joints)
+        return Strip(surface, self.edges, self.turned, joined.spans, tuple(cuts.tolist()), joints)
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,7 +116,8 @@ class Strip:
     edges : tuple of Base
     turned : tuple of bool
         Of the chain.
-    pieces : tuple of Piece
+    spans : ndarray
+        How long each piece is.
     cuts : tuple of float
         Where the pieces begin along the base, and where the last one ends.
     joints : tuple of Joint or None
@@ -107,7 +127,7 @@ class Strip:
     surface: BSplineSurface
     edges: tuple[Base, ...]
     turned: tuple[bool, ...]
-    pieces: tuple[Piece, ...]
+    spans: FloatArray
     cuts: tuple[float, ...]
     joints: tuple[Joint | None, ...]
 
