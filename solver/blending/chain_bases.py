@@ -106,7 +106,9 @@ def on_chains(result: BlendResult, stated: StatedBases) -> BlendResult:
         On a face the contact misses its limits.
     """
     contacts = [
-        None if one is None or strip is None else chain_contact(one, strip, result.surface, which, wanted)
+        None
+        if one is None or strip is None
+        else chain_contact(one, strip, result.surface, which, wanted, stated.options.limits)
         for one, strip, which, wanted in zip(stated.chains, stated.strips, "ab", result.continuity, strict=True)
     ]
     if contacts == [None, None]:

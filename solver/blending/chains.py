@@ -48,11 +48,14 @@ class Chain:
         Which of them are run through against their own parameter.
     closed : bool
         The last one ends where the first one begins.
+    tolerance : float
+        How far apart ends that are one point may lie, model units.
     """
 
     edges: tuple[Base, ...]
     turned: tuple[bool, ...]
     closed: bool
+    tolerance: float
 
     def strip(self, order: int, lengths: Sequence[float] | None = None) -> Strip:
         """Return the base that stands for the chain in a contact of the given order.
@@ -69,15 +72,18 @@ class Chain:
             Faces do not meet along one curve where edges meet.
         """
         pieces = self._pieces(order)
-        joined = joined_pieces(pieces, closed=self.closed)
+        joined = joined_pieces(pieces, closed=self.closed, tolerance=self.tolerance)
         if lengths is not None:
             joined = _with_lengths(joined, lengths)
-        return self._strip(joined, *(_as_conic(pieces, joined, closed=self.closed) or _assembled(joined)))
+        return self._strip(
+            joined, *(_as_conic(pieces, joined, closed=self.closed, tolerance=self.tolerance) or _assembled(joined))
+        )
 
     def rim_pieces(self, order: int) -> JoinedPieces:
         """Return the pieces with nothing but their values made to agree; errors as `strip`."""
         pieces = self._pieces(order)
-        return only_continuous(pieces, joined_pieces(pieces, closed=self.closed), closed=self.closed)
+        joined = joined_pieces(pieces, closed=self.closed, tolerance=self.tolerance)
+        return only_continuous(pieces, joined, closed=self.closed, tolerance=self.tolerance)
 
     def rim(self, order: int, spans: FloatArray | None = None) -> Strip:
         """Return a base of which rows are only continuous at joints, with spans as given; errors as `strip`."""
@@ -202,7 +208,7 @@ def chain(edges: Sequence[Base], *, tolerance: float | None = None) -> Chain:
         raise EdgeError("chain: found no edges, expected one at least")
     within = _MEET * model_size(*(base.surface for base in bases)) if tolerance is None else tolerance
     if len(bases) == 1:
-        return Chain(bases, (False,), is_closed(bases[0]))
+        return Chain(bases, (False,), is_closed(bases[0]), within)
     for k, base in enumerate(bases):
         if is_closed(base):
             raise EdgeError(f"chain: edge {k} ({base.edge}) is closed by itself, expected edges that run end to end")
@@ -225,7 +231,7 @@ def chain(edges: Sequence[Base], *, tolerance: float | None = None) -> Chain:
         place = start if turned[-1] else end
     first = ends[0][1] if turned[0] else ends[0][0]
     assert place is not None
-    return Chain(bases, tuple(turned), bool(np.linalg.norm(place - first) <= within))
+    return Chain(bases, tuple(turned), bool(np.linalg.norm(place - first) <= within), within)
 
 
 def _with_lengths(joined: JoinedPieces, lengths: Sequence[float]) -> JoinedPieces:
@@ -237,7 +243,9 @@ def _with_lengths(joined: JoinedPieces, lengths: Sequence[float]) -> JoinedPiece
     return replace(joined, spans=joined.spans * factors[runs])
 
 
-def _as_conic(pieces: list[Piece], joined: JoinedPieces, *, closed: bool) -> tuple[FloatArray, Basis] | None:
+def _as_conic(
+    pieces: list[Piece], joined: JoinedPieces, *, closed: bool, tolerance: float
+) -> tuple[FloatArray, Basis] | None:
     """Return pieces that are one conic together, joined continuously: `blend` runs through it by a smooth circle."""
     if (
         len(pieces) < 2
@@ -245,7 +253,7 @@ def _as_conic(pieces: list[Piece], joined: JoinedPieces, *, closed: bool) -> tup
         or any(x is not None and x.kind != "smooth" for x in joined.joints)
     ):
         return None
-    jets, along = _assembled(only_continuous(pieces, joined, closed=closed))
+    jets, along = _assembled(only_continuous(pieces, joined, closed=closed, tolerance=tolerance))
     return None if recognised_conic(_rows(jets, 1.0), along) is None else (jets, along)
 
 
