@@ -8,6 +8,7 @@ from typing import cast
 
 from semispline.solver.blending.chain_contact import chain_contact
 from semispline.solver.blending.chain_joints import Joint
+from semispline.solver.blending.chain_rims import facing_rims
 from semispline.solver.blending.chain_runs import facing_chains
 from semispline.solver.blending.chains import Chain, Strip, order_of_contact
 from semispline.solver.blending.result import BlendResult
@@ -28,7 +29,9 @@ class StatedBases:
         As they are run through.
     strips : pair of Strip or None
     matched : Correspondence or None
-        How the edges correspond, where corners of both say so.
+        How the edges correspond, where corners or joints of both say so.
+    lines_answer : bool
+        Lines at which rows are only continuous are left: those of both answer each other.
     """
 
     a: Base
@@ -37,6 +40,7 @@ class StatedBases:
     chains: tuple[Chain | None, ...] = (None, None)
     strips: tuple[Strip | None, ...] = (None, None)
     matched: Correspondence | None = None
+    lines_answer: bool = False
 
     @property
     def joints(self) -> tuple[Joint, ...]:
@@ -56,6 +60,8 @@ def as_bases(a: Base | Chain, b: Base | Chain, options: BlendOptions) -> StatedB
     """
     if not isinstance(a, Chain) and not isinstance(b, Chain):
         return StatedBases(a, b, options)
+    if isinstance(a, Chain) and isinstance(b, Chain) and (rims := facing_rims(a, b, options)):
+        return _as_rims(*rims, options)
     facing = facing_chains(a, b, options.flip) if isinstance(a, Chain) and isinstance(b, Chain) else None
     strips: list[Strip | None] = [None, None]
     for k, one in enumerate(facing or (a, b)):
@@ -68,6 +74,17 @@ def as_bases(a: Base | Chain, b: Base | Chain, options: BlendOptions) -> StatedB
     chains = tuple(x if isinstance(x, Chain) else None for x in facing or (a, b))
     matched = Correspondence(flipped=False) if facing else None
     return StatedBases(base_a, base_b, options, chains, tuple(strips), matched)
+
+
+def _as_rims(a: Chain, b: Chain, options: BlendOptions) -> StatedBases:
+    """Return rims whose joints answer each other, as they are."""
+    orders = [order_of_contact(wanted, name) for wanted, name in zip(options.continuities, "ab", strict=True)]
+    one = a.rim(orders[0])
+    other = b.rim(orders[1], one.spans)
+    options = replace(options, middle_curves=0)
+    return StatedBases(
+        one.base, other.base, options, (a, b), (one, other), Correspondence(flipped=False), lines_answer=True
+    )
 
 
 def _pairs_along(
@@ -89,7 +106,9 @@ def on_chains(result: BlendResult, stated: StatedBases) -> BlendResult:
         On a face the contact misses its limits.
     """
     contacts = [
-        None if one is None or strip is None else chain_contact(one, strip, result.surface, which, wanted)
+        None
+        if one is None or strip is None
+        else chain_contact(one, strip, result.surface, which, wanted, stated.options.limits)
         for one, strip, which, wanted in zip(stated.chains, stated.strips, "ab", result.continuity, strict=True)
     ]
     if contacts == [None, None]:

@@ -4,15 +4,25 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from semispline.solver.blending.chain_joints import KINK, Joint
+from semispline.solver.blending.chain_joints import CLOSED, KINK, Joint
 from semispline.solver.blending.chains import Chain, Strip
 from semispline.solver.errors import ContactError
-from semispline.solver.judge import Base, Contact, Crease, measure_contact, shortfalls, untold
-from semispline.solver.options import Continuity
+from semispline.solver.judge import (
+    Base,
+    Contact,
+    Crease,
+    edge_length,
+    in_cad_limits,
+    measure_contact,
+    shortfalls,
+    untold,
+)
+from semispline.solver.options import Continuity, Limits
 from semispline.solver.splines import (
     BSplineCurve,
     NaturalEdge,
@@ -57,6 +67,8 @@ class ChainContact:
         In the order of the blend's parameter; a face across whose edge the blend's seam runs is there twice.
     joints : tuple of Joint
     closed : bool
+    limits : {"exact", "cad"}
+        Which the contact was held to.
     degree, control_points : int
         Along, of the base that the chain makes.
     """
@@ -65,6 +77,7 @@ class ChainContact:
     faces: tuple[FaceOfChain, ...]
     joints: tuple[Joint, ...]
     closed: bool
+    limits: Limits
     degree: int
     control_points: int
 
@@ -98,10 +111,17 @@ def _notes(k: int, joint: Joint) -> Iterator[str]:
         yield f"{title}: curvature along the contact jumps from {before:.4g} to {after:.4g}, the blend inherits it"
     if joint.moved:
         yield f"{title}: the edges meet within {joint.moved:.2g}, each was moved by half of it"
+    if joint.apart > CLOSED:
+        yield f"{title}: the faces leave the contact {joint.apart:.2g} of their speed apart, the blend takes the mean"
 
 
 def chain_contact(
-    chain: Chain, strip: Strip, surface: SemiStructuredSurface, which: str, wanted: Continuity
+    chain: Chain,
+    strip: Strip,
+    surface: SemiStructuredSurface,
+    which: str,
+    wanted: Continuity,
+    limits: Limits | Literal["auto"],
 ) -> ChainContact:
     """Measure how a blend meets each face of a chain, and refuse what misses its limits.
 
@@ -114,6 +134,8 @@ def chain_contact(
         The blend: at u = 0 for `which` "a", at u = 1 for "b".
     which : {"a", "b"}
     wanted : str
+    limits : {"auto", "exact", "cad"}
+        "auto" is exact, but where the faces meet within a tolerance only.
 
     Raises
     ------
@@ -121,10 +143,14 @@ def chain_contact(
         Naming the edge.
     """
     order = max(2, int(wanted[1]))
+    exact = all(joint.is_exact for joint in strip.joints if joint is not None)
+    kind: Limits = "exact" if exact and limits == "auto" else "cad" if limits == "auto" else limits
     found = []
     for edge, span, face in _stretches(chain, strip, surface, "u0" if which == "a" else "u1"):
         own = Base(surface, f"{'u0' if which == 'a' else 'u1'}[{span[0]!r},{span[1]!r}]")
         contact = measure_contact(face, own, flip="auto", order=order)
+        if kind == "cad":
+            contact = in_cad_limits(contact, edge_length(face))
         name = chain.edges[edge].edge
         if lacking := [*untold(contact, wanted), *shortfalls(contact, wanted)]:
             raise ContactError(f"contact {which}: edge {edge} ({name}) of the chain: {'; '.join(map(str, lacking))}")
@@ -135,6 +161,7 @@ def chain_contact(
         faces=tuple(found),
         joints=tuple(joint for joint in strip.joints if joint is not None),
         closed=chain.closed,
+        limits=kind,
         degree=along.degree_v,
         control_points=along.control_points.shape[1],
     )

@@ -48,11 +48,14 @@ class Chain:
         Which of them are run through against their own parameter.
     closed : bool
         The last one ends where the first one begins.
+    tolerance : float
+        How far apart ends that are one point may lie, model units.
     """
 
     edges: tuple[Base, ...]
     turned: tuple[bool, ...]
     closed: bool
+    tolerance: float
 
     def strip(self, order: int, lengths: Sequence[float] | None = None) -> Strip:
         """Return the base that stands for the chain in a contact of the given order.
@@ -68,22 +71,44 @@ class Chain:
         EdgeError
             Faces do not meet along one curve where edges meet.
         """
-        origin = local_origin(*(base.surface for base in self.edges))
-        order = max(order, 1)
-        pieces = read_pieces(self.edges, self.turned, order, origin)
-        joined = joined_pieces(pieces, closed=self.closed)
+        pieces = self._pieces(order)
+        joined = joined_pieces(pieces, closed=self.closed, tolerance=self.tolerance)
         if lengths is not None:
             joined = _with_lengths(joined, lengths)
-        jets, along = _as_conic(pieces, joined, closed=self.closed) or _assembled(joined)
+        return self._strip(
+            joined, *(_as_conic(pieces, joined, closed=self.closed, tolerance=self.tolerance) or _assembled(joined))
+        )
+
+    def rim_pieces(self, order: int) -> JoinedPieces:
+        """Return the pieces with nothing but their values made to agree; errors as `strip`."""
+        pieces = self._pieces(order)
+        joined = joined_pieces(pieces, closed=self.closed, tolerance=self.tolerance)
+        return only_continuous(pieces, joined, closed=self.closed, tolerance=self.tolerance)
+
+    def rim(self, order: int, spans: FloatArray | None = None) -> Strip:
+        """Return a base of which rows are only continuous at joints, with spans as given; errors as `strip`."""
+        joined = self.rim_pieces(order)
+        joined = joined if spans is None else replace(joined, spans=spans)
+        return self._strip(joined, *_assembled(joined))
+
+    @property
+    def _origin(self) -> FloatArray:
+        return local_origin(*(base.surface for base in self.edges))
+
+    def _pieces(self, order: int) -> list[Piece]:
+        return read_pieces(self.edges, self.turned, max(order, 1), self._origin)
+
+    def _strip(self, joined: JoinedPieces, jets: FloatArray, along: Basis) -> Strip:
         first = self.edges[0]
         low, high = first.surface.domain["uv".index(first.side[0])]
         rows, width = _positive_rows(jets, along, high - low)
         points, weights = euclidean(rows)
-        knots = np.repeat([0.0, width], order + 1)
-        surface = BSplineSurface(order, along.degree, knots, along.knots, points + origin, weights)
+        degree = len(jets) - 1
+        knots = np.repeat([0.0, width], degree + 1)
+        surface = BSplineSurface(degree, along.degree, knots, along.knots, points + self._origin, weights)
         cuts = np.concatenate([[0.0], np.cumsum(joined.spans)])
-        joints = tuple(joint if joint is None else joint.moved_by(origin) for joint in joined.joints)
-        return Strip(surface, self.edges, self.turned, joined.pieces, tuple(cuts.tolist()), joints)
+        joints = tuple(joint if joint is None else joint.moved_by(self._origin) for joint in joined.joints)
+        return Strip(surface, self.edges, self.turned, joined.spans, tuple(cuts.tolist()), joints)
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,7 +122,8 @@ class Strip:
     edges : tuple of Base
     turned : tuple of bool
         Of the chain.
-    pieces : tuple of Piece
+    spans : ndarray
+        How long each piece is.
     cuts : tuple of float
         Where the pieces begin along the base, and where the last one ends.
     joints : tuple of Joint or None
@@ -107,7 +133,7 @@ class Strip:
     surface: BSplineSurface
     edges: tuple[Base, ...]
     turned: tuple[bool, ...]
-    pieces: tuple[Piece, ...]
+    spans: FloatArray
     cuts: tuple[float, ...]
     joints: tuple[Joint | None, ...]
 
@@ -182,7 +208,7 @@ def chain(edges: Sequence[Base], *, tolerance: float | None = None) -> Chain:
         raise EdgeError("chain: found no edges, expected one at least")
     within = _MEET * model_size(*(base.surface for base in bases)) if tolerance is None else tolerance
     if len(bases) == 1:
-        return Chain(bases, (False,), is_closed(bases[0]))
+        return Chain(bases, (False,), is_closed(bases[0]), within)
     for k, base in enumerate(bases):
         if is_closed(base):
             raise EdgeError(f"chain: edge {k} ({base.edge}) is closed by itself, expected edges that run end to end")
@@ -205,7 +231,7 @@ def chain(edges: Sequence[Base], *, tolerance: float | None = None) -> Chain:
         place = start if turned[-1] else end
     first = ends[0][1] if turned[0] else ends[0][0]
     assert place is not None
-    return Chain(bases, tuple(turned), bool(np.linalg.norm(place - first) <= within))
+    return Chain(bases, tuple(turned), bool(np.linalg.norm(place - first) <= within), within)
 
 
 def _with_lengths(joined: JoinedPieces, lengths: Sequence[float]) -> JoinedPieces:
@@ -217,7 +243,9 @@ def _with_lengths(joined: JoinedPieces, lengths: Sequence[float]) -> JoinedPiece
     return replace(joined, spans=joined.spans * factors[runs])
 
 
-def _as_conic(pieces: list[Piece], joined: JoinedPieces, *, closed: bool) -> tuple[FloatArray, Basis] | None:
+def _as_conic(
+    pieces: list[Piece], joined: JoinedPieces, *, closed: bool, tolerance: float
+) -> tuple[FloatArray, Basis] | None:
     """Return pieces that are one conic together, joined continuously: `blend` runs through it by a smooth circle."""
     if (
         len(pieces) < 2
@@ -225,7 +253,7 @@ def _as_conic(pieces: list[Piece], joined: JoinedPieces, *, closed: bool) -> tup
         or any(x is not None and x.kind != "smooth" for x in joined.joints)
     ):
         return None
-    jets, along = _assembled(only_continuous(pieces, joined, closed=closed))
+    jets, along = _assembled(only_continuous(pieces, joined, closed=closed, tolerance=tolerance))
     return None if recognised_conic(_rows(jets, 1.0), along) is None else (jets, along)
 
 

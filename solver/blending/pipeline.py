@@ -115,7 +115,7 @@ def _blended(stated: StatedBases) -> BlendResult:
     failures: dict[Flip, ComputationError] = {}
     for flip in directions:
         try:
-            solved.append(_solved(a, b, said, flip, matched))
+            solved.append(_solved(stated, flip))
         except ComputationError as failure:
             failures[flip] = failure
     seconds = time.perf_counter() - started
@@ -144,9 +144,10 @@ class _Solved:
     energy: MeasuredEnergy
 
 
-def _solved(a: Base, b: Base, said: BlendOptions, flip: Flip, matched: Correspondence | None) -> _Solved:
+def _solved(stated: StatedBases, flip: Flip) -> _Solved:
     """Solve for the blend: the few numbers that are not linear, then everything that is."""
-    placed = place_sides(a, b, said, flip, matched)
+    said = stated.options
+    placed = place_sides(stated.a, stated.b, said, flip, stated.matched, lines_answer=stated.lines_answer)
     layout, candidates = find_layout(*placed.scaled, said)
     found = bulged(layout.found, layout.options.bulges)
     surface = _surface(layout.problem, found, placed.sides, placed.frame)
@@ -258,7 +259,7 @@ def state_problem(a: Base, b: Base, options: BlendOptions | None = None, **named
     if len(tied := _tied(a, b, said.flip)) > 1:
         less_turning = blend(a, b, replace(said, method="reduced", strict=False))
         tied = ("yes" if less_turning.flipped else "no",)
-    placed = place_sides(a, b, said, tied[0], None)
+    placed = place_sides(a, b, said, tied[0])
     return StatedProblem(make_problem(*placed.scaled, said), placed.sides, placed.frame, placed.matched)
 
 

@@ -36,10 +36,20 @@ class PlacedSides:
     matched: Correspondence
 
 
-def place_sides(a: Base, b: Base, options: BlendOptions, flip: Flip, matched: Correspondence | None) -> PlacedSides:
+def place_sides(
+    a: Base,
+    b: Base,
+    options: BlendOptions,
+    flip: Flip,
+    matched: Correspondence | None = None,
+    *,
+    lines_answer: bool = False,
+) -> PlacedSides:
     """Bring both contacts to one parameter v and to coordinates of size 1; as `matched`, where that is known."""
     at_a, at_b = options.continuities
     sides = make_side(a, at_a, "base a"), make_side(b, at_b, "base b")
+    if lines_answer:
+        sides = replace(sides[0], keeps_lines=True), replace(sides[1], keeps_lines=True)
     matched = matched or matched_edges(a, b, flip)
     pairs = _pairs_in_v(a, b, options.match, matched) if isinstance(options.match, tuple) else None
     by = None
