@@ -9,6 +9,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
+from semispline.solver.arrays import FloatArray
 from semispline.solver.blending.chain_joints import CLOSED, KINK, Joint
 from semispline.solver.blending.chains import Chain, Strip
 from semispline.solver.errors import ContactError
@@ -18,6 +19,7 @@ from semispline.solver.judge import (
     Crease,
     edge_length,
     in_cad_limits,
+    is_closed,
     measure_contact,
     shortfalls,
     untold,
@@ -207,10 +209,19 @@ def _stretches(
         middle = curve.evaluate(np.array([(low + high) / 2]))[0]
         k = int(np.argmin([closest_point(one, middle).distance for one in edges]))
         base = chain.edges[k]
-        ends = [_parameter(edges[k], x) for x in curve.evaluate(np.array([low, high]))]
-        start, end = base.range_along
-        part = sorted(_snapped(x, start, end) for x in ends)
+        part = _part(base, edges[k], curve.evaluate(np.array([low, high])), middle)
         yield k, (low, high), Base(base.surface, f"{base.side}[{part[0]!r},{part[1]!r}]")
+
+
+def _part(base: Base, edge: BSplineCurve, ends: FloatArray, middle: FloatArray) -> tuple[float, float]:
+    """Return the range of an edge between two points on it that goes through a third one."""
+    start, end = base.range_along
+    low, high = sorted(_snapped(_parameter(edge, x), start, end) for x in ends)
+    if not is_closed(base):
+        return low, high
+    # A point on the seam is both of its ends.
+    inner, at = [x for x in (low, high) if start < x < end], _parameter(edge, middle)
+    return max([start, *(x for x in inner if x < at)]), min([end, *(x for x in inner if x > at)])
 
 
 def _parameter(curve: BSplineCurve, point: ArrayLike) -> float:

@@ -313,6 +313,8 @@ def _assembled(joined: JoinedPieces) -> tuple[FloatArray, Basis]:
             by = Reparametrisation.of(own.at(low, high, t))
             values = composed(bezier_derivatives(bezier, high - low, t, len(bezier) - 1), by)
             points.append(bezier_points(values))
+    if (seam := joined.joints[0]) is not None and not seam.is_exact:
+        _close(points, np.diff(places), joined.continuity[0])
     found, along = joined_spans(points, np.array(places), smooth)
     for at in _cut_splines(joined, places):
         # Where one spline was cut it comes back as smooth as it was.
@@ -323,6 +325,17 @@ def _assembled(joined: JoinedPieces) -> tuple[FloatArray, Basis]:
                 break
             smooth, found, along = smoother, fewer, basis
     return found, along
+
+
+def _close(points: list[FloatArray], widths: FloatArray, continuity: int) -> None:
+    """Let the last span end where the first one begins, faces that meet within a tolerance only: as at inner joints."""
+    before, after = points[-1][:, -2], points[0][:, 1]
+    if continuity:
+        common = (widths[0] * before + widths[-1] * after) / (widths[0] + widths[-1])
+    else:
+        common = (points[-1][:, -1] + points[0][:, 0]) / 2
+    points[-1], points[0] = points[-1].copy(), points[0].copy()
+    points[-1][:, -1] = points[0][:, 0] = common
 
 
 def _cut_splines(joined: JoinedPieces, places: Sequence[float]) -> list[int]:
