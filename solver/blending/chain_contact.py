@@ -38,6 +38,8 @@ from semispline.solver.splines import (
 _AT_A_JOINT = 1e-6
 # Of the range along the contact: shorter stretches are none.
 _SHORT = 1e-7
+# Of it too: a joint of faces that meet within a tolerance lies so near to the knot that it became.
+_NEAR_A_KNOT = 1e-6
 
 
 @dataclass(frozen=True)
@@ -200,7 +202,7 @@ def _stretches(
     inner = {float(first), float(last)}
     for joint in strip.joints:
         if joint is not None:
-            inner.add(_parameter(curve, joint.point))
+            inner.add(_at_a_knot(_parameter(curve, joint.point), curve))
     breaks = np.array(sorted(inner))
     breaks = breaks[np.append(True, np.diff(breaks) > _SHORT * (last - first))]
     breaks[-1] = last
@@ -226,6 +228,12 @@ def _part(base: Base, edge: BSplineCurve, ends: FloatArray, middle: FloatArray) 
 
 def _parameter(curve: BSplineCurve, point: ArrayLike) -> float:
     return float(np.ravel(closest_point(curve, point).parameters)[0])
+
+
+def _at_a_knot(x: float, curve: BSplineCurve) -> float:
+    """Return the knot that a parameter is meant to be: what lies between both would be a span of nothing."""
+    nearest = float(curve.knots[np.abs(curve.knots - x).argmin()])
+    return nearest if abs(nearest - x) < _NEAR_A_KNOT * float(curve.knots[-1] - curve.knots[0]) else x
 
 
 def _snapped(x: float, start: float, end: float) -> float:
