@@ -1,4 +1,8 @@
 from .solver.blending.band_contact import BandContact as BandContact
+from .solver.blending.chain_contact import ChainContact as ChainContact
+from .solver.blending.chain_joints import Joint as Joint
+from .solver.blending.chains import Chain as Chain
+from .solver.blending.chains import chain as chain
 from .solver.blending.measured_energy import thin_plate_energy as thin_plate_energy
 from .solver.blending.pipeline import blend as blend
 from .solver.blending.result import BlendResult as BlendResult

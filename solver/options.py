@@ -35,8 +35,9 @@ _V_SCALES: dict[int, VScale] = {0: "straight", 1: "stretched"}
 def _option(default: Any, form: str, metavar: str, text: str, *, sides: Literal["", "both", "each"] = "") -> Any:
     """Return a field; what the command line says of it and how it reads it stand beside its default.
 
-    `form` is text, number-or-word, numbers-or-word, range, numbers, lists-or-word or flag. With `sides` it may differ
-    at the two edges: "both" is said once for both unless B differs, "each" is said for one edge at a time.
+    `form` is text, number-or-word, numbers-or-word, pairs-or-word, range, numbers, lists-or-word or flag. With
+    `sides` it may differ at the two edges: "both" is said once for both unless B differs, "each" is said for one edge
+    at a time.
     """
     return field(default=default, metadata={"form": form, "metavar": metavar, "help": text, "sides": sides})
 
@@ -85,6 +86,10 @@ class BlendOptions:
         Inner knots of each middle curve, in v of a's edge: every fourth of both contacts', the paper's rule, or given.
     strict : bool
         Refuse a blend with warnings.
+    match : "affine", "length", or a sequence of pairs of numbers
+        Which points of the contacts answer each other: parameters that correspond affinely, equal shares of arc length,
+        or the named parameters along edge a and edge b, and monotone in between. Along a chain k + s is the share s of
+        its edge k. All but "affine" cost three times the degree along.
     limits : {"auto", "exact", "cad"}
         What contact is held to: exact, or as checkers of CAD systems have it. "auto" is exact, but for what is measured
         on a face along a free curve of it, where that is no plane.
@@ -142,6 +147,9 @@ class BlendOptions:
         "K1,K2,...",
         "Inner knots of a middle curve, in v of edge A; once for each curve. Or fourth, or paper: by that rule.",
     )
+    match: Literal["affine", "length"] | Sequence[tuple[float, float]] = _option(
+        "affine", "pairs-or-word", "X:Y,...", "What answers what along the edges: affine, length, or X on A for Y on B."
+    )
     limits: Limits | Auto = _option(
         "auto", "text", "LIMITS", "What contact is held to: exact, cad, or auto: cad along free curves of curved faces."
     )
@@ -165,6 +173,7 @@ class BlendOptions:
             "p2": _p2(self.p2),
             "bulge": tuple(map(_bulge, _pair(self.bulge, "bulge"))),
             "box": None if self.box is None else _box(self.box),
+            "match": _match(self.match),
             "limits": limits_name(self.limits),
             "v_scale": None if self.v_scale is None else _word(self.v_scale, "v_scale", get_args(VScale)),
             "u_knots": None if self.u_knots is None else _knots(self.u_knots, "u_knots"),
@@ -396,6 +405,20 @@ def _bulge(value: object) -> float:
 
 def _middle_knots(value: object) -> str | tuple[tuple[float, ...], ...]:
     return _word(value, "middle_knots", ("fourth", "paper")) if isinstance(value, str) else _knot_lists(value)
+
+
+def _match(value: object) -> str | tuple[tuple[float, float], ...]:
+    if isinstance(value, str):
+        return _word(value, "match", ("affine", "length"))
+    found = []
+    for i, pair in enumerate(_items(value, "match", "affine, length, or pairs of numbers")):
+        ends = _items(pair, f"match[{i}]", "a pair of numbers")
+        if len(ends) != 2:
+            raise OptionError(f"match[{i}]: found {reprlib.repr(pair)}, expected a pair of numbers")
+        found.append(tuple(real_number(x, f"match[{i}]", OptionError) for x in ends))
+    if not found:
+        raise OptionError("match: found no pairs, expected affine, length, or one pair at least")
+    return tuple(found)  # type: ignore[arg-type]
 
 
 def _box(box: object) -> tuple[float, float]:

@@ -160,16 +160,24 @@ class BlendProblem:
         """Indices of the rows that no contact prescribes."""
         return range(self.a.order + 1, len(self.rows) - self.b.order - 1)
 
+    @cached_property
+    def seam_is_a_corner(self) -> bool:
+        """Whether both bases are only continuous across their seam."""
+        return all(_seam_order(side) == 0 for side in (self.a, self.b))
+
     def seam_order_of(self, row: int) -> int:
         """How many derivatives a free row keeps across the seam, if it has control points for as many.
 
-        A middle curve is as smooth there as at its other knots: the blend does not show where the seam is.
+        A middle curve is as smooth there as at its other knots: the blend does not show where the seam is, unless both
+        bases have a corner there.
         """
         if self.seam_order < 0:
             return -1
         basis = self.form.rows[row]
         middle = self.a.count <= row < len(self.rows) - self.b.count
-        return min(basis.degree - 1 if middle else self.seam_order, basis.size // 2 - 1)
+        if middle and not (self.seam_order == 0 and self.seam_is_a_corner):
+            return min(basis.degree - 1, basis.size // 2 - 1)
+        return min(self.seam_order, basis.size // 2 - 1)
 
     @cached_property
     def free_system(self) -> FreeSystem | RationalSystem:
@@ -303,8 +311,7 @@ def make_problem(a: Side, b: Side, options: BlendOptions) -> BlendProblem:
         (a, b), weights = represented(a, b, u, options)
     elif any(cure is not None and cure.name != "none" for cure in (cure_a, cure_b)):
         a, b = of_one_degree(a, b)
-    orders = [seam_order(side.along, side.rows[: side.order + 1], side.largest) for side in (a, b)]
-    closed = min(orders)
+    closed = min(_seam_order(side) for side in (a, b))
     given = cast("Any", options.middle_knots)
     middle = middle_bases(a.along, b.along, middle_curves, given, closed=closed >= 0)
     if closed >= 0 and isinstance(given, str):
@@ -347,6 +354,10 @@ def make_problem(a: Side, b: Side, options: BlendOptions) -> BlendProblem:
         weights,
         (cure_a, cure_b),
     )
+
+
+def _seam_order(side: Side) -> int:
+    return seam_order(side.along, side.rows[: side.order + 1], side.largest)
 
 
 def _length_of_v(v_scale: str | None, length: float, *, closed: bool) -> float:

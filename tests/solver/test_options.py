@@ -28,6 +28,7 @@ OTHER = {
     "v_scale": ("unit", ["--v-scale", "unit"]),
     "u_knots": ((0.25, 0.5), ["--u-knots", "0.25,0.5"]),
     "middle_knots": (((0.5,), ()), ["--middle-knots", "0.5", "--middle-knots", ","]),
+    "match": (((0.25, 0.5), (0.5, 0.75)), ["--match", "0.25:0.5,0.5:0.75"]),
     "limits": ("cad", ["--limits", "cad"]),
     "strict": (True, ["--strict"]),
     "search_meets": (True, ["--search-meets"]),
