@@ -124,7 +124,6 @@ from .solver.topology.face_edges import FaceEdge as FaceEdge
 from .solver.topology.face_edges import FaceEdges as FaceEdges
 from .solver.topology.face_edges import ResolvedEdge as ResolvedEdge
 from .solver.topology.face_edges import list_edges as list_edges
-from .solver.topology.face_edges import resolve_edge as resolve_edge
 from .solver.topology.free_contact import FreeContact as FreeContact
 from .solver.topology.free_contact import measure_free_contact as measure_free_contact
 from .solver.topology.place import Place as Place
@@ -133,5 +132,6 @@ from .solver.topology.place import PlaceSide as PlaceSide
 from .solver.topology.places import find_places as find_places
 from .solver.topology.replacing import ReplacedPair as ReplacedPair
 from .solver.topology.replacing import replaced_pair as replaced_pair
+from .solver.topology.resolving import resolve_edge as resolve_edge
 
 __version__: str

@@ -15,8 +15,6 @@ from .face_edges import FaceEdges as FaceEdges
 from .face_edges import ResolvedEdge as ResolvedEdge
 from .face_edges import is_of_a_face as is_of_a_face
 from .face_edges import list_edges as list_edges
-from .face_edges import resolve_edge as resolve_edge
-from .face_edges import resolve_edges as resolve_edges
 from .face_meshes import EdgeLine as EdgeLine
 from .face_meshes import FaceMesh as FaceMesh
 from .free_contact import FreeContact as FreeContact
@@ -29,3 +27,5 @@ from .place import PlaceSide as PlaceSide
 from .places import find_places as find_places
 from .replacing import ReplacedPair as ReplacedPair
 from .replacing import replaced_pair as replaced_pair
+from .resolving import resolve_edge as resolve_edge
+from .resolving import resolve_edges as resolve_edges
