@@ -116,8 +116,9 @@ from .solver.splines.surfaces import BSplineSurface as BSplineSurface
 from .solver.splines.surfaces import SemiStructuredSurface as SemiStructuredSurface
 from .solver.topology.bands import Band as Band
 from .solver.topology.bands import band_along as band_along
-from .solver.topology.bases import EdgeBase as EdgeBase
 from .solver.topology.bases import edge_bases as edge_bases
+from .solver.topology.chain_edges import ResolvedChain as ResolvedChain
+from .solver.topology.edge_base import EdgeBase as EdgeBase
 from .solver.topology.edge_blends import blend_edges as blend_edges
 from .solver.topology.edge_moving import moved_edges as moved_edges
 from .solver.topology.face_edges import FaceEdge as FaceEdge

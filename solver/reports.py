@@ -15,7 +15,7 @@ import typer
 from semispline.solver.options import Continuity
 
 if TYPE_CHECKING:
-    from semispline.solver.blending import BandContact, BlendResult, LinearInV
+    from semispline.solver.blending import BandContact, BlendResult, ChainContact, LinearInV
     from semispline.solver.io import SurfaceEntry
     from semispline.solver.judge import Contact, Meets, ShapeReport
 
@@ -96,6 +96,29 @@ def report_record(result: BlendResult) -> dict[str, Any]:
             for name, contact in (("band_a", result.band_a), ("band_b", result.band_b))
             if contact is not None
         },
+        **{
+            name: chain_record(chain)
+            for name, chain in (("chain_a", result.chain_a), ("chain_b", result.chain_b))
+            if chain is not None
+        },
+    }
+
+
+def chain_record(chain: ChainContact) -> dict[str, Any]:
+    """Return what a JSON file holds of how a blend meets a chain: of each face, and of each joint."""
+    return {
+        "edges": list(chain.edges),
+        "closed": chain.closed,
+        "degree": chain.degree,
+        "control_points": chain.control_points,
+        "corners_fade": chain.fades,
+        "joints": [finite(asdict(joint)) | {"curvature_jumps": joint.bends} for joint in chain.joints],
+        "faces": [
+            {"edge": face.edge, "range": list(face.range), "contact": contact_record(face.contact)}
+            for face in chain.faces
+        ],
+        "bands": [contact_record(band) for band in chain.bands],
+        "notes": list(chain.notes()),
     }
 
 
@@ -184,6 +207,8 @@ def print_result(result: BlendResult) -> None:
     rows.append(("contact B", ", ".join(_figures(result.contact_b, at_b))))
     for name, band in zip("AB", (result.band_a, result.band_b), strict=True):
         rows += [] if band is None else _band_rows(name, band)
+    for name, chain, wanted in zip("AB", (result.chain_a, result.chain_b), result.continuity, strict=True):
+        rows += [] if chain is None else _chain_rows(name, chain, wanted)
     if result.seam is not None:
         rows.append(("seam", ", ".join(_figures(result.seam, None))))
     if (worst := worst_inside(result.creases)) is not None:
@@ -191,6 +216,19 @@ def print_result(result: BlendResult) -> None:
     rows += _shape_rows(result.shape)
     print_table(rows)
     print_warnings(result.warnings)
+
+
+def _chain_rows(name: str, chain: ChainContact, wanted: Continuity) -> Iterator[tuple[str, str]]:
+    """Yield what there is to say of a chain, and how a blend meets each face of it."""
+    yield f"chain at {name}", str(chain)
+    for note in chain.notes():
+        yield f"joint of {name}", note.removeprefix("joint ")
+    for face in chain.faces:
+        low, high = face.range
+        figures = ", ".join(_figures(face.contact, wanted))
+        yield f"face at {name}", f"{face.edge}, v in [{low:.4g}, {high:.4g}]: {figures}"
+    for band in chain.bands:
+        yield from _band_rows(name, band)
 
 
 def _band_rows(name: str, band: BandContact) -> Iterator[tuple[str, str]]:

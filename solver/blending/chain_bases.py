@@ -106,10 +106,15 @@ def on_chains(result: BlendResult, stated: StatedBases) -> BlendResult:
         On a face the contact misses its limits.
     """
     contacts = [
-        None if one is None or strip is None else chain_contact(one, strip, result.surface, which, wanted)
+        None
+        if one is None or strip is None
+        else chain_contact(one, strip, result.surface, which, wanted, stated.options.limits)
         for one, strip, which, wanted in zip(stated.chains, stated.strips, "ab", result.continuity, strict=True)
     ]
     if contacts == [None, None]:
         return result
+    corners = [0 if one is None else one.corners for one in contacts]
+    fades = corners[0] != corners[1]
+    chain_a, chain_b = (None if one is None else replace(one, fades=fades) for one in contacts)
     names = [edge if one is None else "+".join(one.edges) for edge, one in zip(result.edges, contacts, strict=True)]
-    return replace(result, edges=(names[0], names[1]), chain_a=contacts[0], chain_b=contacts[1])
+    return replace(result, edges=(names[0], names[1]), chain_a=chain_a, chain_b=chain_b)

@@ -8,11 +8,21 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+from semispline.solver.blending.band_contact import BandContact
 from semispline.solver.blending.chain_joints import KINK, Joint
 from semispline.solver.blending.chains import Chain, Strip
 from semispline.solver.errors import ContactError
-from semispline.solver.judge import Base, Contact, Crease, measure_contact, shortfalls, untold
-from semispline.solver.options import Continuity
+from semispline.solver.judge import (
+    Base,
+    Contact,
+    Crease,
+    edge_length,
+    in_cad_limits,
+    measure_contact,
+    shortfalls,
+    untold,
+)
+from semispline.solver.options import Auto, Continuity, Limits
 from semispline.solver.splines import (
     BSplineCurve,
     NaturalEdge,
@@ -59,6 +69,10 @@ class ChainContact:
     closed : bool
     degree, control_points : int
         Along, of the base that the chain makes.
+    bands : tuple of BandContact
+        How the blend meets the faces of those edges that are free curves.
+    fades : bool
+        The other side does not have its corners: their creases fade out on the way there.
     """
 
     edges: tuple[str, ...]
@@ -67,6 +81,8 @@ class ChainContact:
     closed: bool
     degree: int
     control_points: int
+    bands: tuple[BandContact, ...] = ()
+    fades: bool = False
 
     def __str__(self) -> str:
         smooth = sum(joint.kind == "smooth" for joint in self.joints)
@@ -78,18 +94,24 @@ class ChainContact:
 
     def notes(self) -> tuple[str, ...]:
         """Return what there is to say of the joints."""
-        return tuple(note for k, joint in enumerate(self.joints) for note in _notes(k, joint))
+        return tuple(note for k, joint in enumerate(self.joints) for note in _notes(k, joint, fades=self.fades))
+
+    @property
+    def corners(self) -> int:
+        """How many corners it has."""
+        return sum(joint.kind == "corner" for joint in self.joints)
 
     def worst(self, name: str) -> float:
         """Return the largest of a measure of `Contact` over the faces."""
         return max(float(getattr(face.contact, name)) for face in self.faces)
 
 
-def _notes(k: int, joint: Joint) -> Iterator[str]:
+def _notes(k: int, joint: Joint, *, fades: bool) -> Iterator[str]:
     x, y, z = joint.point
     title = f"joint {k} at ({x:.5g}, {y:.5g}, {z:.5g})"
     if joint.kind == "corner":
-        yield f"{title}: corner of {joint.turn_degrees:.3g} degrees, the blend is split there"
+        ends = ", the other side has none there: it fades out" if fades else ""
+        yield f"{title}: corner of {joint.turn_degrees:.3g} degrees, the blend is split there{ends}"
     elif joint.kind == "creased":
         sharp = max(joint.turn_degrees, joint.crease_degrees)
         yield f"{title}: the faces are creased by {sharp:.2g} degrees, the blend inherits it"
@@ -101,7 +123,12 @@ def _notes(k: int, joint: Joint) -> Iterator[str]:
 
 
 def chain_contact(
-    chain: Chain, strip: Strip, surface: SemiStructuredSurface, which: str, wanted: Continuity
+    chain: Chain,
+    strip: Strip,
+    surface: SemiStructuredSurface,
+    which: str,
+    wanted: Continuity,
+    limits: Limits | Auto = "auto",
 ) -> ChainContact:
     """Measure how a blend meets each face of a chain, and refuse what misses its limits.
 
@@ -114,6 +141,8 @@ def chain_contact(
         The blend: at u = 0 for `which` "a", at u = 1 for "b".
     which : {"a", "b"}
     wanted : str
+    limits : {"auto", "exact", "cad"}
+        "cad" only where it is said.
 
     Raises
     ------
@@ -125,13 +154,15 @@ def chain_contact(
     for edge, span, face in _stretches(chain, strip, surface, "u0" if which == "a" else "u1"):
         own = Base(surface, f"{'u0' if which == 'a' else 'u1'}[{span[0]!r},{span[1]!r}]")
         contact = measure_contact(face, own, flip="auto", order=order)
-        name = chain.edges[edge].edge
+        if limits == "cad":
+            contact = in_cad_limits(contact, edge_length(face))
+        name = chain.names[edge]
         if lacking := [*untold(contact, wanted), *shortfalls(contact, wanted)]:
             raise ContactError(f"contact {which}: edge {edge} ({name}) of the chain: {'; '.join(map(str, lacking))}")
         found.append(FaceOfChain(name, span, contact))
     along = strip.surface
     return ChainContact(
-        edges=tuple(base.edge for base in chain.edges),
+        edges=chain.names,
         faces=tuple(found),
         joints=tuple(joint for joint in strip.joints if joint is not None),
         closed=chain.closed,

@@ -25,6 +25,7 @@ from semispline.solver.cli.words import (
     asked,
     check_outputs,
     check_words,
+    edges_of,
     print_resolved,
     progress,
     resolved,
@@ -78,7 +79,7 @@ def blend_command(
     check_outputs({"--out": out, "--report": report}, wanted.specs)
     with progress("reading"):
         ends, said = wanted.resolved()
-    trims = face_warnings(*((end.spec, end.edge, end.loaded) for end in ends), strict=options.strict)
+    trims = face_warnings(*edges_of(ends), strict=options.strict)
     with progress("blending"):
         from semispline.solver.topology import blend_bases, edge_bases, paired_bases
 
@@ -89,7 +90,7 @@ def blend_command(
     results[0] = replace(results[0], warnings=(*trims, *results[0].warnings))
     record = reports_record(results) | asked(ends) | wanted.record
     of_parts = [
-        [result.surface, *(side.base.surface for side in pair if with_bases)]
+        [result.surface, *(base.surface for side in pair if with_bases for base in side.bases)]
         for result, pair in zip(results, pairs, strict=True)
     ]
     _write(files, of_parts, ends[0].loaded.unit, report, record)
@@ -148,12 +149,16 @@ def problem_command(
     """Write what blend would be asked as a problem file, which `generate --c` and scripts read; solve nothing."""
     from semispline.solver.io import StoredProblem, relative_spec, write_problem
     from semispline.solver.judge import Base
+    from semispline.solver.topology import ResolvedEdge
 
     check_words(edge_a, edge_b)
     check_outputs({"--out": out}, [a, b])
     ends = resolved(a, edge_a, b, edge_b)
-    # A name that the surface does not have is refused here; a free curve has a name in its file alone.
-    first, second = (end.edge if end.is_free else Base(end.surface, end.edge).edge for end in ends)
+    # A name that the surface does not have is refused here; a free curve and a chain have names in their file alone.
+    first, second = (
+        Base(end.surface, end.edge).edge if isinstance(end, ResolvedEdge) and not end.is_free else end.edge
+        for end in ends
+    )
     specs = [relative_spec(end.spec, out) for end in ends]
     write_problem(out, StoredProblem(specs[0], first, specs[1], second, options, ends[0].asked, ends[1].asked))
     print_resolved(ends)

@@ -1,10 +1,12 @@
-from .bases import EdgeBase as EdgeBase
 from .bases import edge_bases as edge_bases
 from .bases import paired_bases as paired_bases
+from .chain_edges import ResolvedChain as ResolvedChain
+from .chain_edges import members as members
 from .cuts import parse_cut as parse_cut
 from .drawn_faces import DrawnFace as DrawnFace
 from .drawn_faces import read_drawn as read_drawn
 from .drawn_faces import read_true_face as read_true_face
+from .edge_base import EdgeBase as EdgeBase
 from .edge_blends import blend_bases as blend_bases
 from .edge_blends import blend_edges as blend_edges
 from .edge_listing import edge_lines as edge_lines
@@ -27,5 +29,7 @@ from .place import PlaceSide as PlaceSide
 from .places import find_places as find_places
 from .replacing import ReplacedPair as ReplacedPair
 from .replacing import replaced_pair as replaced_pair
+from .resolving import Resolved as Resolved
+from .resolving import check_edge_word as check_edge_word
 from .resolving import resolve_edge as resolve_edge
 from .resolving import resolve_edges as resolve_edges

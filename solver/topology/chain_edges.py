@@ -143,7 +143,7 @@ def check_run(graph: EdgeGraph, relations: Relations, rows: Sequence[int], name:
     doubled = [row for k, row in enumerate(rows) if row in rows[:k] and row != rows[k - 1]]
     if doubled:
         raise EdgeError(f"{name}: {uses.name(doubled[0])} of face #{uses.face[doubled[0]]} is there twice")
-    sides = []
+    sides: list[int] = []
     for before, after in pairwise(rows):
         if before == after:
             continue

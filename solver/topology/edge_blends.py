@@ -10,7 +10,10 @@ from semispline.solver.blending import BandContact, BlendResult, blend
 from semispline.solver.errors import ComputationError, ContactError
 from semispline.solver.judge import Base, face_shortfalls, measure_face_contact
 from semispline.solver.options import BlendOptions, Continuity, named_options
-from semispline.solver.topology.bases import EdgeBase, edge_bases, paired_bases
+from semispline.solver.topology.bands import Band
+from semispline.solver.topology.bases import edge_bases, paired_bases
+from semispline.solver.topology.chain_edges import ResolvedChain
+from semispline.solver.topology.edge_base import EdgeBase
 from semispline.solver.topology.edge_limits import default_limits, face_limits
 from semispline.solver.topology.face_edges import ResolvedEdge
 from semispline.solver.topology.trim_curves import TrimCurve
@@ -24,15 +27,16 @@ _SHORT = {
 
 
 def blend_edges(
-    a: ResolvedEdge, b: ResolvedEdge, options: BlendOptions | None = None, **named: Any
+    a: ResolvedEdge | ResolvedChain, b: ResolvedEdge | ResolvedChain, options: BlendOptions | None = None, **named: Any
 ) -> tuple[BlendResult, ...]:
     """Blend an edge of a face with another, of whatever kind: one blend, or one for each part of a free curve.
 
-    A free curve is cut at its corners and where the face's curvature jumps across it.
+    A free curve is cut at its corners and where the face's curvature jumps across it. Edges that run end to end are
+    one base.
 
     Parameters
     ----------
-    a, b : ResolvedEdge
+    a, b : ResolvedEdge or ResolvedChain
         As `resolve_edge` returns them.
     options : BlendOptions, optional
         Or its fields by name, as `blend` has them.
@@ -63,38 +67,63 @@ def blend_bases(a: EdgeBase, b: EdgeBase, options: BlendOptions, *, several: boo
 
     Messages name the parts where there are several.
     """
-    through_band = a.band is not None or b.band is not None
+    through_band = any(part.band is not None for side in (a, b) for part in side.parts)
     try:
         # To a band contact is as exact as to any base.
         result = blend(a.base, b.base, replace(options, limits="exact") if through_band else options)
-        contacts = [_band_contact(result, side, which, options) for which, side in (("a", a), ("b", b))]
+        contacts = [_band_contacts(result, side, which, options) for which, side in (("a", a), ("b", b))]
     except ComputationError as error:
         if several:
             raise type(error)(f"{a.name} to {b.name}: {error}") from None
         raise
+    band_a, band_b = (
+        None if side.members or not found else found[0] for side, found in zip((a, b), contacts, strict=True)
+    )
+    chain_a, chain_b = (
+        None if chain is None else replace(chain, bands=tuple(found))
+        for chain, found in zip((result.chain_a, result.chain_b), contacts, strict=True)
+    )
     return replace(
         result,
         edges=(a.name, b.name),
-        options=replace(result.options, limits=_said(options, contacts)),
-        band_a=contacts[0],
-        band_b=contacts[1],
+        options=replace(result.options, limits=_said(options, [*contacts[0], *contacts[1]])),
+        band_a=band_a,
+        band_b=band_b,
+        chain_a=chain_a,
+        chain_b=chain_b,
     )
 
 
-def _said(options: BlendOptions, contacts: Sequence[BandContact | None]) -> Literal["exact", "cad"]:
+def _band_contacts(result: BlendResult, side: EdgeBase, which: str, options: BlendOptions) -> list[BandContact]:
+    """Return how a blend meets the face of each band of a side."""
+    edge = "u0" if which == "a" else "u1"
+    met = result.chain_a if which == "a" else result.chain_b
+    if met is None:
+        return [] if side.band is None else [_band_contact(result, side, side.band, edge, which, options)]
+    parts = {part.name: part for part in side.parts}
+    found = []
+    for face in met.faces:
+        part, (low, high) = parts[face.edge], face.range
+        if part.band is not None:
+            found.append(_band_contact(result, part, part.band, f"{edge}[{low!r},{high!r}]", which, options))
+    return found
+
+
+def _said(options: BlendOptions, contacts: Sequence[BandContact]) -> Literal["exact", "cad"]:
     """Return the wider limits that were used."""
     if options.limits != "auto":
         return options.limits
-    return "cad" if any(x is not None and x.limits == "cad" for x in contacts) else "exact"
+    return "cad" if any(x.limits == "cad" for x in contacts) else "exact"
 
 
-def _band_contact(result: BlendResult, side: EdgeBase, which: str, options: BlendOptions) -> BandContact | None:
-    """Measure how a blend meets the face of a band, and refuse what misses its limits."""
-    band, curve = side.band, side.curve
-    if band is None or curve is None:
-        return None
+def _band_contact(
+    result: BlendResult, side: EdgeBase, band: Band, edge: str, which: str, options: BlendOptions
+) -> BandContact:
+    """Measure how an edge of a blend meets the face of a band, and refuse what misses its limits."""
+    curve = side.curve
+    assert curve is not None
     wanted = options.continuities["ab".index(which)]
-    own = Base(result.surface, "u0" if which == "a" else "u1")
+    own = Base(result.surface, edge)
     order = max(2, int(wanted[1]))
     contact = measure_face_contact(own, curve.free_edge(band.source), order=order)
     kind = default_limits(curve) if options.limits == "auto" else options.limits
