@@ -1,5 +1,6 @@
 from .solver.blending.band_contact import BandContact as BandContact
 from .solver.blending.chain_contact import ChainContact as ChainContact
+from .solver.blending.chain_faces import faces_of_blend as faces_of_blend
 from .solver.blending.chain_joints import Joint as Joint
 from .solver.blending.chains import Chain as Chain
 from .solver.blending.chains import chain as chain

@@ -66,6 +66,8 @@ class ChainContact:
     faces : tuple of FaceOfChain
         In the order of the blend's parameter; a face across whose edge the blend's seam runs is there twice.
     joints : tuple of Joint
+    places : tuple of float
+        Where along the blend's edge, in its own parameter, each of them lies.
     closed : bool
     degree, control_points : int
         Along, of the base that the chain makes.
@@ -78,6 +80,7 @@ class ChainContact:
     edges: tuple[str, ...]
     faces: tuple[FaceOfChain, ...]
     joints: tuple[Joint, ...]
+    places: tuple[float, ...]
     closed: bool
     degree: int
     control_points: int
@@ -150,9 +153,13 @@ def chain_contact(
         Naming the edge.
     """
     order = max(2, int(wanted[1]))
+    edge_of_blend: NaturalEdge = "u0" if which == "a" else "u1"
+    curve = boundary_curve(surface, edge_of_blend)
+    joints = tuple(joint for joint in strip.joints if joint is not None)
+    places = tuple(_parameter(curve, joint.point) for joint in joints)
     found = []
-    for edge, span, face in _stretches(chain, strip, surface, "u0" if which == "a" else "u1"):
-        own = Base(surface, f"{'u0' if which == 'a' else 'u1'}[{span[0]!r},{span[1]!r}]")
+    for edge, span, face in _stretches(chain, curve, places):
+        own = Base(surface, f"{edge_of_blend}[{span[0]!r},{span[1]!r}]")
         contact = measure_contact(face, own, flip="auto", order=order)
         if limits == "cad":
             contact = in_cad_limits(contact, edge_length(face))
@@ -164,7 +171,8 @@ def chain_contact(
     return ChainContact(
         edges=chain.names,
         faces=tuple(found),
-        joints=tuple(joint for joint in strip.joints if joint is not None),
+        joints=joints,
+        places=places,
         closed=chain.closed,
         degree=along.degree_v,
         control_points=along.control_points.shape[1],
@@ -194,16 +202,11 @@ def told_apart(
 
 
 def _stretches(
-    chain: Chain, strip: Strip, surface: SemiStructuredSurface, edge: NaturalEdge
+    chain: Chain, curve: BSplineCurve, places: Sequence[float]
 ) -> Iterator[tuple[int, tuple[float, float], Base]]:
     """Yield each edge with the range of the blend's parameter along it, and the part of it that lies there."""
-    curve = boundary_curve(surface, edge)
-    first, last = (float(x) for x in surface.domain[1])
-    inner = {float(first), float(last)}
-    for joint in strip.joints:
-        if joint is not None:
-            inner.add(_parameter(curve, joint.point))
-    breaks = np.array(sorted(inner))
+    first, last = float(curve.knots[0]), float(curve.knots[-1])
+    breaks = np.array(sorted({first, last, *places}))
     breaks = breaks[np.append(True, np.diff(breaks) > _SHORT * (last - first))]
     breaks[-1] = last
     edges = [boundary_curve(base.surface, base.side) for base in chain.edges]

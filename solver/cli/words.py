@@ -19,8 +19,8 @@ SURFACE_HELP = "PATH, or PATH#N as `semispline list PATH` numbers it (JSON, STEP
 EDGE_HELP = (
     "Edge of {}: u0, u1, v0 or v1, the parameter that is constant along it and at which end; a part, u1[0.2,0.6]; a "
     "line inside, u=0.3+ (the side of larger u is kept) or u=0.3-; a part of it, u=0.3+[0.2,0.6]; e3, an edge of the "
-    "face as `semispline list PATH --edges N` numbers it; near=x,y,z, its edge nearest to a point; several that run end to "
-    "end, e3+e4, 12:e3+13:e1 (of faces 12 and 13 of the file), e3..e9, e3* (all that go on smoothly from e3)."
+    "face as `semispline list PATH --edges N` numbers it; near=x,y,z, its edge nearest to a point; several end to end, "
+    "e3+e4, 12:e3+13:e1 (of faces 12 and 13 of the file), e3..e9, e3* (all that go on smoothly from e3)."
 )
 CONTINUITY_HELP = "C0, C1, C2, G0, G1, G2, G3 or G4."
 

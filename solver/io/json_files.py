@@ -38,7 +38,7 @@ _Text: TypeAlias = Annotated[str, Strict()]
 _Points: TypeAlias = list[list[_Number]]
 
 
-# A free curve of a face in a file, or a part of it; or edges that run end to end, those of other faces with their number.
+# A free curve of a face in a file, or a part of it; or edges that run end to end, of other faces with their number.
 _ONE = r"e[0-9]{1,9}(\[[0-9]{1,9}\])?"
 _FREE = re.compile(rf"{_ONE}(\+([0-9]{{1,9}}:)?{_ONE})*")
 # Knots beyond it are for the surface to refuse.
