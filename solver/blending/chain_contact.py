@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from semispline.solver.blending.band_contact import BandContact
-from semispline.solver.blending.chain_joints import KINK, Joint
+from semispline.solver.blending.chain_joints import CLOSED, KINK, Joint
 from semispline.solver.blending.chains import Chain, Strip
 from semispline.solver.errors import ContactError
 from semispline.solver.judge import (
@@ -22,7 +23,7 @@ from semispline.solver.judge import (
     shortfalls,
     untold,
 )
-from semispline.solver.options import Auto, Continuity, Limits
+from semispline.solver.options import Continuity, Limits
 from semispline.solver.splines import (
     BSplineCurve,
     NaturalEdge,
@@ -69,6 +70,8 @@ class ChainContact:
     places : tuple of float
         Where along the blend's edge, in its own parameter, each of them lies.
     closed : bool
+    limits : {"exact", "cad"}
+        Which the contact was held to.
     degree, control_points : int
         Along, of the base that the chain makes.
     bands : tuple of BandContact
@@ -82,6 +85,7 @@ class ChainContact:
     joints: tuple[Joint, ...]
     places: tuple[float, ...]
     closed: bool
+    limits: Limits
     degree: int
     control_points: int
     bands: tuple[BandContact, ...] = ()
@@ -123,6 +127,8 @@ def _notes(k: int, joint: Joint, *, fades: bool) -> Iterator[str]:
         yield f"{title}: curvature along the contact jumps from {before:.4g} to {after:.4g}, the blend inherits it"
     if joint.moved:
         yield f"{title}: the edges meet within {joint.moved:.2g}, each was moved by half of it"
+    if joint.apart > CLOSED:
+        yield f"{title}: the faces leave the contact {joint.apart:.2g} of their speed apart, the blend takes the mean"
 
 
 def chain_contact(
@@ -131,7 +137,7 @@ def chain_contact(
     surface: SemiStructuredSurface,
     which: str,
     wanted: Continuity,
-    limits: Limits | Auto = "auto",
+    limits: Limits | Literal["auto"],
 ) -> ChainContact:
     """Measure how a blend meets each face of a chain, and refuse what misses its limits.
 
@@ -145,7 +151,7 @@ def chain_contact(
     which : {"a", "b"}
     wanted : str
     limits : {"auto", "exact", "cad"}
-        "cad" only where it is said.
+        "auto" is exact, but where the faces meet within a tolerance only.
 
     Raises
     ------
@@ -157,11 +163,13 @@ def chain_contact(
     curve = boundary_curve(surface, edge_of_blend)
     joints = tuple(joint for joint in strip.joints if joint is not None)
     places = tuple(_parameter(curve, joint.point) for joint in joints)
+    exact = all(joint.is_exact for joint in joints)
+    kind: Limits = "exact" if exact and limits == "auto" else "cad" if limits == "auto" else limits
     found = []
     for edge, span, face in _stretches(chain, curve, places):
         own = Base(surface, f"{edge_of_blend}[{span[0]!r},{span[1]!r}]")
         contact = measure_contact(face, own, flip="auto", order=order)
-        if limits == "cad":
+        if kind == "cad":
             contact = in_cad_limits(contact, edge_length(face))
         name = chain.names[edge]
         if lacking := [*untold(contact, wanted), *shortfalls(contact, wanted)]:
@@ -174,6 +182,7 @@ def chain_contact(
         joints=joints,
         places=places,
         closed=chain.closed,
+        limits=kind,
         degree=along.degree_v,
         control_points=along.control_points.shape[1],
     )

@@ -90,6 +90,9 @@ class Joint:
         How far apart the edges end, beyond rounding; each was moved by half of it.
     curvatures : (float, float)
         Of the contact, before and after.
+    apart : float
+        By how much derivatives across differ, relative to themselves, that nothing makes agree: the faces meet within a
+        tolerance. The strip takes their mean.
     """
 
     point: tuple[float, float, float]
@@ -99,6 +102,12 @@ class Joint:
     residuals: tuple[float, ...]
     moved: float
     curvatures: tuple[float, float]
+    apart: float = 0.0
+
+    @property
+    def is_exact(self) -> bool:
+        """Whether the faces meet to rounding."""
+        return self.moved == 0 and self.apart <= CLOSED
 
     def moved_by(self, offset: FloatArray) -> Joint:
         """Return the joint in other coordinates."""
@@ -134,8 +143,15 @@ class JoinedPieces:
     continuity: tuple[int, ...]
 
 
-def joined_pieces(pieces: list[Piece], *, closed: bool) -> JoinedPieces:
+def joined_pieces(pieces: list[Piece], *, closed: bool, tolerance: float = 0.0) -> JoinedPieces:
     """Return what makes the pieces one strip.
+
+    Parameters
+    ----------
+    pieces : list of Piece
+    closed : bool
+    tolerance : float
+        Within which the faces meet, model units: so far derivatives across may differ that cannot be made to agree.
 
     Raises
     ------
@@ -144,12 +160,12 @@ def joined_pieces(pieces: list[Piece], *, closed: bool) -> JoinedPieces:
     """
     turns = [_turn(pieces[k - 1], pieces[k]) if k or closed else None for k in range(len(pieces))]
     smooth = [turn is not None and turn <= CORNER for turn in turns]
-    pieces = _of_even_weights(pieces, closed=closed)
+    pieces = _of_even_weights(pieces, closed=closed, tolerance=tolerance)
     if closed and all(smooth):
         pieces = _closing_speeds(pieces)
     ends = [piece.at_ends() for piece in pieces]
     spans = _spans(pieces)
-    found = _with_values(pieces, ends, closed=closed)
+    found, apart = _with_values(pieces, ends, closed=closed, tolerance=tolerance)
     _flatten_weights(ends, spans, found, smooth, closed=closed)
     joints: list[Joint | None] = [None] * len(pieces)
     straight = [piece.is_straight for piece in pieces]
@@ -158,14 +174,15 @@ def joined_pieces(pieces: list[Piece], *, closed: bool) -> JoinedPieces:
             rounding = (
                 pieces[k - 1].rounding_of_slopes()[1] / spans[k - 1] + pieces[k].rounding_of_slopes()[0] / spans[k]
             )
-            joints[k] = _with_slopes(ends, spans, found, straight, k, turn, rounding)
+            joint = _with_slopes(ends, spans, found, straight, k, turn, rounding)
+            joints[k] = replace(joint, apart=apart[k])
     continuity = tuple(int(joint is not None and joint.kind == "smooth") for joint in joints)
     return JoinedPieces(tuple(pieces), spans, tuple(found), tuple(joints), continuity)
 
 
-def only_continuous(pieces: list[Piece], joined: JoinedPieces, *, closed: bool) -> JoinedPieces:
+def only_continuous(pieces: list[Piece], joined: JoinedPieces, *, closed: bool, tolerance: float = 0.0) -> JoinedPieces:
     """Return the same pieces with nothing but their values made to agree."""
-    found = _with_values(pieces, [piece.at_ends() for piece in pieces], closed=closed)
+    found, _ = _with_values(pieces, [piece.at_ends() for piece in pieces], closed=closed, tolerance=tolerance)
     return JoinedPieces(tuple(pieces), _spans(pieces), tuple(found), joined.joints, (0,) * len(pieces))
 
 
@@ -175,12 +192,12 @@ def _spans(pieces: list[Piece]) -> FloatArray:
     return np.asarray(np.cumprod([1.0, *(speeds[k + 1][0] / speeds[k][1] for k in range(len(pieces) - 1))]))
 
 
-def _of_even_weights(pieces: list[Piece], *, closed: bool) -> list[Piece]:
+def _of_even_weights(pieces: list[Piece], *, closed: bool, tolerance: float) -> list[Piece]:
     """Return the pieces with equal weights at their ends, but for those that go on smoothly as they are."""
     if pieces[0].jets.shape[2] == 3:
         return pieces
     ends, spans = [piece.at_ends() for piece in pieces], _spans(pieces)
-    found = _with_values(pieces, ends, closed=closed)
+    found, _ = _with_values(pieces, ends, closed=closed, tolerance=tolerance)
     count, order = len(pieces), pieces[0].order
     smooth = [(k == 0 and not closed) or _goes_on(ends, spans, found, k, order) for k in range(count)]
     return [
@@ -216,23 +233,29 @@ def _closing_speeds(pieces: list[Piece]) -> list[Piece]:
     return [with_faster_end(x, times) if takes else x for x, takes in zip(pieces, taking, strict=True)]
 
 
-def _with_values(pieces: list[Piece], ends: list[FloatArray], *, closed: bool) -> list[Coefficients]:
-    """Return coefficients that are constant along each piece and make values agree; the last of a ring is cubic."""
+def _with_values(
+    pieces: list[Piece], ends: list[FloatArray], *, closed: bool, tolerance: float
+) -> tuple[list[Coefficients], list[float]]:
+    """Return coefficients that are constant along each piece and make values agree; the last of a ring is cubic.
+
+    With them, for each joint, by how much derivatives differ all the same, relative to what they compare.
+    """
     order = pieces[0].order
     start = np.zeros((3, order + 1))
     start[_LAMBDA, 0] = 1.0
     start[_W, 1] = 1.0
-    found = []
+    found, apart = [], [0.0] * len(pieces)
     for k in range(len(pieces)):
         if k:
-            start = _matching(ends[k][:, :, 0], end_values(ends[k - 1][:, :, 1], start), start, k)
+            wanted = end_values(ends[k - 1][:, :, 1], start)
+            start, apart[k] = _matching(ends[k][:, :, 0], wanted, k, tolerance, pieces[k].width)
         found.append(Coefficients(np.stack([start, start]), np.zeros((2, 3, order + 1))))
     if closed:
         first = end_values(ends[0][:, :, 0], found[0].values[0])
-        last = _matching(ends[-1][:, :, 1], first, start, 0)
+        last, apart[0] = _matching(ends[-1][:, :, 1], first, 0, tolerance, pieces[-1].width)
         if np.abs(last - start).max() > _SAME * np.abs(start).max():
             found[-1] = Coefficients(np.stack([start, last]), np.zeros((2, 3, order + 1)))
-    return found
+    return found, apart
 
 
 def end_values(derivatives: FloatArray, by: FloatArray) -> FloatArray:
@@ -245,8 +268,10 @@ def end_slopes(derivatives: FloatArray, by: FloatArray, slopes: FloatArray) -> F
     return slopes_along(derivatives[:, :, None], Reparametrisation.of(by), Reparametrisation.of(slopes))[:, 0]
 
 
-def _matching(derivatives: FloatArray, wanted: FloatArray, like: FloatArray, joint: int) -> FloatArray:
-    """Return lambda and w at the end of a piece by which its values are `wanted`, order by order.
+def _matching(
+    derivatives: FloatArray, wanted: FloatArray, joint: int, tolerance: float, width: float
+) -> tuple[FloatArray, float]:
+    """Return lambda and w at the end of a piece by which its values are `wanted`, order by order; and what is left.
 
     Raises
     ------
@@ -254,7 +279,7 @@ def _matching(derivatives: FloatArray, wanted: FloatArray, like: FloatArray, joi
         No such values: the faces do not share the curve along which they leave the contact.
     """
     order, rational = len(wanted) - 1, wanted.shape[1] == 4
-    by = np.zeros_like(like)
+    by, apart = np.zeros((3, order + 1)), 0.0
     by[_LAMBDA, 0] = wanted[0, 3] / derivatives[0, 0, 3] if rational else 1.0
     extent = float(np.abs(wanted[0]).max()) or 1.0
     per_u = float(np.linalg.norm(wanted[min(1, order)])) / extent
@@ -265,14 +290,16 @@ def _matching(derivatives: FloatArray, wanted: FloatArray, like: FloatArray, joi
         for name, value in zip(columns, solved, strict=True):
             by[name, j] = value
         scale = max(float(np.linalg.norm(wanted[j])), extent * per_u**j)
-        if left > CLOSED * scale:
+        apart = max(apart, left / scale)
+        # A face that is off by the tolerance along its width is turned by that much.
+        if left > max(CLOSED * scale, tolerance * (by[_W, 1] / width) ** j):
             raise EdgeError(
                 f"joint {joint}: derivatives of order {j} across the contact differ by {left / scale:.1e} of "
                 f"themselves, expected {CLOSED:g}; both faces have to leave the contact along one curve there"
             )
         if j == 1 and by[_W, 1] <= 0:
             raise EdgeError(f"joint {joint}: the faces lie on different sides of the chain, expected one side")
-    return by
+    return by, apart
 
 
 def _solved(columns: list[FloatArray], rest: FloatArray) -> tuple[FloatArray, float]:

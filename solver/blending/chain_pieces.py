@@ -41,6 +41,8 @@ class Piece:
         Of each derivative along v; -1 where it is zero.
     rounding : ndarray, shape (order + 1,)
         What rounding of the control points may make of each derivative.
+    width : float
+        Of the face across, in its own parameter.
     """
 
     edge: int
@@ -49,6 +51,7 @@ class Piece:
     along: Basis
     degrees: tuple[int, ...]
     rounding: FloatArray
+    width: float
 
     @property
     def is_straight(self) -> bool:
@@ -113,12 +116,14 @@ def read_pieces(bases: tuple[Base, ...], turned: tuple[bool, ...], order: int, o
         derivatives = end_derivatives(order, side.degree, side.spans)
         jets = np.einsum("dk,knc->dnc", derivatives, side.rows[: order + 1])
         rounding = _ROUNDINGS * np.finfo(float).eps * side.largest * np.abs(derivatives).sum(axis=1)
+        low, high = base.surface.domain["uv".index(base.side[0])]
+        width = high - low
         knots = side.along.knots
         if back:
             jets, knots = jets[:, ::-1], reversed_knots(knots)
         for piece, basis, ends in _split(jets, Basis(side.along.degree, knots)):
             own = tuple(float(base.range_along[0] + base.range_along[1] - x) if back else float(x) for x in ends)
-            found.append(_standard(Piece(k, own, piece, basis, (), rounding)))  # type: ignore[arg-type]
+            found.append(_standard(Piece(k, own, piece, basis, (), rounding, width)))  # type: ignore[arg-type]
     return found
 
 

@@ -50,12 +50,15 @@ class Chain:
         The last one ends where the first one begins.
     names : tuple of str
         What each is called in what is said of it.
+    tolerance : float
+        How far apart ends that are one point may lie, model units.
     """
 
     edges: tuple[Base, ...]
     turned: tuple[bool, ...]
     closed: bool
     names: tuple[str, ...]
+    tolerance: float
 
     def strip(self, order: int, lengths: Sequence[float] | None = None) -> Strip:
         """Return the base that stands for the chain in a contact of the given order.
@@ -72,15 +75,18 @@ class Chain:
             Faces do not meet along one curve where edges meet.
         """
         pieces = self._pieces(order)
-        joined = joined_pieces(pieces, closed=self.closed)
+        joined = joined_pieces(pieces, closed=self.closed, tolerance=self.tolerance)
         if lengths is not None:
             joined = _with_lengths(joined, lengths)
-        return self._strip(joined, *(_as_conic(pieces, joined, closed=self.closed) or _assembled(joined)))
+        return self._strip(
+            joined, *(_as_conic(pieces, joined, closed=self.closed, tolerance=self.tolerance) or _assembled(joined))
+        )
 
     def rim_pieces(self, order: int) -> JoinedPieces:
         """Return the pieces with nothing but their values made to agree; errors as `strip`."""
         pieces = self._pieces(order)
-        return only_continuous(pieces, joined_pieces(pieces, closed=self.closed), closed=self.closed)
+        joined = joined_pieces(pieces, closed=self.closed, tolerance=self.tolerance)
+        return only_continuous(pieces, joined, closed=self.closed, tolerance=self.tolerance)
 
     def rim(self, order: int, spans: FloatArray | None = None) -> Strip:
         """Return a base of which rows are only continuous at joints, with spans as given; errors as `strip`."""
@@ -208,7 +214,7 @@ def chain(edges: Sequence[Base], *, tolerance: float | None = None, names: Seque
     called = tuple(base.edge for base in bases) if names is None else tuple(names)
     within = _MEET * model_size(*(base.surface for base in bases)) if tolerance is None else tolerance
     if len(bases) == 1:
-        return Chain(bases, (False,), is_closed(bases[0]), called)
+        return Chain(bases, (False,), is_closed(bases[0]), called, within)
     for k, base in enumerate(bases):
         if is_closed(base):
             raise EdgeError(f"chain: edge {k} ({called[k]}) is closed by itself, expected edges that run end to end")
@@ -231,7 +237,7 @@ def chain(edges: Sequence[Base], *, tolerance: float | None = None, names: Seque
         place = start if turned[-1] else end
     first = ends[0][1] if turned[0] else ends[0][0]
     assert place is not None
-    return Chain(bases, tuple(turned), bool(np.linalg.norm(place - first) <= within), called)
+    return Chain(bases, tuple(turned), bool(np.linalg.norm(place - first) <= within), called, within)
 
 
 def _with_lengths(joined: JoinedPieces, lengths: Sequence[float]) -> JoinedPieces:
@@ -243,7 +249,9 @@ def _with_lengths(joined: JoinedPieces, lengths: Sequence[float]) -> JoinedPiece
     return replace(joined, spans=joined.spans * factors[runs])
 
 
-def _as_conic(pieces: list[Piece], joined: JoinedPieces, *, closed: bool) -> tuple[FloatArray, Basis] | None:
+def _as_conic(
+    pieces: list[Piece], joined: JoinedPieces, *, closed: bool, tolerance: float
+) -> tuple[FloatArray, Basis] | None:
     """Return pieces that are one conic together, joined continuously: `blend` runs through it by a smooth circle."""
     if (
         len(pieces) < 2
@@ -251,7 +259,7 @@ def _as_conic(pieces: list[Piece], joined: JoinedPieces, *, closed: bool) -> tup
         or any(x is not None and x.kind != "smooth" for x in joined.joints)
     ):
         return None
-    jets, along = _assembled(only_continuous(pieces, joined, closed=closed))
+    jets, along = _assembled(only_continuous(pieces, joined, closed=closed, tolerance=tolerance))
     return None if recognised_conic(_rows(jets, 1.0), along) is None else (jets, along)
 
 
