@@ -17,6 +17,7 @@ from semispline.solver.topology.chain_edges import ResolvedChain, members
 from semispline.solver.topology.edge_base import EdgeBase
 from semispline.solver.topology.face_edges import ResolvedEdge, split_part
 from semispline.solver.topology.joined_bases import in_order, joined, merged_edges
+from semispline.solver.topology.plane_chains import edges_on_planes, strips_on_planes
 from semispline.solver.topology.trim_curves import TrimCurve, read_trim_curves
 
 # Of the length of an edge: nearer ends are one point.
@@ -47,11 +48,20 @@ def edge_bases(
     FileError, ComputationError
         As `read_trim_curves`.
     """
-    curves = iter(free_curves([edge for end in ends for edge in members(end)]))
+    # Each file is read once, for all of them.
+    asked = [wanted for end in ends for wanted in _wanted_curves(end)]
+    curves = iter(_curves([edge for end in ends for edge in members(end)], asked))
     orders = [continuity] * len(ends) if isinstance(continuity, str) else continuity
     return [
         _bases_of(end, [next(curves) for _ in members(end)], wanted) for end, wanted in zip(ends, orders, strict=True)
     ]
+
+
+def _wanted_curves(end: ResolvedEdge | ResolvedChain) -> list[bool]:
+    """Tell of which edges the curves are read: of free ones, and of those beside them on a plane."""
+    if isinstance(end, ResolvedEdge):
+        return [end.is_free]
+    return [edge.is_free or on_plane for edge, on_plane in zip(end.edges, edges_on_planes(end), strict=True)]
 
 
 def _bases_of(
@@ -59,12 +69,29 @@ def _bases_of(
 ) -> tuple[EdgeBase, ...]:
     if isinstance(end, ResolvedEdge):
         return _bases_of_edge(end, curves[0], wanted)
-    own = dict(zip(end.edges, curves, strict=True))
-    runs = [
-        [replace(part, name=_named(part, name)) for part in _bases_of_edge(edge, own.get(edge), wanted)]
-        for edge, name in merged_edges(end.edges, end.names)
-    ]
+    strips = strips_on_planes(end, curves)
+    runs: list[Sequence[EdgeBase]] = []
+    kept: list[tuple[ResolvedEdge, str, TrimCurve | None]] = []
+    for strip, edge, name, curve in zip(strips, end.edges, end.names, curves, strict=True):
+        if strip is None:
+            kept.append((edge, name, curve if edge.is_free else None))
+            continue
+        runs += _runs(kept, wanted)
+        kept = []
+        runs.append([EdgeBase(name, strip.base, strip, curve)])
+    runs += _runs(kept, wanted)
     return (joined(in_order(runs), end.edge, end.tolerance),)
+
+
+def _runs(edges: Sequence[tuple[ResolvedEdge, str, TrimCurve | None]], wanted: Continuity) -> list[list[EdgeBase]]:
+    """Return the bases along each of some edges that follow each other; those on one line of a surface are one."""
+    if not edges:
+        return []
+    own = {edge: curve for edge, _, curve in edges}
+    return [
+        [replace(part, name=_named(part, name)) for part in _bases_of_edge(edge, own.get(edge), wanted)]
+        for edge, name in merged_edges([edge for edge, _, _ in edges], [name for _, name, _ in edges])
+    ]
 
 
 def _bases_of_edge(end: ResolvedEdge, curve: TrimCurve | None, wanted: Continuity) -> tuple[EdgeBase, ...]:
@@ -81,18 +108,27 @@ def _named(part: EdgeBase, name: str) -> str:
 
 def free_curves(ends: Sequence[ResolvedEdge]) -> list[TrimCurve | None]:
     """Return the curves of those edges that are free, in the unit of their surfaces; each file is read once."""
+    return _curves(ends, [end.is_free for end in ends])
+
+
+def _curves(ends: Sequence[ResolvedEdge], wanted: Sequence[bool]) -> list[TrimCurve | None]:
     found: list[TrimCurve | None] = [None] * len(ends)
     paths: dict[str, list[int]] = {}
     for k, end in enumerate(ends):
         if end.curve is not None:
             found[k] = end.curve.in_unit(end.loaded.unit)
-        elif end.is_free:
+        elif wanted[k]:
             paths.setdefault(split_spec(end.spec)[0], []).append(k)
     for path, which in paths.items():
-        asked = [(split_spec(ends[k].spec)[1] or 0, int(split_part(ends[k].edge)[0][1:])) for k in which]
+        asked = [(split_spec(ends[k].spec)[1] or 0, _number(ends[k])) for k in which]
         for k, curve in zip(which, read_trim_curves(path, asked), strict=True):
             found[k] = curve.in_unit(ends[k].loaded.unit)
     return found
+
+
+def _number(edge: ResolvedEdge) -> int:
+    """Return k of the name "ek" in the file."""
+    return int((split_part(edge.edge)[0] if edge.entry is None else edge.entry.name)[1:])
 
 
 def bases_along(curve: TrimCurve, continuity: Continuity = "G2", part: int | None = None) -> tuple[EdgeBase, ...]:

@@ -4,16 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from itertools import pairwise
 
+import numpy as np
+
+from semispline.solver.arrays import FloatArray
 from semispline.solver.errors import EdgeError
 from semispline.solver.io import MILLIMETRES, LoadedSurface, split_spec
 from semispline.solver.topology.chain_names import ChainWord
-from semispline.solver.topology.contact_walk import passage_between, smooth_run
-from semispline.solver.topology.face_edges import ResolvedEdge, only_face, row_of, split_part
+from semispline.solver.topology.contact_walk import Passage, passage_between, smooth_run
+from semispline.solver.topology.face_edges import Point, ResolvedEdge, only_face, row_of, split_part
 from semispline.solver.topology.half_edges import EdgeGraph
 from semispline.solver.topology.relations import Relations, relate
-from semispline.solver.topology.sides import leaving
+from semispline.solver.topology.sides import entering, leaving
 
 # Each of two edges that meet in a vertex may be off it by its own tolerance.
 _BOTH = 2.0
@@ -35,6 +37,9 @@ class ResolvedChain:
         What was taken, in words.
     tolerance : float
         How far apart ends of edges may lie that are one point, as the file says; model units.
+    ways : tuple of ((float, float, float), (float, float, float)) or None
+        Where each edge begins, which point that is, and in which direction the edge leaves it that its face shares
+        with the face before; None on one face, and at the start of edges that are open.
     """
 
     spec: str
@@ -42,6 +47,7 @@ class ResolvedChain:
     asked: str
     said: str
     tolerance: float
+    ways: tuple[tuple[Point, Point] | None, ...] = ()
 
     @property
     def edge(self) -> str:
@@ -69,7 +75,8 @@ class ResolvedChain:
         old, new = self.loaded.unit, loaded[0].unit
         factor = 1.0 if old is None or new is None else MILLIMETRES[old] / MILLIMETRES[new]
         edges = tuple(replace(edge, loaded=one) for edge, one in zip(self.edges, loaded, strict=True))
-        return replace(self, edges=edges, tolerance=self.tolerance * factor)
+        ways = tuple(None if way is None else (_point(factor * np.array(way[0])), way[1]) for way in self.ways)
+        return replace(self, edges=edges, tolerance=self.tolerance * factor, ways=ways)
 
 
 def _name(edge: ResolvedEdge, own: int | None) -> str:
@@ -131,8 +138,10 @@ def _run(graph: EdgeGraph, first: int, last: int, name: str) -> tuple[int, ...]:
     return tuple(found)
 
 
-def check_run(graph: EdgeGraph, relations: Relations, rows: Sequence[int], name: str) -> float:
-    """Return how far apart their ends may lie, of uses that follow each other one way or the other.
+def passages_of(graph: EdgeGraph, relations: Relations, rows: Sequence[int], name: str) -> list[Passage | None]:
+    """Return how each use goes on in the next, of uses that follow each other one way or the other.
+
+    The first says how the last one goes on in the first; None where it does not, and within one use.
 
     Raises
     ------
@@ -143,15 +152,28 @@ def check_run(graph: EdgeGraph, relations: Relations, rows: Sequence[int], name:
     doubled = [row for k, row in enumerate(rows) if row in rows[:k] and row != rows[k - 1]]
     if doubled:
         raise EdgeError(f"{name}: {uses.name(doubled[0])} of face #{uses.face[doubled[0]]} is there twice")
-    sides: list[int] = []
-    for before, after in pairwise(rows):
-        if before == after:
-            continue
+    found: list[Passage | None] = []
+    for k, after in enumerate(rows):
+        before = rows[k - 1]
         passage = passage_between(graph, relations, before, after) or passage_between(graph, relations, after, before)
-        if passage is None:
+        if passage is None and k and before != after:
             raise EdgeError(f"{name}: {_apart(graph, before, after)}")
-        sides += passage.side or ()
-    return _BOTH * float(uses.tolerance[[*rows, *sides]].max())
+        found.append(None if before == after else passage)
+    return found
+
+
+def _way(graph: EdgeGraph, passage: Passage | None) -> tuple[Point, Point] | None:
+    """Return where a passage is, and in which direction its side edge leaves."""
+    if passage is None or passage.side is None:
+        return None
+    # It leaves where the use that the walk came from ends.
+    point, along = entering(graph.uses, passage.side[0])
+    return _point(point), _point(along)
+
+
+def _point(values: FloatArray) -> Point:
+    x, y, z = (float(x) for x in values)
+    return x, y, z
 
 
 def _apart(graph: EdgeGraph, before: int, after: int) -> str:
@@ -184,8 +206,11 @@ def chain_of_uses(
     EdgeError
         They do not follow each other, or their faces have no common side edge.
     """
-    tolerance = check_run(graph, relate(graph), rows, f"{name} {word}")
-    found = ResolvedChain(edges[0].spec, tuple(edges), word, "", tolerance)
+    passages = passages_of(graph, relate(graph), rows, f"{name} {word}")
+    sides = [row for passage in passages if passage is not None for row in passage.side or ()]
+    tolerance = _BOTH * float(graph.uses.tolerance[[*rows, *sides]].max())
+    ways = tuple(_way(graph, passage) for passage in passages)
+    found = ResolvedChain(edges[0].spec, tuple(edges), word, "", tolerance, ways)
     count = f"{len(edges)} edges of {_counted_faces(edges)}"
     said = f"{found.edge} of {found.spec}, {count}" + (f"; {stops}" if stops else "")
     return replace(found, said=said)
