@@ -112,12 +112,16 @@ def chain_record(chain: ChainContact) -> dict[str, Any]:
         "degree": chain.degree,
         "control_points": chain.control_points,
         "corners_fade": chain.fades,
-        "joints": [finite(asdict(joint)) | {"curvature_jumps": joint.bends} for joint in chain.joints],
+        "limits": chain.limits,
+        "joints": [
+            finite(asdict(joint)) | {"v": at, "curvature_jumps": joint.bends}
+            for joint, at in zip(chain.joints, chain.places, strict=True)
+        ],
         "faces": [
             {"edge": face.edge, "range": list(face.range), "contact": contact_record(face.contact)}
+            | ({} if face.band is None else {"band": contact_record(face.band)})
             for face in chain.faces
         ],
-        "bands": [contact_record(band) for band in chain.bands],
         "notes": list(chain.notes()),
     }
 
@@ -225,14 +229,12 @@ def _chain_rows(name: str, chain: ChainContact, wanted: Continuity) -> Iterator[
         yield f"joint of {name}", note.removeprefix("joint ")
     for face in chain.faces:
         low, high = face.range
-        figures = ", ".join(_figures(face.contact, wanted))
+        figures = ", ".join(_figures(face.contact, wanted)) if face.band is None else _band_figures(face.band)
         yield f"face at {name}", f"{face.edge}, v in [{low:.4g}, {high:.4g}]: {figures}"
-    for band in chain.bands:
-        yield from _band_rows(name, band)
 
 
-def _band_rows(name: str, band: BandContact) -> Iterator[tuple[str, str]]:
-    """Yield how a blend meets the face of a band, and of which curve that is one."""
+def _band_figures(band: BandContact) -> str:
+    """Return how a blend meets the face of a band."""
     figures = [
         f"{words} {value:.2g}{unit} ({band.allowed[measure]:.2g} allowed)"
         for measure, words, unit in (
@@ -245,7 +247,12 @@ def _band_rows(name: str, band: BandContact) -> Iterator[tuple[str, str]]:
         )
         if (value := getattr(band, measure)) is not None
     ]
-    yield f"face at {name}", f"{', '.join(figures)}; {band.limits} limits"
+    return f"{', '.join(figures)}; {band.limits} limits"
+
+
+def _band_rows(name: str, band: BandContact) -> Iterator[tuple[str, str]]:
+    """Yield how a blend meets the face of a band, and of which curve that is one."""
+    yield f"face at {name}", _band_figures(band)
     of = "feet of the edge in space" if band.source == "foot" else "curve in the face's parameters"
     apart = [
         f"edge {distance:.2g} from the {other}"

@@ -49,12 +49,15 @@ class FaceOfChain:
     range : (float, float)
         Where along the blend's edge, in its own parameter.
     contact : Contact
-        Of the face, as a, and the blend.
+        Of the face, or of the band along a free curve of it, as a, and the blend.
+    band : BandContact or None
+        How the blend meets the face of that band.
     """
 
     edge: str
     range: tuple[float, float]
     contact: Contact
+    band: BandContact | None = None
 
 
 @dataclass(frozen=True)
@@ -74,8 +77,6 @@ class ChainContact:
         Which the contact was held to.
     degree, control_points : int
         Along, of the base that the chain makes.
-    bands : tuple of BandContact
-        How the blend meets the faces of those edges that are free curves.
     fades : bool
         The other side does not have its corners: their creases fade out on the way there.
     """
@@ -88,7 +89,6 @@ class ChainContact:
     limits: Limits
     degree: int
     control_points: int
-    bands: tuple[BandContact, ...] = ()
     fades: bool = False
 
     def __str__(self) -> str:

@@ -156,8 +156,20 @@ def normal_of(surface: BSplineSurface) -> FloatArray:
 
 
 def _inwards(edge: BSplineCurve, normal: FloatArray, keep: str) -> FloatArray:
-    """Return unit vectors into the face, square to an edge of it, one for each of its control points."""
+    """Return by what the control points move where an edge moves into the face by 1: at its ends square to it.
+
+    Each leg of the polygon moves by 1: that is exact for lines and arcs.
+    """
+    legs = np.diff(edge.control_points, axis=0)
+    sizes = np.linalg.norm(legs, axis=1)
+    sign = 1.0 if keep == "left" else -1.0
+    if sizes.min() > _AFFINE * sizes.sum():
+        beside = sign * np.cross(normal, legs / sizes[:, None])
+        sums = beside[1:] + beside[:-1]
+        steep = 1 + np.sum(beside[1:] * beside[:-1], axis=1)
+        if not len(steep) or steep.min() > _STEEP:
+            return np.concatenate([beside[:1], sums / steep[:, None], beside[-1:]])
+    # Where the polygon turns back on itself it says nothing.
     places = np.clip(greville(edge.knots, edge.degree), edge.knots[0], edge.knots[-1])
-    slope = edge.evaluate(places, 1)
-    inwards = np.cross(normal, slope) * (1.0 if keep == "left" else -1.0)
+    inwards = sign * np.cross(normal, edge.evaluate(places, 1))
     return np.asarray(inwards / np.linalg.norm(inwards, axis=1, keepdims=True))
