@@ -119,6 +119,8 @@ from .solver.topology.bands import Band as Band
 from .solver.topology.bands import band_along as band_along
 from .solver.topology.bases import edge_bases as edge_bases
 from .solver.topology.chain_edges import ResolvedChain as ResolvedChain
+from .solver.topology.chain_measuring import StretchContact as StretchContact
+from .solver.topology.chain_measuring import measure_chain_contact as measure_chain_contact
 from .solver.topology.edge_base import EdgeBase as EdgeBase
 from .solver.topology.edge_blends import blend_edges as blend_edges
 from .solver.topology.edge_moving import moved_edges as moved_edges

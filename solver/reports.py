@@ -17,10 +17,10 @@ from semispline.solver.options import Continuity
 if TYPE_CHECKING:
     from semispline.solver.blending import BandContact, BlendResult, ChainContact, LinearInV
     from semispline.solver.io import SurfaceEntry
-    from semispline.solver.judge import Contact, Meets, ShapeReport
+    from semispline.solver.judge import Contact, FaceContact, Meets, ShapeReport
 
 
-def contact_record(contact: Contact | BandContact) -> dict[str, Any]:
+def contact_record(contact: Contact | BandContact | FaceContact) -> dict[str, Any]:
     """Return what a JSON file holds of a measured contact: nothing of what was not asked for."""
     return {name: finite(value) for name, value in asdict(contact).items() if value is not None}
 

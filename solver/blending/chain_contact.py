@@ -166,7 +166,7 @@ def chain_contact(
     exact = all(joint.is_exact for joint in joints)
     kind: Limits = "exact" if exact and limits == "auto" else "cad" if limits == "auto" else limits
     found = []
-    for edge, span, face in _stretches(chain, curve, places):
+    for edge, span, face in stretches_along(chain, curve, places):
         own = Base(surface, f"{edge_of_blend}[{span[0]!r},{span[1]!r}]")
         contact = measure_contact(face, own, flip="auto", order=order)
         if kind == "cad":
@@ -210,10 +210,24 @@ def told_apart(
     return own, inherited
 
 
-def _stretches(
+def stretches_along(
     chain: Chain, curve: BSplineCurve, places: Sequence[float]
 ) -> Iterator[tuple[int, tuple[float, float], Base]]:
-    """Yield each edge with the range of the blend's parameter along it, and the part of it that lies there."""
+    """Yield each edge with the range of a curve's parameter along it, and the part of it that lies there.
+
+    Parameters
+    ----------
+    chain : Chain
+    curve : BSplineCurve
+        That runs along the chain, as the edge of a blend does.
+    places : sequence of float
+        Where edges of the chain end along it.
+
+    Raises
+    ------
+    EdgeError
+        The curve runs on beyond the chain.
+    """
     first, last = float(curve.knots[0]), float(curve.knots[-1])
     breaks = np.array(sorted({first, last, *places}))
     breaks = breaks[np.append(True, np.diff(breaks) > _SHORT * (last - first))]

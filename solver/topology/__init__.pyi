@@ -2,6 +2,9 @@ from .bases import edge_bases as edge_bases
 from .bases import paired_bases as paired_bases
 from .chain_edges import ResolvedChain as ResolvedChain
 from .chain_edges import members as members
+from .chain_measuring import StretchContact as StretchContact
+from .chain_measuring import measure_chain_contact as measure_chain_contact
+from .chain_measuring import worst_of as worst_of
 from .cuts import parse_cut as parse_cut
 from .drawn_faces import DrawnFace as DrawnFace
 from .drawn_faces import read_drawn as read_drawn
