@@ -1,5 +1,8 @@
 from .band_contact import BandContact as BandContact
 from .chain_contact import ChainContact as ChainContact
+from .chain_contact import stretches_along as stretches_along
+from .chain_faces import Split as Split
+from .chain_faces import faces_of_blend as faces_of_blend
 from .chains import Chain as Chain
 from .chains import chain as chain
 from .linear_alpha import LinearInV as LinearInV

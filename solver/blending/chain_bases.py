@@ -113,5 +113,8 @@ def on_chains(result: BlendResult, stated: StatedBases) -> BlendResult:
     ]
     if contacts == [None, None]:
         return result
+    corners = [0 if one is None else one.corners for one in contacts]
+    fades = corners[0] != corners[1]
+    chain_a, chain_b = (None if one is None else replace(one, fades=fades) for one in contacts)
     names = [edge if one is None else "+".join(one.edges) for edge, one in zip(result.edges, contacts, strict=True)]
-    return replace(result, edges=(names[0], names[1]), chain_a=contacts[0], chain_b=contacts[1])
+    return replace(result, edges=(names[0], names[1]), chain_a=chain_a, chain_b=chain_b)

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from semispline.solver.arrays import FloatArray
+from semispline.solver.blending.band_contact import BandContact
 from semispline.solver.blending.chain_joints import CLOSED, KINK, Joint
 from semispline.solver.blending.chains import Chain, Strip
 from semispline.solver.errors import ContactError
@@ -52,12 +53,15 @@ class FaceOfChain:
     range : (float, float)
         Where along the blend's edge, in its own parameter.
     contact : Contact
-        Of the face, as a, and the blend.
+        Of the face, or of the band along a free curve of it, as a, and the blend.
+    band : BandContact or None
+        How the blend meets the face of that band.
     """
 
     edge: str
     range: tuple[float, float]
     contact: Contact
+    band: BandContact | None = None
 
 
 @dataclass(frozen=True)
@@ -70,20 +74,26 @@ class ChainContact:
     faces : tuple of FaceOfChain
         In the order of the blend's parameter; a face across whose edge the blend's seam runs is there twice.
     joints : tuple of Joint
+    places : tuple of float
+        Where along the blend's edge, in its own parameter, each of them lies.
     closed : bool
     limits : {"exact", "cad"}
         Which the contact was held to.
     degree, control_points : int
         Along, of the base that the chain makes.
+    fades : bool
+        The other side does not have its corners: their creases fade out on the way there.
     """
 
     edges: tuple[str, ...]
     faces: tuple[FaceOfChain, ...]
     joints: tuple[Joint, ...]
+    places: tuple[float, ...]
     closed: bool
     limits: Limits
     degree: int
     control_points: int
+    fades: bool = False
 
     def __str__(self) -> str:
         smooth = sum(joint.kind == "smooth" for joint in self.joints)
@@ -95,18 +105,24 @@ class ChainContact:
 
     def notes(self) -> tuple[str, ...]:
         """Return what there is to say of the joints."""
-        return tuple(note for k, joint in enumerate(self.joints) for note in _notes(k, joint))
+        return tuple(note for k, joint in enumerate(self.joints) for note in _notes(k, joint, fades=self.fades))
+
+    @property
+    def corners(self) -> int:
+        """How many corners it has."""
+        return sum(joint.kind == "corner" for joint in self.joints)
 
     def worst(self, name: str) -> float:
         """Return the largest of a measure of `Contact` over the faces."""
         return max(float(getattr(face.contact, name)) for face in self.faces)
 
 
-def _notes(k: int, joint: Joint) -> Iterator[str]:
+def _notes(k: int, joint: Joint, *, fades: bool) -> Iterator[str]:
     x, y, z = joint.point
     title = f"joint {k} at ({x:.5g}, {y:.5g}, {z:.5g})"
     if joint.kind == "corner":
-        yield f"{title}: corner of {joint.turn_degrees:.3g} degrees, the blend is split there"
+        ends = ", the other side has none there: it fades out" if fades else ""
+        yield f"{title}: corner of {joint.turn_degrees:.3g} degrees, the blend is split there{ends}"
     elif joint.kind == "creased":
         sharp = max(joint.turn_degrees, joint.crease_degrees)
         yield f"{title}: the faces are creased by {sharp:.2g} degrees, the blend inherits it"
@@ -147,23 +163,28 @@ def chain_contact(
         Naming the edge.
     """
     order = max(2, int(wanted[1]))
-    exact = all(joint.is_exact for joint in strip.joints if joint is not None)
+    edge_of_blend: NaturalEdge = "u0" if which == "a" else "u1"
+    curve = boundary_curve(surface, edge_of_blend)
+    joints = tuple(joint for joint in strip.joints if joint is not None)
+    places = tuple(_at_a_knot(_parameter(curve, joint.point), curve) for joint in joints)
+    exact = all(joint.is_exact for joint in joints)
     kind: Limits = "exact" if exact and limits == "auto" else "cad" if limits == "auto" else limits
     found = []
-    for edge, span, face in _stretches(chain, strip, surface, "u0" if which == "a" else "u1"):
-        own = Base(surface, f"{'u0' if which == 'a' else 'u1'}[{span[0]!r},{span[1]!r}]")
+    for edge, span, face in stretches_along(chain, curve, places):
+        own = Base(surface, f"{edge_of_blend}[{span[0]!r},{span[1]!r}]")
         contact = measure_contact(face, own, flip="auto", order=order)
         if kind == "cad":
             contact = in_cad_limits(contact, edge_length(face))
-        name = chain.edges[edge].edge
+        name = chain.names[edge]
         if lacking := [*untold(contact, wanted), *shortfalls(contact, wanted)]:
             raise ContactError(f"contact {which}: edge {edge} ({name}) of the chain: {'; '.join(map(str, lacking))}")
         found.append(FaceOfChain(name, span, contact))
     along = strip.surface
     return ChainContact(
-        edges=tuple(base.edge for base in chain.edges),
+        edges=chain.names,
         faces=tuple(found),
-        joints=tuple(joint for joint in strip.joints if joint is not None),
+        joints=joints,
+        places=places,
         closed=chain.closed,
         limits=kind,
         degree=along.degree_v,
@@ -193,17 +214,26 @@ def told_apart(
     return own, inherited
 
 
-def _stretches(
-    chain: Chain, strip: Strip, surface: SemiStructuredSurface, edge: NaturalEdge
+def stretches_along(
+    chain: Chain, curve: BSplineCurve, places: Sequence[float]
 ) -> Iterator[tuple[int, tuple[float, float], Base]]:
-    """Yield each edge with the range of the blend's parameter along it, and the part of it that lies there."""
-    curve = boundary_curve(surface, edge)
-    first, last = (float(x) for x in surface.domain[1])
-    inner = {float(first), float(last)}
-    for joint in strip.joints:
-        if joint is not None:
-            inner.add(_at_a_knot(_parameter(curve, joint.point), curve))
-    breaks = np.array(sorted(inner))
+    """Yield each edge with the range of a curve's parameter along it, and the part of it that lies there.
+
+    Parameters
+    ----------
+    chain : Chain
+    curve : BSplineCurve
+        That runs along the chain, as the edge of a blend does.
+    places : sequence of float
+        Where edges of the chain end along it.
+
+    Raises
+    ------
+    EdgeError
+        The curve runs on beyond the chain.
+    """
+    first, last = float(curve.knots[0]), float(curve.knots[-1])
+    breaks = np.array(sorted({first, last, *places}))
     breaks = breaks[np.append(True, np.diff(breaks) > _SHORT * (last - first))]
     breaks[-1] = last
     edges = [boundary_curve(base.surface, base.side) for base in chain.edges]

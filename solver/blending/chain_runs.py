@@ -38,12 +38,18 @@ def _ways(b: Chain) -> list[Chain]:
 
 def begun_at(chain: Chain, k: int) -> Chain:
     """Return a closed chain that begins at its edge k."""
-    return replace(chain, edges=chain.edges[k:] + chain.edges[:k], turned=chain.turned[k:] + chain.turned[:k])
+    return replace(
+        chain,
+        edges=chain.edges[k:] + chain.edges[:k],
+        turned=chain.turned[k:] + chain.turned[:k],
+        names=chain.names[k:] + chain.names[:k],
+    )
 
 
 def run_back(chain: Chain) -> Chain:
     """Return the chain run through the other way."""
-    return replace(chain, edges=chain.edges[::-1], turned=tuple(not back for back in chain.turned[::-1]))
+    turned = tuple(not back for back in chain.turned[::-1])
+    return replace(chain, edges=chain.edges[::-1], turned=turned, names=chain.names[::-1])
 
 
 def _corners(chain: Chain) -> list[int]:

@@ -48,6 +48,8 @@ class Chain:
         Which of them are run through against their own parameter.
     closed : bool
         The last one ends where the first one begins.
+    names : tuple of str
+        What each is called in what is said of it.
     tolerance : float
         How far apart ends that are one point may lie, model units.
     """
@@ -55,6 +57,7 @@ class Chain:
     edges: tuple[Base, ...]
     turned: tuple[bool, ...]
     closed: bool
+    names: tuple[str, ...]
     tolerance: float
 
     def strip(self, order: int, lengths: Sequence[float] | None = None) -> Strip:
@@ -188,7 +191,7 @@ def order_of_contact(continuity: Continuity, name: str) -> int:
     return int(continuity[1])
 
 
-def chain(edges: Sequence[Base], *, tolerance: float | None = None) -> Chain:
+def chain(edges: Sequence[Base], *, tolerance: float | None = None, names: Sequence[str] | None = None) -> Chain:
     """Return edges that run end to end as one contact, to be blended like a base.
 
     Parameters
@@ -197,6 +200,8 @@ def chain(edges: Sequence[Base], *, tolerance: float | None = None) -> Chain:
         In order; each may run either way.
     tolerance : float, optional
         How far apart, in model units, ends that are to be one point may lie; 1e-7 of the size of the faces.
+    names : sequence of str, optional
+        What each edge is called in what is said of it, as "12:e3" of a file; else what `Base` calls it.
 
     Raises
     ------
@@ -206,12 +211,13 @@ def chain(edges: Sequence[Base], *, tolerance: float | None = None) -> Chain:
     bases = tuple(edges)
     if not bases:
         raise EdgeError("chain: found no edges, expected one at least")
+    called = tuple(base.edge for base in bases) if names is None else tuple(names)
     within = _MEET * model_size(*(base.surface for base in bases)) if tolerance is None else tolerance
     if len(bases) == 1:
-        return Chain(bases, (False,), is_closed(bases[0]), within)
+        return Chain(bases, (False,), is_closed(bases[0]), called, within)
     for k, base in enumerate(bases):
         if is_closed(base):
-            raise EdgeError(f"chain: edge {k} ({base.edge}) is closed by itself, expected edges that run end to end")
+            raise EdgeError(f"chain: edge {k} ({called[k]}) is closed by itself, expected edges that run end to end")
     ends = [base.derivative(np.array(base.range_along), 0, 0) for base in bases]
     turned: list[bool] = []
     place: FloatArray | None = None
@@ -224,14 +230,14 @@ def chain(edges: Sequence[Base], *, tolerance: float | None = None) -> Chain:
             apart = [float(np.linalg.norm(place - x)) for x in (start, end)]
             if min(apart) > within:
                 raise EdgeError(
-                    f"chain: edge {k} ({bases[k].edge}) begins {min(apart):.3g} away from where edge {k - 1} ends, "
+                    f"chain: edge {k} ({called[k]}) begins {min(apart):.3g} away from where edge {k - 1} ends, "
                     f"expected at most {within:.3g}; name the edges in the order in which they follow each other"
                 )
             turned.append(apart[1] < apart[0])
         place = start if turned[-1] else end
     first = ends[0][1] if turned[0] else ends[0][0]
     assert place is not None
-    return Chain(bases, tuple(turned), bool(np.linalg.norm(place - first) <= within), within)
+    return Chain(bases, tuple(turned), bool(np.linalg.norm(place - first) <= within), called, within)
 
 
 def _with_lengths(joined: JoinedPieces, lengths: Sequence[float]) -> JoinedPieces:

@@ -5,6 +5,7 @@ Heavy imports wait inside the functions, so that `--help` answers fast.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -12,7 +13,7 @@ from semispline.solver.cli.words import check_word, check_words
 from semispline.solver.errors import OptionError
 
 if TYPE_CHECKING:
-    from semispline.solver.topology import ResolvedEdge
+    from semispline.solver.topology import Resolved
 
 
 @dataclass(frozen=True)
@@ -60,7 +61,7 @@ class WantedBases:
         else:
             check_words(self.edge_a, self.edge_b)
 
-    def resolved(self) -> tuple[list[ResolvedEdge], str]:
+    def resolved(self) -> tuple[Sequence[Resolved], str]:
         """Return both edges as `Base` knows them, and what is said of the place.
 
         Raises

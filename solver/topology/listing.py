@@ -13,7 +13,7 @@ from semispline.solver.topology.place import KINDS, Place, Places
 _PRINTED = 20
 _PLURALS = {
     "fillet": "fillets: faces that can be blended anew between the faces beyond",
-    "chain": "chains of fillets: no single blend; each command replaces one of the faces",
+    "chain": "chains of fillets: blended anew together, or one by one where their sides are no chains",
     "gap": "gaps: free edges that face each other",
     "chamfer": "chamfers: faces between two sharp edges",
     "round end": "round ends: faces that turn by more than 150 degrees, as half a hole does",
