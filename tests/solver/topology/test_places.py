@@ -84,6 +84,10 @@ def test_commands_name_file_and_edges_for_a_shell(name):
             assert words[-2] == "-o"
             path = f"./{name}" if name.startswith("-") else name
             if place.faces:
+                if place.kind == "chain":
+                    # Words say the faces.
+                    assert words[2:5:2] == [path, "--edge-a"]
+                    continue
                 assert words[2:4] == [path, "--replace"]
                 assert int(words[4]) in place.faces
                 continue
