@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import Any, Literal
 
 from semispline.solver.blending import BandContact, BlendResult, ChainContact, blend
-from semispline.solver.errors import ComputationError, ContactError
+from semispline.solver.errors import ComputationError, ContactError, EdgeError
 from semispline.solver.judge import Base, face_shortfalls, measure_face_contact
 from semispline.solver.options import BlendOptions, Continuity, named_options
 from semispline.solver.topology.bands import Band
@@ -67,10 +67,8 @@ def blend_bases(a: EdgeBase, b: EdgeBase, options: BlendOptions, *, several: boo
 
     Messages name the parts where there are several.
     """
-    through_band = any(part.band is not None for side in (a, b) for part in side.parts)
     try:
-        # To a band contact is as exact as to any base.
-        result = blend(a.base, b.base, replace(options, limits="auto") if through_band else options)
+        result = blend(a.base, b.base, _for_bands(options, [*a.parts, *b.parts], chained=bool(a.members or b.members)))
         band_a, band_b = (
             None if side.band is None else _band_contact(result, side, side.band, edge, options)
             for side, edge in ((a, "u0"), (b, "u1"))
@@ -83,6 +81,10 @@ def blend_bases(a: EdgeBase, b: EdgeBase, options: BlendOptions, *, several: boo
         if several:
             raise type(error)(f"{a.name} to {b.name}: {error}") from None
         raise
+    except EdgeError as error:
+        if not (a.members or b.members):
+            raise
+        raise EdgeError(f"{a.name} to {b.name}: {error}; blend the edges one by one") from None
     contacts = [band_a, band_b, *(face.band for met in (chain_a, chain_b) if met is not None for face in met.faces)]
     return replace(
         result,
@@ -93,6 +95,17 @@ def blend_bases(a: EdgeBase, b: EdgeBase, options: BlendOptions, *, several: boo
         chain_a=chain_a,
         chain_b=chain_b,
     )
+
+
+def _for_bands(options: BlendOptions, parts: Sequence[EdgeBase], *, chained: bool) -> BlendOptions:
+    """Return the options for a blend with bands: to these contact is as exact as to any base.
+
+    Bands of one chain meet within the limits to which they were fitted.
+    """
+    bands = [part.band for part in parts if part.band is not None]
+    if not bands:
+        return options
+    return replace(options, limits="cad" if chained and not all(band.is_plane for band in bands) else "auto")
 
 
 def _with_bands(

@@ -1,8 +1,9 @@
-"""Vertices inside the sides of faces with four sides or two rims, as fillets are: may a contact go on there?"""
+"""Vertices inside sides of faces with four sides or two rims, as fillets are, and whether a contact goes on there."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Literal
 
 from semispline.solver.topology.contact_walk import passage_between
@@ -42,7 +43,7 @@ class SideVertex:
 
 
 def side_vertices(graph: EdgeGraph, relations: Relations) -> list[SideVertex]:
-    """Return the vertices inside sides of all faces that are not planes and have a wire of four sides, or of one rim."""
+    """Return the vertices inside sides of all faces that are no planes, of wires with four sides or without corners."""
     uses = graph.uses
     found = []
     for face, kind in enumerate(graph.faces.kind):
@@ -67,7 +68,7 @@ def _of_wire(graph: EdgeGraph, relations: Relations, face: int, ring: list[int])
     found = []
     for k, side in enumerate(sides):
         turned = (*map(tuple, sides[k:]), *map(tuple, sides[:k]))
-        pairs = [*zip(side[:-1], side[1:], strict=True), *([(side[-1], side[0])] if is_ring else [])]
+        pairs = [*pairwise(side), *([(side[-1], side[0])] if is_ring else [])]
         found += [
             SideVertex(face, turned, before, after, _kind(graph, relations, before, after)) for before, after in pairs
         ]
