@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
 from itertools import pairwise
 from typing import Literal
 
@@ -43,7 +42,6 @@ def faces_of_blend(result: BlendResult, split: Split = "corners") -> tuple[SemiS
     for place in places:
         piece, rest = split_v(rest, place)
         pieces.append(piece)
-        rest = _begun_where(rest, piece)
     return (*pieces, rest)
 
 
@@ -79,14 +77,3 @@ def _joints(chain: ChainContact, split: Split) -> Iterator[tuple[float, bool]]:
 
 def _only_continuous(surface: SemiStructuredSurface, at: float) -> bool:
     return any(int(np.sum(curve.knots == at)) >= curve.degree for curve in surface.control_curves)
-
-
-def _begun_where(piece: BSplineSurface, before: BSplineSurface) -> BSplineSurface:
-    """Return a piece whose first column is, to the last digit, the last one of the piece before."""
-    points = piece.control_points.copy()
-    points[:, 0] = before.control_points[:, -1]
-    weights = piece.weights
-    if weights is not None and before.weights is not None:
-        weights = weights.copy()
-        weights[:, 0] = before.weights[:, -1]
-    return replace(piece, control_points=points, weights=weights)

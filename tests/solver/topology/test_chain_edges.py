@@ -20,6 +20,7 @@ from semispline.solver.topology.chain_measuring import measure_chain_contact
 from semispline.solver.topology.chain_names import ChainWord, names_several, parse_chain
 from semispline.solver.topology.contact_walk import passage_between, smooth_run
 from semispline.solver.topology.edge_blends import blend_bases
+from semispline.solver.topology.joined_bases import in_order
 from semispline.solver.topology.relations import relate
 from semispline.solver.topology.resolving import resolve_edges
 
@@ -161,6 +162,9 @@ def test_an_oval_to_a_round_tube(ovals):
     assert is_exact(result.chain_a)
     assert is_exact(result.chain_b)
     assert len(creases(result)) == 8
+    for one, other in pairwise(faces_of_blend(result, "joints")):
+        assert (one.control_points[:, -1] == other.control_points[:, 0]).all()
+        assert (one.weights[:, -1] == other.weights[:, 0]).all()
     assert max(creases(result)) <= 1e-9
     assert {face.edge for face in result.chain_a.faces} == {"e1", "1:e1", "2:e1", "3:e1"}
     jumps = [note for note in result.chain_a.notes() if "curvature along the contact jumps" in note]
@@ -232,6 +236,18 @@ def test_a_curve_that_is_cut_where_its_face_bends_is_one_chain():
     result = blend_bases(one, other, BlendOptions(alpha="natural", limits="cad"))
     assert result.chain_a.worst("angle_degrees") <= 0.01
     assert [joint.kind for joint in result.chain_a.joints] == ["creased"]
+
+
+def test_parts_of_edges_follow_each_other_whichever_way_their_edges_run():
+    def part(x, to):
+        return EdgeBase(f"{x}{to}", Base(plane([x, 0, 0], [0, 1, 0], [to - x, 0, 0]), "u0"))
+
+    first, second, third = [part(0, 1), part(1, 2)], [part(2, 3)], [part(3, 4), part(4, 5)]
+    back = [[part(2, 1), part(1, 0)], [part(3, 2)], [part(5, 4), part(4, 3)]]
+    assert [x.name for x in in_order([first, second, third])] == ["01", "12", "23", "34", "45"]
+    assert [x.name for x in in_order(back)] == ["10", "21", "32", "43", "54"]
+    assert [x.name for x in in_order([back[0], second, back[2]])] == ["10", "21", "23", "43", "54"]
+    assert [x.name for x in in_order([back[0]])] == ["21", "10"]
 
 
 def test_generated_words_of_other_faces_have_their_number(ovals):
