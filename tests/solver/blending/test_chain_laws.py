@@ -1,4 +1,6 @@
-"""Strips of chains do not depend on where a chain begins, how its faces are run through, and into how many it is cut."""
+"""Strips of chains do not depend on where a chain begins, how its faces are run through, and how often it is cut."""
+
+from itertools import pairwise
 
 import numpy as np
 from hypothesis import given
@@ -31,7 +33,7 @@ KINDS = {
 SAME = 1e-11
 
 RADII = st.tuples(*[st.floats(0.5, 1.4)] * 4)
-RINGS = st.tuples(RADII, st.sampled_from(sorted(KINDS)), st.integers(1, 4))
+RINGS = st.tuples(RADII, st.sampled_from(sorted(KINDS)), st.integers(1, 3))
 
 
 def ring(radii, kind):
@@ -46,7 +48,7 @@ def sampled(strip, firsts=None):
     cuts = np.array(strip.cuts)[list(firsts)]
     u = np.linspace(*surface.domain[0], 4)
     found = []
-    for low, high in zip(cuts[:-1], cuts[1:], strict=True):
+    for low, high in pairwise(cuts):
         places = np.clip(low + (high - low) * inner, *surface.domain[1])
         found.append([surface.evaluate(u, np.full(4, v)) for v in places])
     return np.array(found)
@@ -79,7 +81,7 @@ def test_a_chain_may_be_run_through_backwards(ring_of):
 
 
 @given(RINGS, st.data())
-@examples(40)
+@examples(25)
 def test_faces_may_be_run_through_in_any_way(ring_of, data):
     """Other lengths of w and v, weights times a factor, the other way along, and fractional linear in v."""
     radii, kind, order = ring_of
@@ -109,11 +111,11 @@ def test_faces_along_lines_may_be_cut_further(ring_of, which, at):
     assert there.surface.degree_v == here.surface.degree_v
     same = sampled(there, firsts)[..., 0, :]
     assert np.abs(sampled(here)[..., 0, :] - same).max() < SAME
-    if kind in ("prism", "rounds"):
+    if kind == "prism":
         assert np.abs(sampled(here) - sampled(there, firsts)).max() < SAME
 
 
-@given(st.floats(1.5, 4.0), st.floats(1.5, 4.0), st.floats(-0.4, 0.4), st.integers(1, 4))
+@given(st.floats(1.5, 4.0), st.floats(1.5, 4.0), st.floats(-0.4, 0.4), st.integers(2, 4))
 @examples(10)
 def test_corners_answer_each_other_whichever_is_named_first(x, y, yaw, order):
     a = walls(box(3.0, 2.5))
@@ -121,7 +123,7 @@ def test_corners_answer_each_other_whichever_is_named_first(x, y, yaw, order):
     b = moved(walls(box(x, y), height=2.0), turn, (0.2, -0.1, 4.0))
     named = {"alpha": 0.8, "p2": "zero", "continuity": f"G{order}"}
     one, other = blend(chain(a), chain(b), **named), blend(chain(b), chain(a[2:] + a[:2]), **named)
-    assert one.rows_stored == other.rows_stored == 5 * 2 * (max(order, 2) + 1)
+    assert one.rows_stored == other.rows_stored == 5 * 2 * (order + 1)
     points = [np.concatenate([c.control_points for c in result.surface.control_curves]) for result in (one, other)]
     # The same net: each of its points is in both, the seam's in one of the corners.
     found = np.linalg.norm(points[0][:, None] - points[1][None], axis=2).min(axis=1)
