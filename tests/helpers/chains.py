@@ -11,6 +11,7 @@ from scipy.interpolate import BSpline
 from helpers.free_curves import frame
 from helpers.occ import to_geom
 from semispline import Base, BSplineSurface
+from semispline.solver.splines.operations import restrict_v
 
 LINE = [0.0, 0.0, 1.0, 1.0]
 ARC = [0.0, 0.0, 0.0, 1.0, 1.0, 1.0]
@@ -116,7 +117,7 @@ def flanges(profile, **named):
 def fillets(profile, radius=0.3, *, angle=60.0, base=0.0):
     """Quarter rounds along a profile, from the walls at z = `base` inwards: cylinders at lines, tori at arcs.
 
-    Contact at u0, where they leave upright; u runs back, down the round's continuation, so that a blend goes on upwards.
+    Contact at u0, where they leave upright; u runs down the round, so that a blend goes on upwards.
     """
     across = arc((-radius, 0.0), radius, -angle, 0.0)[::-1]
     found = []
@@ -130,22 +131,23 @@ def fillets(profile, radius=0.3, *, angle=60.0, base=0.0):
     return found
 
 
-def turned_round(base, factor=None, backwards=False):
-    """The same face run through otherwise along v: the other way, or by a fractional linear map (Bezier in v)."""
-    surface, net = base.surface, base.surface.control_points
-    weights = np.ones(net.shape[:2]) if surface.weights is None else surface.weights
-    if factor is not None:
-        weights = weights * factor ** np.arange(weights.shape[1])
-    if backwards:
-        net, weights = net[:, ::-1], weights[:, ::-1]
-    assert not np.any(np.diff(surface.knots_v[surface.degree_v : -surface.degree_v], n=2)) or not backwards
-    return Base(with_net(surface, net, weights), base.edge)
+def turned_round(base, factor):
+    """The same face run through by a fractional linear map of v; Bezier along v."""
+    surface = base.surface
+    weights = np.ones(surface.control_points.shape[:2]) if surface.weights is None else surface.weights
+    weights = weights * factor ** np.arange(weights.shape[1])
+    return Base(with_net(surface, surface.control_points, weights), base.edge)
+
+
+def run_back_face(base):
+    """The same face run through the other way along v; Bezier along v."""
+    surface = base.surface
+    weights = None if surface.weights is None else surface.weights[:, ::-1]
+    return Base(with_net(surface, surface.control_points[:, ::-1], weights), base.edge)
 
 
 def strips(surface, cuts):
     """A surface cut along v into faces that keep its parameters."""
-    from semispline.solver.splines.operations import restrict_v
-
     ends = [surface.domain[1][0], *cuts, surface.domain[1][1]]
     return [restrict_v(surface, a, b) for a, b in pairwise(ends)]
 
@@ -185,7 +187,7 @@ def lines_inside(surface, count=41):
     plain = surface.to_bspline()
     breaks = np.unique(plain.knots_v)
     u = np.linspace(*plain.domain[0], count)
-    pieces = [_piece(plain, k) for k in range(len(breaks) - 1)]
+    pieces = [piece_along(plain, k) for k in range(len(breaks) - 1)]
     pairs = [(k - 1, k, breaks[k], breaks[k]) for k in range(1, len(pieces))]
     if np.abs(pieces[0](u, breaks[0], 0, 0) - pieces[-1](u, breaks[-1], 0, 0)).max() < 1e-9 * np.ptp(
         plain.control_points
@@ -193,14 +195,14 @@ def lines_inside(surface, count=41):
         pairs.append((len(pieces) - 1, 0, breaks[-1], breaks[0]))
     creases, bends, sizes = [0.0], [0.0], [1e-300]
     for i, j, before, after in pairs:
-        (n, k), (m, kk) = _normal_and_bend(pieces[i], u, before), _normal_and_bend(pieces[j], u, after)
+        (n, k), (m, kk) = normal_and_bend(pieces[i], u, before), normal_and_bend(pieces[j], u, after)
         creases.append(np.degrees(np.linalg.norm(np.cross(n, m), axis=1)).max())
         bends.append(np.abs(k - kk).max())
         sizes.append(max(np.abs(k).max(), np.abs(kk).max()))
     return Lines(float(max(creases)), float(max(bends) / max(sizes)))
 
 
-def _piece(surface, k):
+def piece_along(surface, k):
     """The polynomial piece of span k along v, by derivatives in u and v."""
     q, knots = surface.degree_v, surface.knots_v
     at = int(np.searchsorted(knots, np.unique(knots)[k], side="right")) - 1
@@ -234,7 +236,7 @@ def _piece(surface, k):
     return at_place
 
 
-def _normal_and_bend(piece, u, v):
+def normal_and_bend(piece, u, v):
     d_u, d_v, d_uu, d_uv, d_vv = (piece(u, v, *ij) for ij in ((1, 0), (0, 1), (2, 0), (1, 1), (0, 2)))
     normal = np.cross(d_u, d_v)
     normal /= np.linalg.norm(normal, axis=1)[:, None]
