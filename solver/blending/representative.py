@@ -19,8 +19,6 @@ from semispline.solver.splines import Basis
 _SMOOTH = 2
 # Jumps of both sides that agree to this are one.
 SAME_JUMP = 1e-9
-# Spans of a circle that is cured alone, for each that it takes: .03 degrees off the angle at most, for 1.2.
-_ALONE = 2
 
 
 @dataclass(frozen=True)
@@ -94,8 +92,6 @@ def smooth_along(a: Side, b: Side, options: BlendOptions) -> tuple[tuple[Side, C
     if a.is_rational:
         found_a = _as_the_other(a, found_a, found_b, order)
         found_b = _as_the_other(b, found_b, found_a, order)
-    if (found_a.cure == "conic") != (found_b.cure == "conic"):
-        found_a, found_b = (_nearer_to_the_angle(found, order) for found in (found_a, found_b))
     return _with_cure(a, found_a), _with_cure(b, found_b)
 
 
@@ -139,14 +135,6 @@ def _as_the_other(side: Side, found: CuredRows, other: CuredRows, order: int) ->
     if conic is None or (smooth := conic.cured_rows(order)) is None:
         return found
     return replace(found, rows=smooth[0], along=smooth[1], cure="conic", conic=conic)
-
-
-def _nearer_to_the_angle(found: CuredRows, order: int) -> CuredRows:
-    """Return a cured conic with more spans: the other side runs by a parameter of its own, not by the same circle."""
-    if found.conic is None or found.cure != "conic":
-        return found
-    rows, along = found.conic.smooth_rows(order, _ALONE)
-    return replace(found, rows=rows, along=along) if (rows[0, :, 3] > 0).all() else found
 
 
 def _as_found(found: CuredRows) -> Cure | None:

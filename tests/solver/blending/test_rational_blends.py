@@ -11,7 +11,6 @@ from helpers.shapes import arc, extruded, line
 from helpers.sweeps import first_ones
 from semispline import (
     Base,
-    BSplineCurve,
     BSplineSurface,
     ComputationError,
     OptionError,
@@ -19,8 +18,6 @@ from semispline import (
     measure_contact,
     read_surface,
     reverse_v,
-    revolve,
-    revolve_polynomial,
     swap_directions,
     transform,
 )
@@ -119,21 +116,6 @@ def test_rims_of_v_edges_and_turned_directions_face_each_other_too():
     result = blend(Base(swap_directions(a), "v1"), Base(b, "u0"))
     assert result.flipped
     assert np.abs(radii(result.surface) / 5 - 1).max() < 1e-9
-
-
-@pytest.mark.parametrize("continuity", ["G2", "G4"])
-@pytest.mark.parametrize("angle", [180, 360])
-def test_a_circle_that_is_cured_alone_runs_by_angle_too(continuity, angle):
-    """Beside a polynomial pipe, which runs by angle, it was up to 1.2 degrees off."""
-    low, high = (BSplineCurve(1, [0, 0, 1, 1], [[5, 0, z], [5, 0, z + 4]]) for z in (0.0, 14.0))
-    axis = [0, 0, 0], [0, 0, 1], angle
-    a, b = revolve(low, *axis), revolve_polynomial(high, *axis, tolerance=1e-3).surface
-    result = blend(Base(a, "v1"), Base(b, "v0"), continuity=continuity)
-    assert [cure and cure.name for cure in result.cures] == ["conic", None]
-    rims = result.surface.evaluate_grid([0, 1], np.linspace(*result.surface.domain[1], 60))
-    angles = np.unwrap(np.arctan2(rims[..., 1], rims[..., 0]), axis=1)
-    # Twice the spans leave .030 degrees; the polynomial rim's own angle is off by less than tolerance / radius = .011.
-    assert np.degrees(np.abs(angles[1] - angles[0])).max() < 0.05
 
 
 def test_a_jump_of_curvature_that_a_cure_leaves_is_said():
