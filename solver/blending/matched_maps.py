@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
-from scipy.interpolate import CubicSpline, PchipInterpolator, PPoly
+from scipy.interpolate import CubicHermiteSpline, CubicSpline, PchipInterpolator, PPoly
 
 from semispline.solver.arrays import FloatArray
 from semispline.solver.blending.layout import common_corners
@@ -29,6 +29,8 @@ _MOST_HALVINGS = 4
 _LENGTH_SAMPLES = 512
 # Stations nearer than this part of the domain are one.
 _APART = 1e-6
+# Of secants: a C2 map that rises more slowly somewhere is not taken, and one that is only C1 ends no more slowly.
+_LEAST_SLOPE, _END_SLOPE = 0.1, 0.5
 _MOST_DEGREE = 25
 _INNER_ORDER = 2
 
@@ -48,17 +50,18 @@ class VMap:
     order: int
 
 
-def length_map(a: Side, b: Side) -> VMap:
+def length_map(a: Side, b: Side, *, closed: bool) -> VMap:
     """Return the map of v by which each share of the length of a meets the same share of b's.
 
-    Corners that both have answer each other, whatever the lengths between them are.
+    Corners that both have answer each other, whatever the lengths between them are. Where both are closed the seam is
+    as smooth as any other place.
     """
     start, end = float(a.along.knots[0]), float(a.along.knots[-1])
     stops = np.concatenate([[start], common_corners(a.along, b.along), [end]])
     # At the knots of b: then it has no more spans than before.
     stations = breakpoints(b.along.knots)
     for halvings in range(_MOST_HALVINGS + 1):
-        found = _through(*_length_stations(a, b, stops, stations), stops)
+        found = _through(*_length_stations(a, b, stops, stations), stops, closed=closed)
         if halvings == _MOST_HALVINGS or _worst_share(a, b, found, stops) <= _SHARES:
             break
         stations = np.sort(np.concatenate([stations, (stations[1:] + stations[:-1]) / 2]))
@@ -123,11 +126,11 @@ def point_map(pairs: Sequence[tuple[float, float]], along: Basis, *, closed: boo
         x, y = np.concatenate([[start], x, [end]]), np.concatenate([[start], y - shift, [end]])
         keep = np.append(True, np.diff(x) > _APART * length)
         keep[-2] &= x[-1] - x[-2] > _APART * length
-        return _through(x[keep], y[keep], np.array([start, end])), shift
+        return _through(x[keep], y[keep], np.array([start, end]), closed=True), shift
     inside = (x > start + _APART * length) & (x < end - _APART * length)
     x, y = np.concatenate([[start], x[inside], [end]]), np.concatenate([[start], y[inside], [end]])
     _check_monotone(x, y, length)
-    return _through(x, y, np.array([start, end])), 0.0
+    return _through(x, y, np.array([start, end]), closed=False), 0.0
 
 
 def _check_monotone(x: FloatArray, y: FloatArray, length: float) -> None:
@@ -138,16 +141,15 @@ def _check_monotone(x: FloatArray, y: FloatArray, length: float) -> None:
         )
 
 
-def _through(x: FloatArray, y: FloatArray, stops: FloatArray) -> VMap:
+def _through(x: FloatArray, y: FloatArray, stops: FloatArray, *, closed: bool) -> VMap:
     """Return a map through the points, C2 where that is monotone, else C1; between stops each on its own."""
     pieces, smooth = [], True
     for low, high in pairwise(stops):
         inside = (x >= low) & (x <= high)
-        piece: PPoly = (
-            CubicSpline(x[inside], y[inside]) if inside.sum() > 2 else PchipInterpolator(x[inside], y[inside])
-        )
+        around = closed and len(stops) == 2
+        piece = _smoothest(x[inside], y[inside], around=around)
         if not _rises(piece):
-            piece, smooth = PchipInterpolator(x[inside], y[inside]), False
+            piece, smooth = _slower(x[inside], y[inside], around=around), False
         pieces.append(piece)
     coefficients = np.concatenate([np.pad(piece.c, ((4 - len(piece.c), 0), (0, 0))) for piece in pieces], axis=1)
     places = np.concatenate([pieces[0].x[:1], *(piece.x[1:] for piece in pieces)])
@@ -155,10 +157,43 @@ def _through(x: FloatArray, y: FloatArray, stops: FloatArray) -> VMap:
     return VMap(PPoly(coefficients, places), order)
 
 
+def _smoothest(x: FloatArray, y: FloatArray, *, around: bool) -> PPoly:
+    """Return a C2 map through points; at the seam too where it goes `around`."""
+    if len(x) == 2:
+        return PchipInterpolator(x, y)
+    if not around:
+        return CubicSpline(x, y)
+    # What a map adds to the parameter comes back to itself.
+    added = y - x
+    added[-1] = added[0]
+    found = CubicSpline(x, added, bc_type="periodic")
+    coefficients = found.c.copy()
+    coefficients[2] += 1.0
+    coefficients[3] += x[:-1]
+    return PPoly(coefficients, x)
+
+
+def _slower(x: FloatArray, y: FloatArray, *, around: bool) -> PPoly:
+    """Return a C1 map through points that rise, which rises; at the seam too where it goes `around`."""
+    if around:
+        length = x[-1] - x[0]
+        padded = (np.concatenate([z[:-1] - length, z, z[1:] + length]) for z in (x, y))
+        slopes = PchipInterpolator(*padded).derivative()(x)
+        slopes[-1] = slopes[0]
+    else:
+        slopes = PchipInterpolator(x, y).derivative()(x)
+        # At an end it may be zero: there the blend would have no tangent along.
+        secants = (np.diff(y) / np.diff(x))[[0, -1]]
+        slopes[[0, -1]] = np.maximum(slopes[[0, -1]], _END_SLOPE * secants)
+    return CubicHermiteSpline(x, y, slopes)
+
+
 def _rises(function: PPoly) -> bool:
+    """Tell whether a map rises everywhere, and nowhere much more slowly than between its points."""
     slope = function.derivative()
     places = np.concatenate([function.x, [x for x in slope.derivative().roots(extrapolate=False) if np.isfinite(x)]])
-    return bool(slope(places).min() > 0)
+    secants = np.diff(function(function.x)) / np.diff(function.x)
+    return bool(slope(places).min() > _LEAST_SLOPE * secants.min())
 
 
 def run_by(side: Side, by: VMap) -> Side:
