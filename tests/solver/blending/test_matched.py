@@ -105,7 +105,7 @@ def test_a_known_map_is_what_is_blended(skew, continuity):
 @pytest.mark.parametrize(
     ("faces", "others", "pairs"),
     first_rows(
-        2,
+        1,
         [
             # Rings to a tube, to an oval; one pair; open chains.
             (walls(circle(3.0, (0, 100, 230, 360))), TUBE, [(0.5, 0.25), (1.4, 1.7), (2.0, 2.5)]),
