@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -9,10 +10,12 @@ import numpy as np
 from semispline.solver.arrays import FloatArray
 from semispline.solver.blending.matched_maps import length_map, point_map, run_by
 from semispline.solver.blending.matching import matched_edges
+from semispline.solver.blending.representative import smooth_sides
 from semispline.solver.blending.sides import Side, make_side, matched_sides, of_one_degree
 from semispline.solver.errors import OptionError
-from semispline.solver.judge import Base, Correspondence, corresponding, is_closed, local_origin
+from semispline.solver.judge import Base, Correspondence, is_closed, local_origin
 from semispline.solver.options import BlendOptions, Flip
+from semispline.solver.splines import BSplineCurve, boundary_curve, closest_point, euclidean
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,19 +54,11 @@ def place_sides(
     if lines_answer:
         sides = replace(sides[0], keeps_lines=True), replace(sides[1], keeps_lines=True)
     matched = matched or matched_edges(a, b, flip)
-    pairs = _pairs_in_v(a, b, options.match, matched) if isinstance(options.match, tuple) else None
-    by = None
-    if pairs is not None:
-        by, shift = point_map(pairs, sides[0].along, closed=is_closed(a) and is_closed(b))
-        if shift:
-            matched = _started_later(a, b, matched, shift)
     # Far from the origin each operation would round by the distance: there is but one rounding, of the result.
     origin = local_origin(a.surface, b.surface)
     local = matched_sides(sides[0].moved(origin, 1.0), sides[1].moved(origin, 1.0), matched)
-    if options.match == "length":
-        by = length_map(*local)
-    if by is not None:
-        local = local[0], run_by(local[1], by)
+    if options.match != "affine":
+        local, matched = _answering(a, b, local, options.match, matched, origin)
     if not local[0].is_rational:
         local = of_one_degree(*local)
     sides = local[0].moved(-origin, 1.0), local[1].moved(-origin, 1.0)
@@ -72,36 +67,50 @@ def place_sides(
     return PlacedSides(sides, scaled, (centre, size), matched)
 
 
-def _pairs_in_v(
-    a: Base, b: Base, pairs: tuple[tuple[float, float], ...], matched: Correspondence
-) -> list[tuple[float, float]]:
-    """Return pairs of parameters along the edges in the blend's own parameter, that of a.
+def _answering(
+    a: Base,
+    b: Base,
+    sides: tuple[Side, Side],
+    match: str | Sequence[tuple[float, float]],
+    matched: Correspondence,
+    origin: FloatArray,
+) -> tuple[tuple[Side, Side], Correspondence]:
+    """Return sides of which b is run through so that what is to answer each other has one v.
 
-    Raises
-    ------
-    OptionError
-        A parameter outside of its edge.
+    Errors as `point_map`, and for parameters that lie outside of their edge.
     """
-    (start, end), (b_start, b_end) = a.range_along, b.range_along
-    for i, pair in enumerate(pairs):
-        for name, x, (low, high) in zip("ab", pair, (a.range_along, b.range_along), strict=True):
+    # Lines at which rows are only continuous are cured first: that runs through the sides anew.
+    one, other = (replace(side, cure=cure, keeps_lines=True) for side, cure in smooth_sides(*sides, shared=False))
+    closed = is_closed(a) and is_closed(b)
+    if isinstance(match, str):
+        return (one, run_by(other, length_map(one, other, closed=closed))), matched
+    found = []
+    for i, pair in enumerate(match):
+        places = []
+        for name, x, base, side in zip("ab", pair, (a, b), (one, other), strict=True):
+            low, high = base.range_along
             if not low <= x <= high:
                 raise OptionError(f"match[{i}]: found {x:g} along edge {name}, expected {low:g} to {high:g}")
-    found = []
-    for x_a, x_b in pairs:
-        t = np.mod(x_b - b_start - matched.shift, b_end - b_start) / (b_end - b_start) if matched.shift else None
-        t = (x_b - b_start) / (b_end - b_start) if t is None else t
-        found.append((x_a, float(start + (1 - t if matched.flipped else t) * (end - start))))
-    return found
+            places.append(_foot(_contact(side), base.derivative(np.array([x]), 0, 0)[0] - origin))
+        found.append((places[0], places[1]))
+    by = point_map(found, one.along, closed=closed)
+    first = float(by.function(by.function.x[0]))
+    if first > one.along.knots[0]:
+        start, end = b.range_along
+        point = _contact(other).evaluate(np.array([first]))[0] + origin
+        at = _foot(boundary_curve(b.surface, b.side), point)
+        matched = replace(matched, shift=float(np.mod(at - start, end - start)))
+    return (one, run_by(other, by)), matched
 
 
-def _started_later(a: Base, b: Base, matched: Correspondence, shift: float) -> Correspondence:
-    """Return the correspondence by which the start of edge a meets what was `shift` later in v."""
-    start, end = a.range_along
-    at = start + np.mod(shift, end - start)
-    first, last = b.range_along
-    place = float(corresponding(a, b, matched, np.array([at]))[0])
-    return replace(matched, shift=float(np.mod(place - first, last - first)))
+def _contact(side: Side) -> BSplineCurve:
+    row = side.rows[0]
+    points, weights = euclidean(row) if side.is_rational else (row, None)
+    return BSplineCurve(side.along.degree, side.along.knots, points, weights)
+
+
+def _foot(curve: BSplineCurve, point: FloatArray) -> float:
+    return float(np.ravel(closest_point(curve, point).parameters)[0])
 
 
 def _frame(a: Side, b: Side) -> tuple[FloatArray, float]:

@@ -83,8 +83,13 @@ def smooth_along(a: Side, b: Side, options: BlendOptions) -> tuple[tuple[Side, C
     not share it.
     """
     if a.keeps_lines and b.keeps_lines:
-        return (a, None), (b, None)
-    order, shared = max(a.order, b.order), not has_free_rows(options)
+        return (a, a.cure), (b, b.cure)
+    return smooth_sides(a, b, shared=not has_free_rows(options))
+
+
+def smooth_sides(a: Side, b: Side, *, shared: bool) -> tuple[tuple[Side, Cure | None], tuple[Side, Cure | None]]:
+    """As `smooth_along`; `shared` says whether what both sides share may stay."""
+    order = max(a.order, b.order)
     found_a, found_b = (_cured(side, order) for side in (a, b))
     if found_a.cure == found_b.cure == "none" or (shared and _jump_alike(a, found_a, found_b)):
         return (a, _as_found(found_a)), (b, _as_found(found_b))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -26,6 +27,9 @@ from semispline.solver.splines import (
     reversed_knots,
     same_width,
 )
+
+if TYPE_CHECKING:
+    from semispline.solver.blending.representative import Cure
 
 # Across a span beside the edge below this fraction of the base, derivatives are made of rounding.
 _LEAST_SPAN = 1e-10
@@ -51,7 +55,9 @@ class Side:
     largest : float
         Largest coordinate of the rows as they were given, in today's units: their rounding goes with it.
     keeps_lines : bool
-        Lines at which rows are only continuous are left as they are: the other side has the same.
+        Lines at which rows are only continuous are left as they are: the other side has the same, or they are cured.
+    cure : Cure or None
+        What was done to them, if it was done before.
     """
 
     continuity: Continuity
@@ -61,6 +67,7 @@ class Side:
     rows: FloatArray
     largest: float
     keeps_lines: bool = False
+    cure: Cure | None = None
 
     @property
     def is_rational(self) -> bool:
