@@ -112,7 +112,9 @@ def test_of_many_spans_each_has_eight_chords(spans, chords):
     knots = np.concatenate([[0.0], np.arange(spans + 1.0), [spans]])
     points = [[x, 0.0, 0.0] for x in range(spans + 1)]
     edge = FreeEdge(FLOOR, BSplineCurve(1, knots, points), True, "left")
-    assert len(edge._nodes()) == chords + 1
+    nodes = edge._nodes()
+    assert len(nodes) == chords + 1
+    np.testing.assert_allclose(np.diff(nodes), spans / chords, rtol=1e-9)
 
 
 @pytest.mark.parametrize(("gap", "closed"), [(0.5, True), (2.0, False)])
@@ -163,12 +165,18 @@ def test_exact_limits_are_those_of_contacts_with_rounding_by_the_size_of_the_fac
     # 1e-11 of the size and 1e-9; little more, since the sheet is at the origin.
     assert 1e-11 * model_size(small.surface) <= limits["gap"] <= 2e-11 * model_size(small.surface)
     assert 1e-9 <= limits["angle_degrees"] <= 2e-9
+    # Up to second order unless more is asked for.
+    assert set(exact_face_limits(small, FLOOR)) == {"gap", "angle_degrees", "curvature_jump_relative"}
     wide = plane([-5e3, -5e3, 0], [1e4, 0, 0], [0, 1e4, 0])
     wider = exact_face_limits(small, wide, 3)
     assert wider["gap"] == limits["gap"]
     grown = (wider["curvature_jump_relative"] - 1e-9) / (limits["curvature_jump_relative"] - 1e-9)
     # The floor is of size 10, more than the sheet's.
     assert grown == pytest.approx(1e4 / 10, rel=1e-6)
+    # Rates are over the square and the cube of the size.
+    near, far = (exact_face_limits(small, plane([-5, -5, 0], [x, 0, 0], [0, 10, 0]), 4) for x in (10, 20))
+    for name, limit, power in (("rate_jump_relative", 1e-8, 2), ("second_rate_jump_relative", 1e-7, 3)):
+        assert far[name] - limit == pytest.approx(2**power * (near[name] - limit), rel=1e-6)
     # Where rounding is more than a checker allows that stands.
     far = Base(plane([1e9, 1e9, 0], [1e-3, -1e-3, 0], [8e-3, 8e-3, 0]), "u0")
     assert exact_face_limits(far, wide)["angle_degrees"] == 0.01

@@ -8,7 +8,13 @@ from hypothesis import strategies as st
 from helpers.sweeps import examples
 from semispline import Base, BSplineCurve, BSplineSurface, SemiStructuredSurface
 from semispline.solver.judge.curvature_rates import curvature_rates
-from semispline.solver.judge.rounding import RoundingCauses, derivative_noises, edge_noises, noises_of_derivatives
+from semispline.solver.judge.rounding import (
+    RoundingCauses,
+    derivative_noises,
+    edge_noises,
+    noises_of_derivatives,
+    rounding_causes,
+)
 
 KEYS = [(i, j) for i in range(5) for j in range(5 - i)]
 ORIGIN = np.zeros(3)
@@ -178,3 +184,23 @@ def test_the_second_surface_is_named_where_its_weights_are_twice_as_uneven(ratio
     )
     # What is fifty times larger at the most is not told.
     assert not RoundingCauses(1.0, 50.0, ratios, 50.0).words(("blend", "base"))
+
+
+@pytest.mark.parametrize(
+    ("edge", "order", "expected"),
+    # Of degree 1 two neighbours along the edge act together, and across as many rows as there are orders and one more.
+    [
+        ("u0", 0, 3),
+        ("v0", 0, 8),
+        ("u1", 0, 3),
+        ("v1", 0, 8),
+        ("u0", 1, 6),
+        ("v0", 1, 24),
+        ("u1", 1, 24),
+        ("v1", 1, 40 / 3),
+    ],
+)
+def test_weights_that_act_together(edge, order, expected):
+    knots = [0, 0, 0.5, 1, 1]
+    base = Base(square(1, knots, 1, knots, np.multiply.outer([1.0, 2, 16], [1.0, 3, 5])), edge)
+    assert rounding_causes(base, base, order).weight_ratios == pytest.approx((expected, expected))
