@@ -6,7 +6,7 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from helpers.free_curves import bent_face, cubic, cylinder, ellipse_on_cylinder, free_form, line
-from semispline import Base, BSplineCurve, band_along, blend, extrude, plane
+from semispline import Base, BSplineCurve, BSplineSurface, band_along, blend, extrude, plane
 from semispline.solver.judge import (
     FreeEdge,
     exact_face_limits,
@@ -95,8 +95,8 @@ def test_over_the_seam_an_edge_goes_on_at_the_other_end(ends):
 @pytest.mark.parametrize("upper", [False, True])
 def test_a_curve_may_miss_the_border_of_its_face_by_a_hundred_thousandth(times, height, upper):
     """Beyond that it is taken for one that runs on over a seam: from the other side."""
-    v = 1 + times * 1e-5 if upper else -times * 1e-5
-    face = plane([0, 0, 0], [1, 0, 0], [0, 0, 1])
+    v = 3 + times * 1e-5 if upper else 2 - times * 1e-5
+    face = BSplineSurface(1, 1, [0, 0, 1, 1], [2, 2, 3, 3], [[[x, 0, z] for z in (0, 1)] for x in (0, 1)])
     point, _ = FreeEdge(face, line((0.2, v), (0.8, v)), False, "left").at(np.array([0.5]))
     assert point[0] == pytest.approx([0.5, 0, 1 - height if upper else height], abs=1e-9)
 
