@@ -87,6 +87,21 @@ def test_a_little_fairness_is_not_worth_a_warning():
     assert result.flipped == middle.flipped
 
 
+@pytest.mark.parametrize(("seed", "is_fairer"), [(1, True), (2, False)])
+def test_only_a_fairer_middle_curve_is_led_away_from_its_ends(monkeypatch, seed, is_fairer):
+    asked, away = [], candidates._away_from_ends
+
+    def watched(best, search):
+        asked.append(best.options.middle_curves)
+        return away(best, search)
+
+    monkeypatch.setattr(candidates, "_away_from_ends", watched)
+    result = blend(*facing(seed))
+    without, middle = (c.fairness for c in result.candidates)
+    assert (middle < without) is is_fairer
+    assert asked == ([0, 1] if is_fairer else [0])
+
+
 def test_what_is_warned_of_either_way_keeps_its_middle_curve():
     # A pair of whatever shape, and a warning that both of them carry.
     a, b = facing(103)
