@@ -380,6 +380,22 @@ def test_faces_that_meet_within_a_tolerance(size):
             chain(faces)
 
 
+def test_an_edge_shorter_than_the_tolerance_is_left_out():
+    (start, end), tiny = PROFILE[0][:, :2], 1e-7
+    middle = start + tiny * (end - start)
+    faces = walls([line(start, middle), line(middle, end), *PROFILE[1:]])
+    one = chain(faces)
+    assert len(one.edges) == 8
+    assert one.closed
+    result = blend(one, chain(tube()), continuity="G1", **PLAIN)
+    assert lines_inside(result.surface).crease < CREASE
+    length = tiny * np.linalg.norm(end - start)
+    assert max(joint.moved for joint in result.chain_a.joints) == pytest.approx(length, rel=1e-6)
+    # A longer one is an edge.
+    middle = start + 1e-4 * (end - start)
+    assert len(chain(walls([line(start, middle), line(middle, end), *PROFILE[1:]])).edges) == 9
+
+
 def test_what_is_no_chain():
     faces = walls(PROFILE)
     with pytest.raises(EdgeError, match="found no edges"):
