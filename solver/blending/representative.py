@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from math import pi
 
 from semispline.solver.arrays import FloatArray
 from semispline.solver.blending.closing import seam_order
@@ -19,8 +20,8 @@ from semispline.solver.splines import Basis
 _SMOOTH = 2
 # Jumps of both sides that agree to this are one.
 SAME_JUMP = 1e-9
-# Spans of a circle that is cured alone, for each that it takes: .03 degrees off the angle at most, for 1.2.
-_ALONE = 2
+# The most that a span of a circle turns by that is cured alone: less than .1 degrees off the angle, where pi is 1.2.
+_ALONE = 0.6 * pi
 
 
 @dataclass(frozen=True)
