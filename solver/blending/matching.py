@@ -7,7 +7,6 @@ the blend's rulings meet it.
 from __future__ import annotations
 
 from dataclasses import replace
-from math import pi
 
 import numpy as np
 
@@ -24,8 +23,8 @@ from semispline.solver.splines import (
 
 # A shift below this part of the rim is none.
 _NO_SHIFT = 1e-9
-# The most that a span of a rim turns by: what faces what is then a matter of angle, to .001 degree.
-_SPAN = pi / 4
+# Spans for each that a blend has: what faces what is then a matter of angle, to .001 degree.
+_FINER = 4
 _LINE = np.array([0.0, 0.0, 1.0, 1.0])
 
 
@@ -60,7 +59,7 @@ def run_by_angle(base: Base) -> Base:
     conic = recognised_conic(rows, along)
     if conic is None:
         return base
-    smooth, basis = conic.smooth_rows(2, _SPAN)
+    smooth, basis = conic.smooth_rows(2, _FINER)
     if not (smooth[..., 3] > 0).all():
         return base
     points, weights = euclidean(smooth if base.side[1] == "0" else smooth[::-1])

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from math import pi
 
 from semispline.solver.arrays import FloatArray
 from semispline.solver.blending.closing import seam_order
@@ -20,8 +19,6 @@ from semispline.solver.splines import Basis
 _SMOOTH = 2
 # Jumps of both sides that agree to this are one.
 SAME_JUMP = 1e-9
-# The most that a span of a circle turns by that is cured alone: less than .1 degrees off the angle, where pi is 1.2.
-_ALONE = 0.6 * pi
 
 
 @dataclass(frozen=True)
@@ -85,6 +82,8 @@ def smooth_along(a: Side, b: Side, options: BlendOptions) -> tuple[tuple[Side, C
     To the order of contact they are the same surfaces. What both sides share is left, unless there are rows that do
     not share it.
     """
+    if a.keeps_lines and b.keeps_lines:
+        return (a, None), (b, None)
     order, shared = max(a.order, b.order), not has_free_rows(options)
     found_a, found_b = (_cured(side, order) for side in (a, b))
     if found_a.cure == found_b.cure == "none" or (shared and _jump_alike(a, found_a, found_b)):
@@ -93,8 +92,6 @@ def smooth_along(a: Side, b: Side, options: BlendOptions) -> tuple[tuple[Side, C
     if a.is_rational:
         found_a = _as_the_other(a, found_a, found_b, order)
         found_b = _as_the_other(b, found_b, found_a, order)
-    if (found_a.cure == "conic") != (found_b.cure == "conic"):
-        found_a, found_b = (_nearer_to_the_angle(found, order) for found in (found_a, found_b))
     return _with_cure(a, found_a), _with_cure(b, found_b)
 
 
@@ -138,14 +135,6 @@ def _as_the_other(side: Side, found: CuredRows, other: CuredRows, order: int) ->
     if conic is None or (smooth := conic.cured_rows(order)) is None:
         return found
     return replace(found, rows=smooth[0], along=smooth[1], cure="conic", conic=conic)
-
-
-def _nearer_to_the_angle(found: CuredRows, order: int) -> CuredRows:
-    """Return a cured conic with more spans: the other side runs by a parameter of its own, not by the same circle."""
-    if found.conic is None or found.cure != "conic":
-        return found
-    rows, along = found.conic.smooth_rows(order, _ALONE)
-    return replace(found, rows=rows, along=along) if (rows[0, :, 3] > 0).all() else found
 
 
 def _as_found(found: CuredRows) -> Cure | None:

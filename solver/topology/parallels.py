@@ -18,6 +18,8 @@ from semispline.solver.topology.face_jets import Face, dot, parameters_of, unit
 _STEPS = 40
 # Steps to a foot from one that is a step away.
 _NEWTON = 3
+# Of the range of a parameter: a step that is no longer changes nothing.
+_ROUNDING = 4 * float(np.finfo(np.float64).eps)
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,7 +96,10 @@ def _foot(face: Face, at: FloatArray, point: FloatArray) -> tuple[FloatArray, Je
     for _ in range(_NEWTON):
         jet = face.jet(at, 2)
         away = point - jet[0, 0]
-        at = at + parameters_of(jet, away, away)
+        step = parameters_of(jet, away, away)
+        at = at + step
+        if (np.abs(step) <= _ROUNDING * face.widths).all():
+            return at, jet
     return at, face.jet(at, 2)
 
 
