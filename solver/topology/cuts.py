@@ -23,7 +23,7 @@ from semispline.solver.errors import EdgeError, OptionError
 from semispline.solver.splines import BSplineCurve, BSplineSurface, EdgeName, parse_edge
 from semispline.solver.topology.face_jets import Face
 from semispline.solver.topology.outlines import Outline
-from semispline.solver.topology.parallels import Paths, crossings, focal_distance, paths_from
+from semispline.solver.topology.parallels import Paths, crossings, focal_distance, lost_distances, paths_from
 from semispline.solver.topology.trim_curves import TrimCurve
 
 _PARAMETER = re.compile(r"([uv])=(.+)")
@@ -33,6 +33,9 @@ _PATHS, _PLACES, _DEGREE = 41, 161, 5
 _HALVINGS = 40
 # Of the range of a parameter: what is nearer to an end means the end.
 _SNAP = 1e-9
+# Of the size of a face: what is farther is hardly in it; where one begins to look how far it goes, and how closely.
+_FAR, _NEAREST = 2.0, 1e-3
+_BEYOND, _OVER_A_POLE = "beyond the face", "over a pole of the face"
 _INTERVALS = 16
 _GAUSS = np.polynomial.legendre.leggauss(6)
 # Times that lengths of chords are made lengths of the curve through their ends.
@@ -144,8 +147,7 @@ def moved_contact(
     face = Face(surface)
     curve = _named_curve(surface, name) if name is not None else _trim_curve(outline, title)
     inside = curve.ends[0] + (np.arange(_PATHS) + 0.5) / _PATHS * (curve.ends[1] - curve.ends[0])
-    paths = curve.paths(face, inside, cut.distance)
-    _check_reach(paths, outline, cut.distance, title)
+    paths = _checked_paths(face, curve, inside, cut.distance, outline, title)
     if name is not None:
         axis = 0 if name.direction == "u" else 1
         last = paths.at[-1]
@@ -222,16 +224,53 @@ def _trim_curve(outline: Outline, title: str) -> _Curve:
     return _Curve((first, last), 1.0 if trim.keep == "left" else -1.0, trim.pcurve, closed)
 
 
-def _check_reach(paths: Paths, outline: Outline, distance: float, title: str) -> None:
-    """Refuse a distance that leaves the face, or at which the paths have crossed."""
+def _checked_paths(face: Face, curve: _Curve, x: FloatArray, distance: float, outline: Outline, title: str) -> Paths:
+    """Return the paths from places of an edge; refuse a distance that leaves the face, or at which they have crossed.
+
+    Steps of a distance that is far too large tell nothing: how far one can go is found by doubling a small one.
+    """
+    good, tried = 0.0, distance if distance <= _FAR * face.size else _NEAREST * face.size
+    paths = curve.paths(face, x, tried)
+    reach, why = _reach(face, paths, outline)
+    if tried == distance:
+        if distance < reach:
+            return paths
+        tried = min(_NEAREST * face.size, distance / 2)
+        paths = curve.paths(face, x, tried)
+        reach, why = _reach(face, paths, outline)
+    while tried < reach:
+        if tried == distance:
+            return paths
+        good, tried = tried, min(2 * tried, distance)
+        paths = curve.paths(face, x, tried)
+        reach, why = _reach(face, paths, outline)
+    # Where paths are lost is known by steps alone, and what was passed before is no end.
+    largest = reach if reach > good and why == _BEYOND else _last_good(face, curve, x, outline, good, tried)
+    raise EdgeError(f"{title}: {distance:g} reaches {why}, expected a distance below {largest:.4g}")
+
+
+def _last_good(face: Face, curve: _Curve, x: FloatArray, outline: Outline, good: float, bad: float) -> float:
+    """Return a distance that paths can go, near one that they cannot."""
+    while bad - good > _NEAREST * bad:
+        middle = (good + bad) / 2
+        can = middle < _reach(face, curve.paths(face, x, middle), outline)[0]
+        good, bad = (middle, bad) if can else (good, middle)
+    return good
+
+
+def _reach(face: Face, paths: Paths, outline: Outline) -> tuple[float, str]:
+    """Return the distance at which paths leave the face or cross, or all have run out, and what is there.
+
+    It is infinite where they do not.
+    """
     leaves = crossings(paths, outline.others).min(axis=0, initial=np.inf)
     ends = crossings(paths, outline.ends).min(axis=0, initial=np.inf)
-    beyond = float(np.where(leaves < ends, leaves, np.inf).min())
+    lost = lost_distances(face, paths)
+    beyond, pole = (float(np.where(x < ends, x, np.inf).min()) for x in (leaves, lost))
     # Where all run out at the ends the contact has shrunk to nothing.
     nothing = float(ends.max())
     largest = min(beyond, nothing, focal_distance(paths))
-    if not distance < largest:
-        raise EdgeError(f"{title}: {distance:g} reaches beyond the face, expected a distance below {largest:.4g}")
+    return (pole, _OVER_A_POLE) if pole < largest else (largest, _BEYOND)
 
 
 def _to_parameter(surface: BSplineSurface, name: EdgeName, cut: Cut, outline: Outline, title: str) -> MovedContact:
