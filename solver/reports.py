@@ -182,8 +182,8 @@ def print_result(result: BlendResult) -> None:
     at_a, at_b = result.continuity
     rows.append(("contact A", ", ".join(_figures(result.contact_a, at_a))))
     rows.append(("contact B", ", ".join(_figures(result.contact_b, at_b))))
-    for name, band in zip("AB", (result.band_a, result.band_b), strict=True):
-        rows += [] if band is None else _band_rows(name, band)
+    for name, band, wanted in zip("AB", (result.band_a, result.band_b), result.continuity, strict=True):
+        rows += [] if band is None else _band_rows(name, band, wanted)
     if result.seam is not None:
         rows.append(("seam", ", ".join(_figures(result.seam, None))))
     if (worst := worst_inside(result.creases)) is not None:
@@ -193,7 +193,7 @@ def print_result(result: BlendResult) -> None:
     print_warnings(result.warnings)
 
 
-def _band_rows(name: str, band: BandContact) -> Iterator[tuple[str, str]]:
+def _band_rows(name: str, band: BandContact, wanted: Continuity) -> Iterator[tuple[str, str]]:
     """Yield how a blend meets the face of a band, and of which curve that is one."""
     figures = [
         f"{words} {value:.2g}{unit} ({band.allowed[measure]:.2g} allowed)"
@@ -207,7 +207,8 @@ def _band_rows(name: str, band: BandContact) -> Iterator[tuple[str, str]]:
         )
         if (value := getattr(band, measure)) is not None
     ]
-    yield f"face at {name}", f"{', '.join(figures)}; {band.limits} limits"
+    counted = f"; {wanted}, which is of parameters, counts as G{wanted[1]}" if wanted in ("C1", "C2") else ""
+    yield f"face at {name}", f"{', '.join(figures)}; {band.limits} limits{counted}"
     of = "feet of the edge in space" if band.source == "foot" else "curve in the face's parameters"
     apart = [
         f"edge {distance:.2g} from the {other}"

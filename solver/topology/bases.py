@@ -10,7 +10,7 @@ import numpy as np
 
 from semispline.solver.arrays import FloatArray
 from semispline.solver.errors import EdgeError
-from semispline.solver.io import split_spec
+from semispline.solver.io import MILLIMETRES, split_spec
 from semispline.solver.judge import Base
 from semispline.solver.options import Continuity
 from semispline.solver.topology.bands import Band
@@ -36,12 +36,15 @@ class EdgeBase:
     band : Band or None
     curve : TrimCurve or None
         The free curve, with the surface of its face.
+    millimetres : float or None
+        In one model unit, where that is known.
     """
 
     name: str
     base: Base
     band: Band | None = None
     curve: TrimCurve | None = None
+    millimetres: float | None = None
 
 
 def edge_bases(
@@ -67,9 +70,16 @@ def edge_bases(
     curves = free_curves(ends)
     orders = [continuity] * len(ends) if isinstance(continuity, str) else continuity
     return [
-        (EdgeBase(end.edge, Base(end.surface, end.edge)),) if curve is None else bases_along(curve, wanted, end.part)
+        (_natural(end),) if curve is None else bases_along(curve, wanted, end.part)
         for end, curve, wanted in zip(ends, curves, orders, strict=True)
     ]
+
+
+def _natural(end: ResolvedEdge) -> EdgeBase:
+    """Return the base along an edge that its surface knows."""
+    unit = end.loaded.unit
+    millimetres = None if unit is None else MILLIMETRES[unit]
+    return EdgeBase(end.edge, Base(end.surface, end.edge), millimetres=millimetres)
 
 
 def free_curves(ends: Sequence[ResolvedEdge]) -> list[TrimCurve | None]:
@@ -94,7 +104,9 @@ def bases_along(curve: TrimCurve, continuity: Continuity = "G2", part: int | Non
     bands = curve.bands("G1" if continuity[1] == "0" else f"G{continuity[1]}", part)  # type: ignore[arg-type]
     numbers: Sequence[int] = range(len(bands)) if part is None else [part]
     names = [curve.word] if part is None and len(bands) == 1 else [f"{curve.word}[{k}]" for k in numbers]
-    return tuple(EdgeBase(name, band.base, band, curve) for name, band in zip(names, bands, strict=True))
+    return tuple(
+        EdgeBase(name, band.base, band, curve, curve.millimetres) for name, band in zip(names, bands, strict=True)
+    )
 
 
 def paired_bases(a: Sequence[EdgeBase], b: Sequence[EdgeBase]) -> list[tuple[EdgeBase, EdgeBase]]:

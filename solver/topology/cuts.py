@@ -20,8 +20,9 @@ from scipy.optimize import brentq
 
 from semispline.solver.arrays import FloatArray
 from semispline.solver.errors import EdgeError, OptionError
+from semispline.solver.judge import cad_measures
 from semispline.solver.splines import BSplineCurve, BSplineSurface, EdgeName, parse_edge
-from semispline.solver.topology.face_jets import Face
+from semispline.solver.topology.face_jets import Face, dot
 from semispline.solver.topology.outlines import Outline
 from semispline.solver.topology.parallels import Paths, crossings, focal_distance, lost_distances, paths_from
 from semispline.solver.topology.trim_curves import TrimCurve
@@ -29,6 +30,8 @@ from semispline.solver.topology.trim_curves import TrimCurve
 _PARAMETER = re.compile(r"([uv])=(.+)")
 # Paths of which the face's limits are told; places of a free contact between which it is interpolated.
 _PATHS, _PLACES, _DEGREE = 41, 161, 5
+# More places where these are too few: the curve between them may be off by this share of what a gap may be.
+_MOST_PLACES, _SHARE, _NEWTON = 2600, 0.1, 4
 # Bisections to the end of a free contact: the step is far below any tolerance.
 _HALVINGS = 40
 # Of the range of a parameter: what is nearer to an end means the end.
@@ -156,7 +159,7 @@ def moved_contact(
             value = _exactly(face, paths, axis, cut.distance)
             moved = _line(surface, name, value, float(last[_PATHS // 2, 1 - axis]), outline, title)
             return MovedContact(moved, None, f"{moved}, {cut.distance:g} inside")
-    through = _through(face, _inside(face, curve, cut.distance, outline))
+    through = _fine_enough(face, curve, cut.distance, outline, millimetres, title)
     points = np.column_stack([through.c, np.zeros(len(through.c))])
     moved_curve = TrimCurve(
         name=f"edge {word} moved {cut.distance:g} into its face",
@@ -245,17 +248,12 @@ def _checked_paths(face: Face, curve: _Curve, x: FloatArray, distance: float, ou
         paths = curve.paths(face, x, tried)
         reach, why = _reach(face, paths, outline)
     # Where paths are lost is known by steps alone, and what was passed before is no end.
-    largest = reach if reach > good and why == _BEYOND else _last_good(face, curve, x, outline, good, tried)
-    raise EdgeError(f"{title}: {distance:g} reaches {why}, expected a distance below {largest:.4g}")
-
-
-def _last_good(face: Face, curve: _Curve, x: FloatArray, outline: Outline, good: float, bad: float) -> float:
-    """Return a distance that paths can go, near one that they cannot."""
-    while bad - good > _NEAREST * bad:
-        middle = (good + bad) / 2
-        can = middle < _reach(face, curve.paths(face, x, middle), outline)[0]
-        good, bad = (middle, bad) if can else (good, middle)
-    return good
+    while not (reach > good and why == _BEYOND) and tried - good > _NEAREST * tried:
+        middle = (good + tried) / 2
+        further, then = _reach(face, curve.paths(face, x, middle), outline)
+        good, tried, why = (middle, tried, why) if middle < further else (good, middle, then)
+        reach = good
+    raise EdgeError(f"{title}: {distance:g} reaches {why}, expected a distance below {reach:.4g}")
 
 
 def _reach(face: Face, paths: Paths, outline: Outline) -> tuple[float, str]:
@@ -359,8 +357,11 @@ def _met(lines: Sequence[FloatArray], axis: int, at: float, start: float, sign: 
     return nearest
 
 
-def _through(face: Face, at: FloatArray) -> Any:
-    """Return a spline through parameters, by lengths in space: the edge's own parameter may be no smoother than C1."""
+def _through(face: Face, at: FloatArray) -> tuple[Any, FloatArray]:
+    """Return a spline through parameters and where it meets them.
+
+    By lengths in space: the edge's own parameter may be no smoother than C1.
+    """
     points = face.jet(at, 0)[0, 0]
     s = np.append(0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1)))
     for _ in range(_REFINED):
@@ -368,22 +369,56 @@ def _through(face: Face, at: FloatArray) -> Any:
         half, middle = np.diff(s) / 2, (s[1:] + s[:-1]) / 2
         speeds = np.linalg.norm(slope(middle[:, None] + half[:, None] * _GAUSS[0]), axis=2)
         s = np.append(0.0, np.cumsum(half * (speeds @ _GAUSS[1])))
-    return make_interp_spline(s, at, _DEGREE)
+    return make_interp_spline(s, at, _DEGREE), s
 
 
-def _inside(face: Face, curve: _Curve, distance: float, outline: Outline) -> FloatArray:
-    """Return parameters at a distance from places of an edge, as far as the edges of the face at both its ends."""
-    start, end = curve.ends
-    if not curve.closed:
-        inside = start + (np.arange(_PATHS) + 0.5) / _PATHS * (end - start)
-        ran_out = crossings(curve.paths(face, inside, distance), outline.ends).min(axis=0, initial=np.inf) <= distance
-        kept = inside[~ran_out]
-        start = curve.end_inside(face, float(kept[0]), start, distance, outline)
-        end = curve.end_inside(face, float(kept[-1]), end, distance, outline)
+def _fine_enough(
+    face: Face, curve: _Curve, distance: float, outline: Outline, millimetres: float | None, title: str
+) -> Any:
+    """Return a spline through parameters at a distance from an edge that is as far from it between its places.
+
+    Beside a pole the parameters turn much faster than the curve.
+    """
+    start, end = _inside(face, curve, distance, outline)
     x = np.linspace(start, end, _PLACES)
     at = curve.paths(face, x, distance).at[-1]
     if curve.closed:
         # The curve ends where it began, perhaps a turn later.
         ends = curve.spline.evaluate(x[[0, -1]])[:, :2]
         at[-1] = at[0] + ends[1] - ends[0]
-    return np.asarray(at)
+    while len(x) < _MOST_PLACES:
+        spline, s = _through(face, at)
+        middles = (x[1:] + x[:-1]) / 2
+        between = curve.paths(face, middles, distance)
+        if _off_spline(face, spline, between.point[-1], s) <= _SHARE * cad_measures(float(s[-1]), millimetres)["gap"]:
+            return spline
+        rows = np.arange(1, len(x))
+        x, at = np.insert(x, rows, middles), np.insert(at, rows, between.at[-1], axis=0)
+    raise EdgeError(
+        f"{title}: at {distance:g} the contact bends too sharply in the parameters of the face, as beside a pole, "
+        "expected a smaller distance"
+    )
+
+
+def _off_spline(face: Face, spline: Any, points: FloatArray, at: FloatArray) -> float:
+    """Return the largest distance of points from a spline in the parameters; each lies between two of its places."""
+    slope, s = spline.derivative(), (at[1:] + at[:-1]) / 2
+    for _ in range(_NEWTON):
+        jet, turn = face.jet(spline(s), 1), slope(s)
+        tangent = jet[1, 0] * turn[:, :1] + jet[0, 1] * turn[:, 1:]
+        s = np.clip(s + dot(points - jet[0, 0], tangent) / dot(tangent, tangent), at[:-1], at[1:])
+    return float(np.linalg.norm(points - face.jet(spline(s), 0)[0, 0], axis=1).max())
+
+
+def _inside(face: Face, curve: _Curve, distance: float, outline: Outline) -> tuple[float, float]:
+    """Return the places of an edge between which paths of a distance do not meet the edges at its ends."""
+    start, end = curve.ends
+    if curve.closed:
+        return start, end
+    inside = start + (np.arange(_PATHS) + 0.5) / _PATHS * (end - start)
+    ran_out = crossings(curve.paths(face, inside, distance), outline.ends).min(axis=0, initial=np.inf) <= distance
+    kept = inside[~ran_out]
+    return (
+        curve.end_inside(face, float(kept[0]), start, distance, outline),
+        curve.end_inside(face, float(kept[-1]), end, distance, outline),
+    )

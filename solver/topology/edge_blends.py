@@ -8,7 +8,14 @@ from typing import Any, Literal
 
 from semispline.solver.blending import BandContact, BlendResult, blend
 from semispline.solver.errors import ComputationError, ContactError
-from semispline.solver.judge import Base, face_shortfalls, measure_face_contact
+from semispline.solver.judge import (
+    Base,
+    Contact,
+    cad_measures,
+    edge_length,
+    face_shortfalls,
+    measure_face_contact,
+)
 from semispline.solver.options import BlendOptions, Continuity, named_options
 from semispline.solver.topology.bases import EdgeBase, edge_bases, paired_bases
 from semispline.solver.topology.edge_limits import default_limits, face_limits
@@ -68,6 +75,12 @@ def blend_bases(a: EdgeBase, b: EdgeBase, options: BlendOptions, *, several: boo
         # To a band contact is as exact as to any base.
         result = blend(a.base, b.base, replace(options, limits="exact") if through_band else options)
         contacts = [_band_contact(result, side, which, options) for which, side in (("a", a), ("b", b))]
+        if options.limits == "cad" and not through_band:
+            result = replace(
+                result,
+                contact_a=_in_unit(result.contact_a, a, "a"),
+                contact_b=_in_unit(result.contact_b, b, "b"),
+            )
     except ComputationError as error:
         if several:
             raise type(error)(f"{a.name} to {b.name}: {error}") from None
@@ -79,6 +92,17 @@ def blend_bases(a: EdgeBase, b: EdgeBase, options: BlendOptions, *, several: boo
         band_a=contacts[0],
         band_b=contacts[1],
     )
+
+
+def _in_unit(contact: Contact, side: EdgeBase, which: str) -> Contact:
+    """Return a contact within cad limits whose gap is held to 0.001 mm too: `blend` knows of no unit."""
+    length = edge_length(side.base)
+    wide, gap = cad_measures(length)["gap"], cad_measures(length, side.millimetres)["gap"]
+    if contact.allowed["gap"] > wide or gap == wide:
+        return contact
+    if not contact.gap <= gap:
+        raise ContactError(f"contact {which}: gap is {contact.gap:.3g}, expected at most {gap:.3g} within cad limits")
+    return replace(contact, allowed=contact.allowed | {"gap": gap})
 
 
 def _said(options: BlendOptions, contacts: Sequence[BandContact | None]) -> Literal["exact", "cad"]:
