@@ -9,6 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from semispline.solver.arrays import FloatArray
 from semispline.solver.splines import Jet
@@ -145,10 +146,12 @@ def lost_distances(face: Face, paths: Paths) -> FloatArray:
     sides; or where a step is none.
     """
     beyond = np.maximum(face.low - paths.at, paths.at - face.low - face.widths) / face.widths
-    lost = ((beyond > _OUTSIDE) & ~face.closed).any(axis=2) | ~np.isfinite(paths.at).all(axis=2)
+    outside = np.asarray(((beyond > _OUTSIDE) & ~face.closed).any(axis=2))
+    lost: NDArray[np.bool_] = np.asarray(outside | ~np.isfinite(paths.at).all(axis=2))
     steps = np.linalg.norm(np.diff(paths.point, axis=0), axis=2)
     lost[1:] |= ~(np.abs(steps / paths.step - 1) <= _UNEVEN)
-    apart = ((np.abs(np.diff(paths.at, axis=1)) > face.widths / 2) & face.closed).any(axis=2)
+    jumps = np.asarray((np.abs(np.diff(paths.at, axis=1)) > face.widths / 2) & face.closed)
+    apart: NDArray[np.bool_] = np.asarray(jumps.any(axis=2))
     # An edge itself may pass that near.
     apart &= ~apart[0]
     lost[:, 1:] |= apart
