@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from semispline.solver.arrays import FloatArray
 from semispline.solver.blending.closing import reseamed
+from semispline.solver.blending.cures import Cure
 from semispline.solver.blending.layout import check_knots_apart
 from semispline.solver.errors import EdgeError
 from semispline.solver.generated import contact_numpy, rows_numpy, shape_numpy
@@ -27,9 +27,6 @@ from semispline.solver.splines import (
     reversed_knots,
     same_width,
 )
-
-if TYPE_CHECKING:
-    from semispline.solver.blending.representative import Cure
 
 # Across a span beside the edge below this fraction of the base, derivatives are made of rounding.
 _LEAST_SPAN = 1e-10

@@ -140,7 +140,8 @@ def bases_along(curve: TrimCurve, continuity: Continuity = "G2", part: int | Non
     numbers: Sequence[int] = range(len(bands)) if part is None else [part]
     names = [curve.word] if part is None and len(bands) == 1 else [f"{curve.word}[{k}]" for k in numbers]
     return tuple(
-        EdgeBase(name, band.base, band, curve, millimetres=curve.millimetres) for name, band in zip(names, bands, strict=True)
+        EdgeBase(name, band.base, band, curve, millimetres=curve.millimetres)
+        for name, band in zip(names, bands, strict=True)
     )
 
 
