@@ -3,6 +3,8 @@ PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
+# What is compiled is kept, whatever the environment says: tests start a hundred processes that import all of it.
+export PYTHONDONTWRITEBYTECODE :=
 LEFT_OUT := compiler or browser or slow
 # Half of the files each, so that what a file shares is made once; who is done first takes from the other.
 PYTEST := $(BIN)/python -m pytest -n 2 --dist worksteal --quiet

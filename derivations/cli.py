@@ -29,12 +29,15 @@ NAMES = (
     "gram-entries",
     "homogeneous-conditions",
     "homogeneous-last",
+    "joint-slopes",
+    "joint-values",
     "linear-power",
     "linear-product",
     "shape-conditions",
     "shape-polynomial",
     "special-conditions",
     "stationarity",
+    "strip-derivatives",
 )
 
 

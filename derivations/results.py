@@ -8,7 +8,7 @@ from typing import Any, Literal
 
 from sympy import Add, Eq, Expr, Mul, Poly, Symbol, collect, expand, factor, latex, sstr, sympify
 
-from semispline.derivations import contact, energy, fairness, homogeneous, linear_alpha, shape, splines
+from semispline.derivations import chains, contact, energy, fairness, homogeneous, linear_alpha, shape, splines
 from semispline.derivations.codegen import catalogue
 from semispline.derivations.codegen.c_backend import c_function
 from semispline.derivations.codegen.expressions import expression_text
@@ -191,6 +191,18 @@ def _last_rung(request: Request) -> Result:
     return Result((*equations, *((Symbol(f"W_{k}"), value) for k, value in enumerate(weights))))
 
 
+def _strip_derivatives(request: Request) -> Result:
+    return Result(tuple((Symbol(f"J_{j}"), value) for j, value in enumerate(chains.strip_derivatives(request.order))))
+
+
+def _joint_values(request: Request) -> Result:
+    return Result(tuple(chains.joint_values(request.order).items()))
+
+
+def _joint_slopes(request: Request) -> Result:
+    return Result(tuple(chains.joint_slopes(request.order).items()))
+
+
 def _contact_rows(request: Request) -> Result:
     routine = catalogue.contact_routine(request.order, request.degree, request.base_degree)
     points = [Symbol(f"R_{j}") for j in range(request.order + 1)]
@@ -335,10 +347,17 @@ RESULTS: dict[str, _Entry] = {
     "homogeneous-last": _Entry(
         "jets (Y, W) of a rational base whose weight is om^(n+1), and 0 beyond the contact", _last_rung
     ),
+    "joint-slopes": _Entry(
+        "chains: slopes of l, p, q behind a joint that close the strip's derivatives", _joint_slopes
+    ),
+    "joint-values": _Entry("chains: l and p behind a joint, where one side edge leaves the contact", _joint_values),
     "linear-power": _Entry("a^n for a linear along the contact, from a0 to a1", _linear_power),
     "linear-product": _Entry("a spline times a linear function, as a spline", _linear_product),
     "shape-conditions": _Entry("G^n contact for p1 = -a and p2, the rest zero", _shape_conditions),
     "shape-polynomial": _Entry("least energy in x = a - a0 and y = b - b0, G^n at both ends", _shape_polynomial),
     "special-conditions": _Entry("G^n contact for p1 = -a, the rest zero", _special_conditions),
     "stationarity": _Entry("what vanishes for each free control point at the least energy", _stationarity),
+    "strip-derivatives": _Entry(
+        "d^j/du^j of lambda R(w, v + q), in contact with R for all l, p, q", _strip_derivatives
+    ),
 }

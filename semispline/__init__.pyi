@@ -1,4 +1,9 @@
 from .solver.blending.band_contact import BandContact as BandContact
+from .solver.blending.chain_contact import ChainContact as ChainContact
+from .solver.blending.chain_faces import faces_of_blend as faces_of_blend
+from .solver.blending.chain_joints import Joint as Joint
+from .solver.blending.chains import Chain as Chain
+from .solver.blending.chains import chain as chain
 from .solver.blending.measured_energy import thin_plate_energy as thin_plate_energy
 from .solver.blending.pipeline import blend as blend
 from .solver.blending.result import BlendResult as BlendResult
@@ -112,15 +117,17 @@ from .solver.splines.surfaces import BSplineSurface as BSplineSurface
 from .solver.splines.surfaces import SemiStructuredSurface as SemiStructuredSurface
 from .solver.topology.bands import Band as Band
 from .solver.topology.bands import band_along as band_along
-from .solver.topology.bases import EdgeBase as EdgeBase
 from .solver.topology.bases import edge_bases as edge_bases
+from .solver.topology.chain_edges import ResolvedChain as ResolvedChain
+from .solver.topology.chain_measuring import StretchContact as StretchContact
+from .solver.topology.chain_measuring import measure_chain_contact as measure_chain_contact
+from .solver.topology.edge_base import EdgeBase as EdgeBase
 from .solver.topology.edge_blends import blend_edges as blend_edges
 from .solver.topology.edge_moving import moved_edges as moved_edges
 from .solver.topology.face_edges import FaceEdge as FaceEdge
 from .solver.topology.face_edges import FaceEdges as FaceEdges
 from .solver.topology.face_edges import ResolvedEdge as ResolvedEdge
 from .solver.topology.face_edges import list_edges as list_edges
-from .solver.topology.face_edges import resolve_edge as resolve_edge
 from .solver.topology.free_contact import FreeContact as FreeContact
 from .solver.topology.free_contact import measure_free_contact as measure_free_contact
 from .solver.topology.place import Place as Place
@@ -129,5 +136,6 @@ from .solver.topology.place import PlaceSide as PlaceSide
 from .solver.topology.places import find_places as find_places
 from .solver.topology.replacing import ReplacedPair as ReplacedPair
 from .solver.topology.replacing import replaced_pair as replaced_pair
+from .solver.topology.resolving import resolve_edge as resolve_edge
 
 __version__: str

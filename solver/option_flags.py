@@ -18,6 +18,7 @@ _READ_AS: dict[str, Any] = {
     "text": str | None,
     "number-or-word": str | None,
     "numbers-or-word": str | None,
+    "pairs-or-word": str | None,
     "range": tuple[float, float] | None,
     "numbers": str | None,
     "lists-or-word": list[str] | None,
@@ -94,6 +95,8 @@ def _value(form: str, name: str, said: Any) -> Any:
         if form == "numbers-or-word" and ":" in said:
             return tuple(_numbers(name, said, ":"))
         return _number_or_word(said)
+    if form == "pairs-or-word":
+        return said if said.isalpha() else [_numbers(name, part, ":") for part in said.split(",")]
     if form == "numbers":
         return _numbers(name, said, ",")
     if form == "lists-or-word":

@@ -17,7 +17,7 @@ Flip: TypeAlias = Literal["auto", "yes", "no"]
 # A pair has the values at both ends of v.
 Alpha: TypeAlias = float | tuple[float, float] | Literal["fair", "energy", "natural"]
 AlphaV: TypeAlias = Literal["auto", "constant", "linear"]
-VScale: TypeAlias = Literal["paper", "unit", "length", "stretched"]
+VScale: TypeAlias = Literal["paper", "unit", "length", "stretched", "straight"]
 Auto: TypeAlias = Literal["auto"]
 Limits: TypeAlias = Literal["exact", "cad"]
 
@@ -28,13 +28,16 @@ _MOST_BOX = 1e20
 _MOST_BULGE = 100.0
 # Rows that a side owns at least: position, first and second derivative.
 ROWS_PER_SIDE = 3
+# By the lower order of both sides: what it leaves free may not pull together what lies far apart.
+_V_SCALES: dict[int, VScale] = {0: "straight", 1: "stretched"}
 
 
 def _option(default: Any, form: str, metavar: str, text: str, *, sides: Literal["", "both", "each"] = "") -> Any:
     """Return a field; what the command line says of it and how it reads it stand beside its default.
 
-    `form` is text, number-or-word, numbers-or-word, range, numbers, lists-or-word or flag. With `sides` it may differ
-    at the two edges: "both" is said once for both unless B differs, "each" is said for one edge at a time.
+    `form` is text, number-or-word, numbers-or-word, pairs-or-word, range, numbers, lists-or-word or flag. With
+    `sides` it may differ at the two edges: "both" is said once for both unless B differs, "each" is said for one edge
+    at a time.
     """
     return field(default=default, metadata={"form": form, "metavar": metavar, "help": text, "sides": sides})
 
@@ -72,16 +75,21 @@ class BlendOptions:
     box : (float, float), optional
         Admissible alpha^2 and beta^2. For least energy in units of their natural sizes, 1/8 to 8 unless given; for the
         fairest shape in units of an arc's, 1/4 to 4, or to 16 where exits and chords disagree, 1/8 to 2 for G3 and G4.
-    v_scale : {"paper", "unit", "length", "stretched"}, optional
-        What (11) takes the length of the v-domain for: itself, 1, mean contact length over mean gap, or 3.5 times that,
-        with which the free rows of G1 do not pull pipes together. But for the first one the blend does not depend on
-        the units of v nor on the order of the bases.
+    v_scale : {"paper", "unit", "length", "stretched", "straight"}, optional
+        What (11) takes the length of the v-domain for: itself, 1, mean contact length over mean gap, 3.5 times that
+        (on closed contacts at least 2 pi), with which the free rows of G1 do not pull pipes together, or 100, with
+        which those of G0 and C0 run as straight as can be from one contact to the other. But for the first one the
+        blend does not depend on the units of v nor on the order of the bases.
     u_knots : sequence of float, optional
         Inner knots of U instead of uniform ones.
     middle_knots : "fourth", "paper", or a sequence of sequences of float, optional
         Inner knots of each middle curve, in v of a's edge: every fourth of both contacts', the paper's rule, or given.
     strict : bool
         Refuse a blend with warnings.
+    match : "affine", "length", or a sequence of pairs of numbers
+        Which points of the contacts answer each other: parameters that correspond affinely, equal shares of arc length,
+        or the named parameters along edge a and edge b, and monotone in between. Along a chain k + s is the share s of
+        its edge k. All but "affine" cost three times the degree along.
     limits : {"auto", "exact", "cad"}
         What contact is held to: exact, or as checkers of CAD systems have it. "auto" is exact, but for what is measured
         on a face along a free curve of it, where that is no plane.
@@ -128,7 +136,7 @@ class BlendOptions:
         None, "range", "LOW HIGH", "Range of a searched alpha² and beta², times an arc's (energy: their natural sizes)."
     )
     v_scale: VScale | None = _option(
-        None, "text", "SCALE", "Length of v in the energy: paper (as it is), unit, length or stretched."
+        None, "text", "SCALE", "Length of v in the energy: paper (as it is), unit, length, stretched or straight."
     )
     u_knots: Sequence[float] | None = _option(
         None, "numbers", "K1,K2,...", "Inner knots in u, in (0, 1); uniform if left out."
@@ -138,6 +146,9 @@ class BlendOptions:
         "lists-or-word",
         "K1,K2,...",
         "Inner knots of a middle curve, in v of edge A; once for each curve. Or fourth, or paper: by that rule.",
+    )
+    match: Literal["affine", "length"] | Sequence[tuple[float, float]] = _option(
+        "affine", "pairs-or-word", "X:Y,...", "What answers what along the edges: affine, length, or X on A for Y on B."
     )
     limits: Limits | Auto = _option(
         "auto", "text", "LIMITS", "What contact is held to: exact, cad, or auto: cad along free curves of curved faces."
@@ -162,6 +173,7 @@ class BlendOptions:
             "p2": _p2(self.p2),
             "bulge": tuple(map(_bulge, _pair(self.bulge, "bulge"))),
             "box": None if self.box is None else _box(self.box),
+            "match": _match(self.match),
             "limits": limits_name(self.limits),
             "v_scale": None if self.v_scale is None else _word(self.v_scale, "v_scale", get_args(VScale)),
             "u_knots": None if self.u_knots is None else _knots(self.u_knots, "u_knots"),
@@ -271,7 +283,7 @@ class BlendOptions:
             "alpha_v": "constant" if papers or (self.alpha_v == "auto" and nothing_searched) else self.alpha_v,
             "p2": "zero" if self.p2 == "auto" and without_p2 else self.p2,
             "limits": "exact" if self.limits == "auto" else self.limits,
-            "v_scale": self.v_scale or ("paper" if papers else "stretched" if 1 in self.orders else "length"),
+            "v_scale": self.v_scale or ("paper" if papers else _V_SCALES.get(min(self.orders), "length")),
             "middle_knots": ("paper" if papers else "fourth") if self.middle_knots is None else self.middle_knots,
         }
         return replace(self, **cast("dict[str, Any]", unsaid))
@@ -393,6 +405,20 @@ def _bulge(value: object) -> float:
 
 def _middle_knots(value: object) -> str | tuple[tuple[float, ...], ...]:
     return _word(value, "middle_knots", ("fourth", "paper")) if isinstance(value, str) else _knot_lists(value)
+
+
+def _match(value: object) -> str | tuple[tuple[float, float], ...]:
+    if isinstance(value, str):
+        return _word(value, "match", ("affine", "length"))
+    found = []
+    for i, pair in enumerate(_items(value, "match", "affine, length, or pairs of numbers")):
+        ends = _items(pair, f"match[{i}]", "a pair of numbers")
+        if len(ends) != 2:
+            raise OptionError(f"match[{i}]: found {reprlib.repr(pair)}, expected a pair of numbers")
+        found.append(tuple(real_number(x, f"match[{i}]", OptionError) for x in ends))
+    if not found:
+        raise OptionError("match: found no pairs, expected affine, length, or one pair at least")
+    return tuple(found)  # type: ignore[arg-type]
 
 
 def _box(box: object) -> tuple[float, float]:

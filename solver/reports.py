@@ -15,12 +15,12 @@ import typer
 from semispline.solver.options import Continuity
 
 if TYPE_CHECKING:
-    from semispline.solver.blending import BandContact, BlendResult, LinearInV
+    from semispline.solver.blending import BandContact, BlendResult, ChainContact, LinearInV
     from semispline.solver.io import SurfaceEntry
-    from semispline.solver.judge import Contact, Meets, ShapeReport
+    from semispline.solver.judge import Contact, FaceContact, Meets, ShapeReport
 
 
-def contact_record(contact: Contact | BandContact) -> dict[str, Any]:
+def contact_record(contact: Contact | BandContact | FaceContact) -> dict[str, Any]:
     """Return what a JSON file holds of a measured contact: nothing of what was not asked for."""
     return {name: finite(value) for name, value in asdict(contact).items() if value is not None}
 
@@ -96,6 +96,33 @@ def report_record(result: BlendResult) -> dict[str, Any]:
             for name, contact in (("band_a", result.band_a), ("band_b", result.band_b))
             if contact is not None
         },
+        **{
+            name: chain_record(chain)
+            for name, chain in (("chain_a", result.chain_a), ("chain_b", result.chain_b))
+            if chain is not None
+        },
+    }
+
+
+def chain_record(chain: ChainContact) -> dict[str, Any]:
+    """Return what a JSON file holds of how a blend meets a chain: of each face, and of each joint."""
+    return {
+        "edges": list(chain.edges),
+        "closed": chain.closed,
+        "degree": chain.degree,
+        "control_points": chain.control_points,
+        "corners_fade": chain.fades,
+        "limits": chain.limits,
+        "joints": [
+            finite(asdict(joint)) | {"v": at, "curvature_jumps": joint.bends}
+            for joint, at in zip(chain.joints, chain.places, strict=True)
+        ],
+        "faces": [
+            {"edge": face.edge, "range": list(face.range), "contact": contact_record(face.contact)}
+            | ({} if face.band is None else {"band": contact_record(face.band)})
+            for face in chain.faces
+        ],
+        "notes": list(chain.notes()),
     }
 
 
@@ -184,6 +211,8 @@ def print_result(result: BlendResult) -> None:
     rows.append(("contact B", ", ".join(_figures(result.contact_b, at_b))))
     for name, band, wanted in zip("AB", (result.band_a, result.band_b), result.continuity, strict=True):
         rows += [] if band is None else _band_rows(name, band, wanted)
+    for name, chain, wanted in zip("AB", (result.chain_a, result.chain_b), result.continuity, strict=True):
+        rows += [] if chain is None else _chain_rows(name, chain, wanted)
     if result.seam is not None:
         rows.append(("seam", ", ".join(_figures(result.seam, None))))
     if (worst := worst_inside(result.creases)) is not None:
@@ -193,8 +222,19 @@ def print_result(result: BlendResult) -> None:
     print_warnings(result.warnings)
 
 
-def _band_rows(name: str, band: BandContact, wanted: Continuity) -> Iterator[tuple[str, str]]:
-    """Yield how a blend meets the face of a band, and of which curve that is one."""
+def _chain_rows(name: str, chain: ChainContact, wanted: Continuity) -> Iterator[tuple[str, str]]:
+    """Yield what there is to say of a chain, and how a blend meets each face of it."""
+    yield f"chain at {name}", str(chain)
+    for note in chain.notes():
+        yield f"joint of {name}", note.removeprefix("joint ")
+    for face in chain.faces:
+        low, high = face.range
+        figures = ", ".join(_figures(face.contact, wanted)) if face.band is None else _band_figures(face.band, wanted)
+        yield f"face at {name}", f"{face.edge}, v in [{low:.4g}, {high:.4g}]: {figures}"
+
+
+def _band_figures(band: BandContact, wanted: Continuity) -> str:
+    """Return how a blend meets the face of a band."""
     figures = [
         f"{words} {value:.2g}{unit} ({band.allowed[measure]:.2g} allowed)"
         for measure, words, unit in (
@@ -208,7 +248,12 @@ def _band_rows(name: str, band: BandContact, wanted: Continuity) -> Iterator[tup
         if (value := getattr(band, measure)) is not None
     ]
     counted = f"; {wanted}, which is of parameters, counts as G{wanted[1]}" if wanted in ("C1", "C2") else ""
-    yield f"face at {name}", f"{', '.join(figures)}; {band.limits} limits{counted}"
+    return f"{', '.join(figures)}; {band.limits} limits{counted}"
+
+
+def _band_rows(name: str, band: BandContact, wanted: Continuity) -> Iterator[tuple[str, str]]:
+    """Yield how a blend meets the face of a band, and of which curve that is one."""
+    yield f"face at {name}", _band_figures(band, wanted)
     of = "feet of the edge in space" if band.source == "foot" else "curve in the face's parameters"
     apart = [
         f"edge {distance:.2g} from the {other}"

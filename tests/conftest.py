@@ -1,5 +1,6 @@
 """Settings that all tests share."""
 
+import gc
 import os
 import random
 import sys
@@ -13,6 +14,11 @@ from helpers.sweeps import IS_WHOLE, examples
 # The clock decides nothing here, and the same examples are tried at every run: a red test can be repeated.
 settings.register_profile("repeatable", examples(), deadline=None, derandomize=True, print_blob=True)
 settings.load_profile("repeatable")
+
+# Two things that take a tenth of a run and change no result: SymPy forgets what it simplified after a thousand entries,
+# and Python looks through everything for rings that nobody holds, thousands of collected tests among it.
+os.environ.setdefault("SYMPY_CACHE_SIZE", "10000")
+gc.set_threshold(100_000, 50, 100)
 
 NO_SHARED = "shared files not found; set SEMISPLINE_SHARED"
 
@@ -55,6 +61,11 @@ def pytest_collection_modifyitems(config, items):
     seed = config.getoption("order_seed")
     if seed is not None:
         items[:] = reordered(items, seed)
+
+
+def pytest_collection_finish():
+    # What is imported and collected stays to the end.
+    gc.freeze()
 
 
 @pytest.fixture(scope="session")

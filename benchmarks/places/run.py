@@ -127,7 +127,8 @@ in parts of which it is known what was rounded.
 - *taken out*: each fillet is taken out alone; in how many cases the gap that it leaves is the first, and is among the
   first two, of the gaps that are then found
 - *reading*, *finding*: seconds of processor time, sampling of edges included in the latter; *of limit*: finding over
-  {SECONDS_PER_THOUSAND:g} s for a thousand faces, or {OF_READING:g} times the reading where that is longer
+  {SECONDS_PER_THOUSAND:g} s for a thousand faces, or {OF_READING:g} times the reading where that is
+  longer; above 1 it is missed
 
 {_COLUMNS}"""
 

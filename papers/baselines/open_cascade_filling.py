@@ -21,13 +21,15 @@ from semispline.papers.baselines.interface import BlendTask, FormulaSurface, Met
 from semispline.solver.arrays import FloatArray
 from semispline.solver.errors import FileError
 from semispline.solver.io import occ_surface, require_kernel
-from semispline.solver.splines import BSplineSurface, interpolate_grid
+from semispline.solver.splines import BSplineSurface, Jet, interpolate_grid, surface_jet
 
 # (u, v, du, dv) -> shape (K, 3)
 Evaluation: TypeAlias = Callable[[FloatArray, FloatArray, int, int], FloatArray]
 
 _ALONG, _ACROSS = 97, 33
 _STEPS = 40
+# The highest derivatives that a FormulaSurface is asked for.
+_HIGHEST = 3
 
 
 def blend_filling(task: BlendTask) -> Outcome:
@@ -139,31 +141,26 @@ def _on_unit_square(plate: BSplineSurface, a: ContactSide, b: ContactSide) -> Fo
 def _composed(plate: BSplineSurface, parameters: BSplineSurface) -> Evaluation:
     """Return plate(parameters(x, y)) and its derivatives, by the chain rule: a term for each way to part directions."""
     (p0, p1), (q0, q1) = plate.domain
-    of_plate, inner = _remembering(plate), _remembering(parameters)
+
+    # Who measures asks for one derivative after the other at the same points.
+    @lru_cache(maxsize=4)
+    def jets(x: bytes, y: bytes) -> tuple[Jet, Jet]:
+        inner = surface_jet(parameters, np.frombuffer(x), np.frombuffer(y), _HIGHEST)
+        p, q = inner[0, 0][:, :2].T
+        # A foot point on an edge of the plate's domain may be off by rounding.
+        return inner, surface_jet(plate, np.clip(p, p0, p1), np.clip(q, q0, q1), _HIGHEST)
 
     def at(x: FloatArray, y: FloatArray, du: int, dv: int) -> FloatArray:
-        p, q = inner(x, y, 0, 0)[:, :2].T
-        # A foot point on an edge of the plate's domain may be off by rounding.
-        p, q = np.clip(p, p0, p1), np.clip(q, q0, q1)
-        total = np.zeros((len(p), 3))
+        inner, of_plate = jets(x.tobytes(), y.tobytes())
+        total = np.zeros((len(x), 3))
         for groups in partitions("u" * du + "v" * dv):
-            parts = [inner(x, y, group.count("u"), group.count("v")) for group in groups]
+            parts = [inner[group.count("u"), group.count("v")] for group in groups]
             for axes in product((0, 1), repeat=len(groups)):
                 factor = np.prod([part[:, axis] for part, axis in zip(parts, axes, strict=True)], axis=0)
-                total += factor[..., None] * of_plate(p, q, axes.count(0), axes.count(1))
+                total += factor[..., None] * of_plate[axes.count(0), axes.count(1)]
         return total
 
     return at
-
-
-def _remembering(surface: BSplineSurface) -> Evaluation:
-    """Return the evaluation of a surface that keeps what it gave: a chain rule asks again and again for the same."""
-
-    @lru_cache(maxsize=24)
-    def kept(u: bytes, v: bytes, du: int, dv: int) -> FloatArray:
-        return surface.evaluate(np.frombuffer(u), np.frombuffer(v), du, dv)
-
-    return lambda u, v, du, dv: kept(u.tobytes(), v.tobytes(), du, dv)
 
 
 def partitions(letters: str) -> list[list[str]]:

@@ -10,7 +10,6 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
-from functools import cache
 from itertools import pairwise, zip_longest
 from typing import Any
 
@@ -138,18 +137,30 @@ def _same(one: Any, other: Any) -> bool:
     return not (apart.is_Rational and apart != 0) and bool(sp.cancel(one - other) == 0)
 
 
-def try_mutants(part: Part) -> MutationResult:
+def try_mutants(part: Part, decided: list[Case] | None = None) -> MutationResult:
     """Try every mutant of a part's formula against the part's own check.
 
     A probe only saves time: of the mutants that it tells apart, the first ones of each kind are put to the check too.
+
+    Parameters
+    ----------
+    part : Part
+    decided : list of Case, optional
+        What the check finds of the formula itself, where that is known.
     """
-    return MutationResult() if part.formula is None else _tried(part.check, part.formula)
+    if part.formula is None:
+        return MutationResult()
+    key = part.check, part.formula
+    if key not in _RESULTS:
+        _RESULTS[key] = _tried(*key, decided)
+    return _RESULTS[key]
 
 
-@cache
-def _tried(check: Check, formula: Formula) -> MutationResult:
-    """Try the mutants once, also where several records rest on one formula and its check."""
-    original: list[Case] | None = None
+# Several records may rest on one formula and its check.
+_RESULTS: dict[tuple[Check, Formula], MutationResult] = {}
+
+
+def _tried(check: Check, formula: Formula, original: list[Case] | None) -> MutationResult:
     probed = check.probe(formula) if check.probe else None
     survivors: list[Mutant] = []
     undefined = 0

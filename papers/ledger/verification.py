@@ -11,15 +11,17 @@ from contextlib import closing, contextmanager
 from dataclasses import dataclass
 from functools import partial
 from math import isfinite
-from typing import Any
+from typing import Any, TypeAlias
 
 from semispline.papers.ledger.loading import collected, load_paper
 from semispline.papers.ledger.mutation import MutationResult, try_mutants
 from semispline.papers.ledger.records import (
     Case,
+    Check,
     CheckFailedError,
     Claim,
     Consequence,
+    Formula,
     Paper,
     Reading,
     Strength,
@@ -142,9 +144,10 @@ def decide(claim: Claim, time_limit: float = TIME_LIMIT) -> Decision:
     verdict, problem, vacuous = None, "", False
     counterexample, correction, consequence = "", None, None
     mutation = MutationResult()
+    known: _Known = {}
     try:
         with _limited(time_limit):
-            readings = tuple(_decide_reading(reading) for reading in claim.readings)
+            readings = tuple(_decide_reading(reading, known) for reading in claim.readings)
             verdict = _combined(readings)
             if claim.counterexample:
                 found = claim.counterexample()
@@ -152,7 +155,7 @@ def decide(claim: Claim, time_limit: float = TIME_LIMIT) -> Decision:
                     raise CheckFailedError("the search found no counterexample, expected one with its values")
                 counterexample = str(found)
             if claim.correction:
-                correction = _decide_reading(Reading(claim.correction.parts))
+                correction = _decide_reading(Reading(claim.correction.parts), known)
                 if correction.verdict is not Verdict.HOLDS:
                     raise CheckFailedError(f"the correction {correction.verdict}, expected a formula that holds")
                 if not correction.true_case:
@@ -160,7 +163,7 @@ def decide(claim: Claim, time_limit: float = TIME_LIMIT) -> Decision:
             if claim.consequence:
                 consequence = claim.consequence()
             _require_evidence(verdict, readings, counterexample, consequence)
-            mutation = _mutation(claim)
+            mutation = _mutation(claim, known)
     except _OutOfTimeError:
         verdict, problem = None, f"undecided: out of time, no answer within {time_limit:g} s of processor time"
     except VacuousError as error:
@@ -231,10 +234,17 @@ def _limited(seconds: float) -> Iterator[None]:
             raise _OutOfTimeError
 
 
-def _decide_reading(reading: Reading) -> ReadingDecision:
+# What the checks of one record found: readings may share a part, and mutants are compared with it.
+_Known: TypeAlias = dict[tuple[Check, Formula | None], list[Case]]
+
+
+def _decide_reading(reading: Reading, known: _Known) -> ReadingDecision:
     cases: list[Case] = []
     for part in reading.parts:
-        found = list(decided_cases(part.check, part.formula))
+        key = part.check, part.formula
+        if key not in known:
+            known[key] = list(decided_cases(*key))
+        found = known[key]
         if not found:
             raise VacuousError(f"no instance satisfies the assumptions of: {part.check.method}")
         cases += found
@@ -280,8 +290,9 @@ def _combined(readings: tuple[ReadingDecision, ...]) -> Verdict:
     return verdicts.pop() if len(verdicts) == 1 else Verdict.AMBIGUOUS
 
 
-def _mutation(claim: Claim) -> MutationResult:
-    return sum((try_mutants(part) for part in claim.parts + claim.correction_parts), MutationResult())
+def _mutation(claim: Claim, known: _Known) -> MutationResult:
+    parts = claim.parts + claim.correction_parts
+    return sum((try_mutants(part, known[part.check, part.formula]) for part in parts), MutationResult())
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,10 @@
 from .band_contact import BandContact as BandContact
+from .chain_contact import ChainContact as ChainContact
+from .chain_contact import stretches_along as stretches_along
+from .chain_faces import Split as Split
+from .chain_faces import faces_of_blend as faces_of_blend
+from .chains import Chain as Chain
+from .chains import chain as chain
 from .linear_alpha import LinearInV as LinearInV
 from .measured_energy import thin_plate_energy as thin_plate_energy
 from .nlp import ConstrainedProblem as ConstrainedProblem

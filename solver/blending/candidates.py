@@ -238,9 +238,15 @@ def _away_from_ends(layout: Layout, search: _Search) -> Layout:
         # Where both are at an end the first try was without both.
         if any(at_end) and p2 not in (tried, best.problem.p2):
             tried = cast("_TwoP2", p2)
-            without = search(layout.options, replace(best.problem, p2=tried), None, "without p2")
+            without = search(layout.options, replace(best.problem, p2=tried), None, _without_words(problem.p2, tried))
             best = without if without is not None and _pays_without_p2(without, best) else best
     return best
+
+
+def _without_words(free: _TwoP2, tried: _TwoP2) -> str:
+    """Say which sides go without the p2 that they have had."""
+    sides = [name for name, was, now in zip("ab", free, tried, strict=True) if was.free and not now.free]
+    return f"without p2 of {' and '.join(sides)}"
 
 
 def _pays_without_p2(without: Layout, best: Layout) -> bool:

@@ -16,9 +16,10 @@ from typing import Literal, TypeAlias
 import numpy as np
 
 from semispline.solver.arrays import FloatArray
-from semispline.solver.blending.knot_lines import LINE_TOLERANCE, KnotLine, bezier_pieces, knot_lines
+from semispline.solver.blending.knot_lines import LINE_TOLERANCE, KnotLine, knot_lines
+from semispline.solver.blending.spans import bezier_pieces, joined_spans
 from semispline.solver.blending.weights import end_derivatives
-from semispline.solver.splines import Basis, clamped, inner_knots, multiply, refinement_matrix
+from semispline.solver.splines import Basis, clamped, inner_knots, multiply
 
 JumpKind: TypeAlias = Literal["shared", "G1", "creased"]
 # Tangent planes nearer than this, in degrees, are one.
@@ -171,7 +172,7 @@ def smoothed(
     faster = excess ** (1 / (len(cuts) - 1))
     new, basis = rows, along
     if abs(excess - 1) > LINE_TOLERANCE:
-        new, basis = _sped_up(rows, along, cuts, faster)
+        new, basis = sped_up(rows, along, cuts, faster)
     else:
         faster = 1.0
     # Derivatives before a line are now 2 f / (1 + f) times as large, those after it 2 / (1 + f) times, f = `faster`.
@@ -204,7 +205,7 @@ def _moved(knots: FloatArray, cuts: FloatArray, ends: FloatArray) -> FloatArray:
     return np.asarray(moved)
 
 
-def _sped_up(rows: FloatArray, along: Basis, cuts: FloatArray, faster: float) -> tuple[FloatArray, Basis]:
+def sped_up(rows: FloatArray, along: Basis, cuts: FloatArray, faster: float) -> tuple[FloatArray, Basis]:
     """Return the rows with each segment run through by v = (1 - e) s + e s^2, s over the same segment.
 
     Their derivative at its end is then `faster` times as large, measured by that at its start, as it was.
@@ -229,15 +230,9 @@ def _sped_up(rows: FloatArray, along: Basis, cuts: FloatArray, faster: float) ->
         points.append(_composed(piece, (0.0, middle, 1.0)))
     for cut in cuts:
         new[breaks == cut] = cut
-    finest = clamped(np.repeat(new[1:-1], 2 * q), 2 * q, new[0], new[-1])
-    joined = np.concatenate([points[0][:, :1], *(piece[:, 1:] for piece in points)], axis=1)
     # Inside the segments the rows are as smooth as they were.
-    counts = np.array([np.count_nonzero(along.knots == v) for v in breaks[1:-1]], dtype=int)
-    knots = clamped(np.repeat(new[1:-1], counts + q), 2 * q, new[0], new[-1])
-    matrix = refinement_matrix(2 * q, knots, finest).toarray()
-    flat = joined.transpose(1, 0, 2).reshape(len(matrix), -1)
-    coarse = np.linalg.lstsq(matrix, flat, rcond=None)[0].reshape(-1, len(rows), rows.shape[-1])
-    return np.ascontiguousarray(coarse.transpose(1, 0, 2)), Basis(2 * q, knots)
+    smooth = [q - int(np.count_nonzero(along.knots == v)) for v in breaks[1:-1]]
+    return joined_spans(points, new, smooth)
 
 
 def _composed(piece: FloatArray, inner: tuple[float, float, float]) -> FloatArray:

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from semispline.solver.arrays import FloatArray
-from semispline.solver.splines import Basis, refinement_matrix
+from semispline.solver.blending.spans import bezier_pieces
+from semispline.solver.splines import Basis
 
 # Derivatives from both sides that differ by less than this, relative to the largest, count as equal.
 LINE_TOLERANCE = 1e-9
@@ -45,16 +46,6 @@ class KnotLine:
             if np.abs(one - other).max() > allowed:
                 return d - 1
         return len(self.before) - 1
-
-
-def bezier_pieces(rows: FloatArray, along: Basis) -> tuple[FloatArray, FloatArray]:
-    """Return the distinct knots, shape (S + 1,), and Bezier points of each span, shape (S, K, degree + 1, d)."""
-    q = along.degree
-    breaks = np.unique(along.knots)
-    full = np.concatenate([breaks[[0]], np.repeat(breaks, q), breaks[[-1]]])
-    matrix = refinement_matrix(q, along.knots, full)
-    points = np.asarray([matrix @ row for row in rows])
-    return breaks, np.stack([points[:, k * q : k * q + q + 1] for k in range(len(breaks) - 1)])
 
 
 def knot_lines(

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
 from semispline.solver.arrays import FloatArray, finite_array
 from semispline.solver.errors import InputError, OptionError
@@ -18,6 +19,7 @@ from semispline.solver.splines import (
     checked_knots,
     clamped,
     crowded_knots,
+    inner_knots,
     merge_breakpoints,
     uniform_knots,
 )
@@ -111,8 +113,10 @@ def middle_bases(
     if isinstance(given, str):
         if closed:
             merged = merge_breakpoints(breakpoints(a.knots), breakpoints(b.knots))
-            return [Basis(degree, clamped(merged[1:-1], degree, merged[0], merged[-1]))] * count
-        return [middle_basis(a, b) if given == "paper" else fourth_basis(a, b)] * count
+            basis = Basis(degree, clamped(merged[1:-1], degree, merged[0], merged[-1]))
+        else:
+            basis = middle_basis(a, b) if given == "paper" else fourth_basis(a, b)
+        return [with_corners(basis, common_corners(a, b))] * count
     if len(given) != count:
         raise OptionError(
             f"middle_knots: found {len(given)} lists of inner knots, expected {count}, one for each curve"
@@ -124,6 +128,27 @@ def middle_bases(
         values = np.sort(finite_array(inner, 1, name, OptionError))
         bases.append(Basis(degree, _clamped_inside(values, degree, start, end, name)))
     return bases
+
+
+def common_corners(a: Basis, b: Basis) -> FloatArray:
+    """Return inner knots of full multiplicity that both have: what bends there does so from one side to the other."""
+    full = [knots[counts >= x.degree] for x in (a, b) for knots, counts in [_inner_counts(x)]]
+    same = np.abs(full[0][:, None] - full[1]) <= MERGE_TOLERANCE * (a.knots[-1] - a.knots[0])
+    return np.asarray(full[0][same.any(axis=1)])
+
+
+def with_corners(basis: Basis, corners: FloatArray) -> Basis:
+    """Return the basis with knots of full multiplicity at the corners."""
+    if not len(corners):
+        return basis
+    inner, counts = _inner_counts(basis)
+    apart = np.abs(inner[:, None] - corners).min(axis=1) > MERGE_TOLERANCE * (basis.knots[-1] - basis.knots[0])
+    kept = np.concatenate([np.repeat(inner[apart], counts[apart]), np.repeat(corners, basis.degree)])
+    return Basis(basis.degree, clamped(np.sort(kept), basis.degree, basis.knots[0], basis.knots[-1]))
+
+
+def _inner_counts(basis: Basis) -> tuple[FloatArray, NDArray[np.intp]]:
+    return np.unique(inner_knots(basis.knots, basis.degree), return_counts=True)
 
 
 def middle_degree(a: Basis, b: Basis) -> int:

@@ -69,7 +69,7 @@ def _natural_along(problem: BlendProblem, index: int) -> FloatArray:
     """Return gap / |R_w| along the contact."""
     sides = problem.a, problem.b
     basis: Basis = sides[0].along
-    v = basis.knots[0] + (basis.knots[-1] - basis.knots[0]) * _PLACES
+    v = np.linspace(basis.knots[0], basis.knots[-1], len(_PLACES))
     edges = [side.edge(v) for side in sides]
     gap = np.linalg.norm(edges[0][0] - edges[1][0], axis=1)
     across = edges[index][1] * (sides[index].degree / sides[index].spans[0])

@@ -9,14 +9,23 @@ fade out within the span after the line.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import comb, factorial
+from math import comb
 
 import numpy as np
 
 from semispline.solver.arrays import FloatArray
-from semispline.solver.blending.knot_lines import bezier_pieces, knot_lines
+from semispline.solver.blending.knot_lines import knot_lines
+from semispline.solver.blending.reparametrisation import (
+    Reparametrisation,
+    bezier_derivatives,
+    bezier_points,
+    chebyshev_places,
+    composed,
+    elevation,
+)
+from semispline.solver.blending.spans import bezier_pieces, joined_spans
 from semispline.solver.blending.weights import end_derivatives, rows_from_derivatives
-from semispline.solver.splines import Basis, affine_knots, clamped, refinement_matrix
+from semispline.solver.splines import Basis, affine_knots
 
 # What is left of the jump of the derivatives along v, relative to them, where tangent planes are one.
 _TOLERANCE = 1e-8
@@ -179,25 +188,21 @@ def _bent(
     raised = max(zeros.values()) + 1
     has_weights = any(fade[0, 0] for fade in fades.values())
     degree = q + (order + has_weights) * raised
-    points, elevation = [], _elevation(q, degree)
+    points, raise_degree = [], elevation(q, degree)
     for v, width, piece in zip(breaks[:-1].tolist(), widths.tolist(), pieces, strict=True):
         if v not in fades:
-            points.append(np.asarray(elevation @ piece))
+            points.append(np.asarray(raise_degree @ piece))
             continue
-        t = (1 - np.cos(np.linspace(0, np.pi, degree + 1))) / 2
+        t = chebyshev_places(degree + 1)
         bump = width * t * (1 - t) ** zeros[v]
         if min((1 + fades[v][0, 0] * bump).min(), (1 + fades[v][1, 1] * bump).min()) <= 0:
             return None
-        values = _reparametrised(piece, width, t, bump, fades[v])
-        flat = np.linalg.solve(_bernstein(degree, t), values.transpose(1, 0, 2).reshape(degree + 1, -1))
-        points.append(flat.reshape(degree + 1, order + 1, -1).transpose(1, 0, 2))
-    joined = np.concatenate([points[0][:, :1], *(piece[:, 1:] for piece in points)], axis=1)
-    finest = clamped(np.repeat(new[1:-1], degree), degree, new[0], new[-1])
+        by = fades[v][:, :, None] * bump
+        by[0, 0] += 1.0
+        by[1, 1] += 1.0
+        points.append(bezier_points(composed(bezier_derivatives(piece, width, t, order), Reparametrisation.of(by))))
     smooth = [1 if v in fades else min(q - int(np.sum(along.knots == v)), _INNER_ORDER) for v in breaks[1:-1].tolist()]
-    knots = clamped(np.repeat(new[1:-1], degree - np.array(smooth, dtype=int)), degree, new[0], new[-1])
-    matrix = refinement_matrix(degree, knots, finest).toarray()
-    flat = np.linalg.lstsq(matrix, joined.transpose(1, 0, 2).reshape(len(matrix), -1), rcond=None)[0]
-    return np.ascontiguousarray(flat.reshape(len(flat), order + 1, -1).transpose(1, 0, 2)), Basis(degree, knots)
+    return joined_spans(points, new, smooth)
 
 
 def _zeros(v: float, breaks: FloatArray, cuts: FloatArray, *, closed: bool) -> int:
@@ -209,44 +214,3 @@ def _zeros(v: float, breaks: FloatArray, cuts: FloatArray, *, closed: bool) -> i
     if after == breaks[-1]:
         return 2 if closed else 1
     return 2 if after in cuts else 3
-
-
-def _reparametrised(piece: FloatArray, width: float, t: FloatArray, bump: FloatArray, fade: FloatArray) -> FloatArray:
-    """Return d^j X / du^j at places t of a span, shape (order + 1, len(t), d), from its Bezier points."""
-    order, q = len(piece) - 1, piece.shape[1] - 1
-    facts = np.array([factorial(j) for j in range(order + 1)], dtype=np.float64)
-    # Powers of u, each over the places.
-    lam, w, shift = fade[:, :, None] * bump / facts[:, None]
-    lam[0] += 1.0
-    w[1] += 1.0
-    result = np.zeros((order + 1, len(t), piece.shape[2]))
-    level, shifted = piece, lam
-    for b in range(min(order, q) + 1):
-        values = np.einsum("ti,aid->atd", _bernstein(q - b, t), level) / factorial(b)
-        power = shifted
-        for a in range(order + 1 - b):
-            result += power[:, :, None] * values[a] / factorial(a)
-            power = _product(power, w)
-        shifted = _product(shifted, shift)
-        level = np.diff(level, axis=1) * ((q - b) / width)
-    return result * facts[:, None, None]
-
-
-def _product(a: FloatArray, b: FloatArray) -> FloatArray:
-    """Return the product of power series, cut off where they are."""
-    return np.stack([sum((a[i] * b[k - i] for i in range(k + 1)), np.zeros_like(a[0])) for k in range(len(a))])
-
-
-def _bernstein(degree: int, t: FloatArray) -> FloatArray:
-    return np.stack([comb(degree, k) * t**k * (1 - t) ** (degree - k) for k in range(degree + 1)], axis=1)
-
-
-def _elevation(degree: int, new: int) -> FloatArray:
-    """Return the matrix that raises the degree of Bezier points."""
-    by = new - degree
-    return np.array(
-        [
-            [comb(degree, i) * comb(by, j - i) / comb(new, j) if 0 <= j - i <= by else 0.0 for i in range(degree + 1)]
-            for j in range(new + 1)
-        ]
-    )

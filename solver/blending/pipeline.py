@@ -10,6 +10,9 @@ import numpy as np
 
 from semispline.solver.arrays import FloatArray, require
 from semispline.solver.blending.candidates import Candidate, Layout, find_layout
+from semispline.solver.blending.chain_bases import StatedBases, as_bases, on_chains
+from semispline.solver.blending.chain_contact import told_apart
+from semispline.solver.blending.chains import Chain
 from semispline.solver.blending.matching import directions_to_try
 from semispline.solver.blending.measured_energy import MeasuredEnergy, measure_energy
 from semispline.solver.blending.placing import PlacedSides, place_sides
@@ -56,8 +59,8 @@ _EQUAL_TURNS = 1e-3
 
 
 def blend(
-    a: Base,
-    b: Base,
+    a: Base | Chain,
+    b: Base | Chain,
     options: BlendOptions | None = None,
     **named: Any,
 ) -> BlendResult:
@@ -65,8 +68,9 @@ def blend(
 
     Parameters
     ----------
-    a, b : Base
-        B-spline surfaces, rational or not, and the edges to be joined. Neither is changed.
+    a, b : Base or Chain
+        B-spline surfaces, rational or not, and the edges to be joined; or edges end to end, as `chain` returns them.
+        Neither is changed.
     options : BlendOptions, optional
         Or its fields by name: ``blend(a, b, continuity="G1", middle_curves=0)``.
 
@@ -77,7 +81,7 @@ def blend(
     Raises
     ------
     OptionError, EdgeError
-        An option or a base that cannot be used.
+        An option or a base that cannot be used: a chain knows contact of surfaces only, C0 or G0 to G4.
     ComputationError
         The solver failed.
     ContactError
@@ -97,26 +101,33 @@ def blend(
     >>> result.surface.n_control_points, round(result.alpha2, 2), round(result.beta2, 2)
     (12, 1.79, 1.79)
     """
-    started = time.perf_counter()
     said = named_options(options, named)
-    directions = _tied(a, b, said.flip)
+    stated = as_bases(a, b, said)
+    return _strictly(on_chains(_blended(stated), stated), said.strict)
+
+
+def _blended(stated: StatedBases) -> BlendResult:
+    """Blend two bases, in each direction that is left open."""
+    a, b, said, matched = stated.a, stated.b, stated.options, stated.matched
+    started = time.perf_counter()
+    directions = _tied(a, b, said.flip) if matched is None else ("no",)
     solved: list[_Solved] = []
     failures: dict[Flip, ComputationError] = {}
     for flip in directions:
         try:
-            solved.append(_solved(a, b, said, flip))
+            solved.append(_solved(stated, flip))
         except ComputationError as failure:
             failures[flip] = failure
     seconds = time.perf_counter() - started
     while solved:
         least = solved[0] if len(solved) == 1 else _least_turning(solved)
         try:
-            result = _judged(a, b, least, seconds)
+            result = _judged(stated, least, seconds)
         except ComputationError as failure:
             failures[least.flip] = failure
             solved.remove(least)
         else:
-            return _strictly(_unwarned(a, b, said, result), said.strict)
+            return _unwarned(stated, result)
     raise next(failures[flip] for flip in directions if flip in failures)
 
 
@@ -133,9 +144,10 @@ class _Solved:
     energy: MeasuredEnergy
 
 
-def _solved(a: Base, b: Base, said: BlendOptions, flip: Flip) -> _Solved:
+def _solved(stated: StatedBases, flip: Flip) -> _Solved:
     """Solve for the blend: the few numbers that are not linear, then everything that is."""
-    placed = place_sides(a, b, said, flip)
+    said = stated.options
+    placed = place_sides(stated.a, stated.b, said, flip, stated.matched, lines_answer=stated.lines_answer)
     layout, candidates = find_layout(*placed.scaled, said)
     found = bulged(layout.found, layout.options.bulges)
     surface = _surface(layout.problem, found, placed.sides, placed.frame)
@@ -154,8 +166,9 @@ def _least_turning(solved: list[_Solved]) -> _Solved:
     return next(one for one, turn in zip(solved, turns, strict=True) if turn <= min(turns) + _EQUAL_TURNS)
 
 
-def _judged(a: Base, b: Base, solved: _Solved, seconds: float) -> BlendResult:
+def _judged(stated: StatedBases, solved: _Solved, seconds: float) -> BlendResult:
     """Let the judge measure a blend, and refuse what misses its limits."""
+    a, b = stated.a, stated.b
     placed, layout, found, surface = solved.placed, solved.layout, solved.found, solved.surface
     sides, frame, matched = placed.sides, placed.frame, placed.matched
     chosen, problem, energy = layout.options, layout.problem, solved.energy.value
@@ -168,9 +181,10 @@ def _judged(a: Base, b: Base, solved: _Solved, seconds: float) -> BlendResult:
     regularity = measure_regularity(surface)
     # Cures leave rows that are C1: there curvature may jump.
     creases = measure_creases(surface, c1_lines=problem.is_cured or problem.is_rational)
+    own, inherited = told_apart(creases, surface, stated.joints)
     shape = _measured_shape(surface, a, b, chosen)
     warnings = (
-        shape_warnings(shape, regularity, creases, options=chosen, cures=problem.cures)
+        shape_warnings(shape, regularity, own, options=chosen, cures=problem.cures, inherited=inherited)
         + bound_warnings(problem, layout.found)
         + stopped_warning(layout.found, chosen)
         + (fairness_warning(found.fairness, shape.fairness.value) if chosen.bulges == (1.0, 1.0) else ())
@@ -361,17 +375,18 @@ def _checked_contacts(
     return contact_a, contact_b
 
 
-def _unwarned(a: Base, b: Base, said: BlendOptions, result: BlendResult) -> BlendResult:
+def _unwarned(stated: StatedBases, result: BlendResult) -> BlendResult:
     """Return the blend without the middle curve that was chosen, where that leaves nothing to be warned of.
 
     A little fairness is not worth a warning. A U-turn keeps one.
     """
+    said = stated.options
     left = next((one for one in result.candidates if one.verdict == "chosen" and one.middle_curves), None)
     if left is None or said.middle_curves != "auto" or not result.warnings or result.shape.exits.is_u_turn:
         return result
     try:
         flip: Flip = "yes" if result.flipped else "no"
-        plain = blend(a, b, replace(said, middle_curves=0, flip=flip, strict=False))
+        plain = _blended(replace(stated, options=replace(said, middle_curves=0, flip=flip)))
     except ComputationError:
         return result
     if plain.warnings:

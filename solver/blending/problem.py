@@ -42,8 +42,11 @@ from semispline.solver.splines import (
 )
 
 # The rows that G1 leaves free pull pipes together, by 4 to 7 %; stretched by this factor along v by less than 1 %.
-# Random pairs are as fair in the median, and less by an eighth in the mean.
-STRETCH = 3.5
+# Random pairs are as fair in the median, and less by an eighth in the mean. However far apart, closed contacts are at
+# least so long that v is the angle about a pipe: the pull grows with the fourth power of its inverse.
+STRETCH, LEAST_AROUND = 3.5, 2 * np.pi
+# So long that the second derivatives across alone count: what G0 and C0 leave free is straight.
+STRAIGHT = 100.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -157,16 +160,24 @@ class BlendProblem:
         """Indices of the rows that no contact prescribes."""
         return range(self.a.order + 1, len(self.rows) - self.b.order - 1)
 
+    @cached_property
+    def seam_is_a_corner(self) -> bool:
+        """Whether both bases are only continuous across their seam."""
+        return all(_seam_order(side) == 0 for side in (self.a, self.b))
+
     def seam_order_of(self, row: int) -> int:
         """How many derivatives a free row keeps across the seam, if it has control points for as many.
 
-        A middle curve is as smooth there as at its other knots: the blend does not show where the seam is.
+        A middle curve is as smooth there as at its other knots: the blend does not show where the seam is, unless both
+        bases have a corner there.
         """
         if self.seam_order < 0:
             return -1
         basis = self.form.rows[row]
         middle = self.a.count <= row < len(self.rows) - self.b.count
-        return min(basis.degree - 1 if middle else self.seam_order, basis.size // 2 - 1)
+        if middle and not (self.seam_order == 0 and self.seam_is_a_corner):
+            return min(basis.degree - 1, basis.size // 2 - 1)
+        return min(self.seam_order, basis.size // 2 - 1)
 
     @cached_property
     def free_system(self) -> FreeSystem | RationalSystem:
@@ -300,8 +311,7 @@ def make_problem(a: Side, b: Side, options: BlendOptions) -> BlendProblem:
         (a, b), weights = represented(a, b, u, options)
     elif any(cure is not None and cure.name != "none" for cure in (cure_a, cure_b)):
         a, b = of_one_degree(a, b)
-    orders = [seam_order(side.along, side.rows[: side.order + 1], side.largest) for side in (a, b)]
-    closed = min(orders)
+    closed = min(_seam_order(side) for side in (a, b))
     given = cast("Any", options.middle_knots)
     middle = middle_bases(a.along, b.along, middle_curves, given, closed=closed >= 0)
     if closed >= 0 and isinstance(given, str):
@@ -328,8 +338,7 @@ def make_problem(a: Side, b: Side, options: BlendOptions) -> BlendProblem:
     p2_a, p2_b = (second_parameter(side, i, options) for i, side in enumerate((a, b)))
     form = EnergyForm(u, rows)
     if options.v_scale != "paper":
-        stretch = STRETCH if options.v_scale == "stretched" else 1.0
-        length = 1.0 if options.v_scale == "unit" else stretch * sum(means.lengths) / 2 / means.gap
+        length = _length_of_v(options.v_scale, sum(means.lengths) / 2 / means.gap, closed=closed >= 0)
         form = EnergyForm(u, tuple(Basis(row.degree, affine_knots(row.knots, 0.0, length)) for row in rows))
     return BlendProblem(
         form,
@@ -345,6 +354,17 @@ def make_problem(a: Side, b: Side, options: BlendOptions) -> BlendProblem:
         weights,
         (cure_a, cure_b),
     )
+
+
+def _seam_order(side: Side) -> int:
+    return seam_order(side.along, side.rows[: side.order + 1], side.largest)
+
+
+def _length_of_v(v_scale: str | None, length: float, *, closed: bool) -> float:
+    """Return what the energy takes the length of v for; contacts are `length` gaps long."""
+    if v_scale == "stretched":
+        return max(STRETCH * length, LEAST_AROUND if closed else 0.0)
+    return {"unit": 1.0, "straight": STRAIGHT}.get(str(v_scale), length)
 
 
 def _check_bends_continuously(u: Basis) -> None:

@@ -82,6 +82,8 @@ def smooth_along(a: Side, b: Side, options: BlendOptions) -> tuple[tuple[Side, C
     To the order of contact they are the same surfaces. What both sides share is left, unless there are rows that do
     not share it.
     """
+    if a.keeps_lines and b.keeps_lines:
+        return (a, None), (b, None)
     order, shared = max(a.order, b.order), not has_free_rows(options)
     found_a, found_b = (_cured(side, order) for side in (a, b))
     if found_a.cure == found_b.cure == "none" or (shared and _jump_alike(a, found_a, found_b)):

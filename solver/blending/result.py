@@ -7,6 +7,7 @@ from functools import cached_property
 
 from semispline.solver.blending.band_contact import BandContact
 from semispline.solver.blending.candidates import Candidate
+from semispline.solver.blending.chain_contact import ChainContact
 from semispline.solver.blending.linear_alpha import LinearInV
 from semispline.solver.blending.representative import Cure, Representative
 from semispline.solver.judge import Contact, Crease, Regularity, ShapeReport
@@ -119,6 +120,8 @@ class BlendResult:
         For the solve, in both directions of b where both were tried, without the final checks.
     band_a, band_b : BandContact or None
         Where a base is a band along a free curve of a face: how the blend meets the face itself.
+    chain_a, chain_b : ChainContact or None
+        Where a base is a chain: how the blend meets each face of it.
     """
 
     surface: SemiStructuredSurface
@@ -158,6 +161,8 @@ class BlendResult:
     seconds: float
     band_a: BandContact | None = None
     band_b: BandContact | None = None
+    chain_a: ChainContact | None = None
+    chain_b: ChainContact | None = None
 
     @property
     def rows_stored(self) -> int:

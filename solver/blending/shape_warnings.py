@@ -31,8 +31,11 @@ def shape_warnings(
     *,
     options: BlendOptions | None = None,
     cures: tuple[Cure | None, Cure | None] = (None, None),
+    inherited: Sequence[Crease] = (),
 ) -> tuple[str, ...]:
     """Return a warning for each thing that a surface modeller would not keep without a look.
+
+    What is `inherited` from corners and creases of a chain is said with the chain; it explains a turn all the same.
 
     Options, where they are known, tell what to try first: what was asked for and may be the cause, and alpha fair only
     where it is not that already.
@@ -40,7 +43,7 @@ def shape_warnings(
     cause = "" if options is None else _asked_for(options)
     fair = cause + ("alpha fair, " if options is None or set(options.decided().alphas) != {"fair"} else "")
     return (
-        *_turns(shape, max((crease.angle_degrees for crease in creases), default=0.0), fair),
+        *_turns(shape, max((crease.angle_degrees for crease in (*creases, *inherited)), default=0.0), fair),
         *_pinches(shape, regularity, fair),
         *_exits(shape, fair),
         *_meetings(shape, cause),

@@ -50,6 +50,8 @@ class Side:
         Where one of the bases is rational they have four columns, (om x, om y, om z, om).
     largest : float
         Largest coordinate of the rows as they were given, in today's units: their rounding goes with it.
+    keeps_lines : bool
+        Lines at which rows are only continuous are left as they are: the other side has the same.
     """
 
     continuity: Continuity
@@ -58,6 +60,7 @@ class Side:
     along: Basis
     rows: FloatArray
     largest: float
+    keeps_lines: bool = False
 
     @property
     def is_rational(self) -> bool:

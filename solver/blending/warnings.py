@@ -140,7 +140,7 @@ def remedy(
             "remove these knots or take them further apart, or ask for a lower continuity"
         )
     if strained or order > 2:
-        return strained or f"derivatives of order {order} round: ask for G2"
+        return strained or f"derivatives of order {order} round: ask for G{order - 1}"
     if shape is None:
         return "derivatives across the edge round: try bases of similar size, or a lower continuity"
     return (

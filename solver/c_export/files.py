@@ -38,7 +38,7 @@ from semispline.solver.io import (
 )
 from semispline.solver.judge import Base
 from semispline.solver.options import BlendOptions
-from semispline.solver.topology import ResolvedEdge, edge_bases, resolve_edges
+from semispline.solver.topology import ResolvedChain, ResolvedEdge, edge_bases, resolve_edges
 
 NAME = "blend"
 # Errors of the control points of exported code, as a fraction of the size: of the energy that is the square.
@@ -98,12 +98,13 @@ def _bases(stored: StoredProblem) -> tuple[list[Base], list[ResolvedEdge]]:
     sides = ((stored.a, stored.edge_a), (stored.b, stored.edge_b))
     # Both at once: surfaces of different files come in one unit.
     named = [(base, edge) for base, edge in sides if isinstance(base, str)]
-    ends = resolve_edges(
+    resolved = resolve_edges(
         named, [f"edge_{name}" for name, (base, _) in zip("ab", sides, strict=True) if isinstance(base, str)]
     )
     orders = [
         order for (base, _), order in zip(sides, stored.options.continuities, strict=True) if isinstance(base, str)
     ]
+    ends = [_one_edge(end) for end in resolved]
     read = iter(edge_bases(ends, orders))
     found = []
     for base, edge in sides:
@@ -116,8 +117,14 @@ def _bases(stored: StoredProblem) -> tuple[list[Base], list[ResolvedEdge]]:
                 f"{edge} of {base}: found {len(parts)} parts, {parts[0].name} to {parts[-1].name}, expected one for "
                 "generated C: name one of them in the problem"
             )
-        found.append(parts[0].base)
+        found += parts[0].bases
     return found, ends
+
+
+def _one_edge(end: ResolvedEdge | ResolvedChain) -> ResolvedEdge:
+    if isinstance(end, ResolvedChain):
+        raise EdgeError(f"{end.edge} of {end.spec}: found a chain, expected one edge for generated C")
+    return end
 
 
 def _require_polynomial(a: Base, b: Base, options: BlendOptions) -> None:

@@ -10,7 +10,7 @@ from contextlib import ExitStack
 from dataclasses import replace
 from itertools import chain
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, cast, get_args
 
 import typer
 
@@ -25,6 +25,7 @@ from semispline.solver.cli.words import (
     asked,
     check_outputs,
     check_words,
+    edges_of,
     print_resolved,
     progress,
     resolved,
@@ -36,6 +37,7 @@ from semispline.solver.options import BlendOptions
 from semispline.solver.reports import print_result, reports_record
 
 if TYPE_CHECKING:
+    from semispline.solver.blending import Split
     from semispline.solver.splines import Surface
 
 _CUT_HELP = (
@@ -65,6 +67,13 @@ def blend_command(
     with_bases: Annotated[
         bool, typer.Option("--with-bases", help="Write the bases, cut to their edges, as surfaces beside the blend.")
     ] = False,
+    split: Annotated[
+        str,
+        typer.Option(
+            metavar="WHERE",
+            help="Cut the blend of several edges into faces: at corners, or at all joints. JSON keeps it whole.",
+        ),
+    ] = "corners",
     report: Annotated[str | None, typer.Option(metavar="FILE", help="JSON with all that is known of it.")] = None,
 ) -> None:
     """Join an edge of A and an edge of B by a semi-structured surface of fairest shape, or as the options say."""
@@ -74,12 +83,14 @@ def blend_command(
     wanted.check()
     if surfaces and with_bases:
         raise OptionError("--surfaces: found it together with --with-bases, expected one of them")
+    at = split_name(split)
     check_surface_output(out, 3 if with_bases else 1)
     check_outputs({"--out": out, "--report": report}, wanted.specs)
     with progress("reading"):
         ends, said = wanted.resolved()
-    trims = face_warnings(*((end.spec, end.edge, end.loaded) for end in ends), strict=options.strict)
+    trims = face_warnings(*edges_of(ends), strict=options.strict)
     with progress("blending"):
+        from semispline.solver.blending import faces_of_blend
         from semispline.solver.topology import blend_bases, edge_bases, paired_bases
 
         pairs = paired_bases(*edge_bases(ends, options.continuities))
@@ -88,8 +99,12 @@ def blend_command(
         results = [blend_bases(*pair, options, several=len(pairs) > 1) for pair in pairs]
     results[0] = replace(results[0], warnings=(*trims, *results[0].warnings))
     record = reports_record(results) | {"a": ends[0].spec, "b": ends[1].spec} | asked(ends) | wanted.record
+    whole = Path(out).suffix.lower() == ".json"
     of_parts = [
-        [result.surface, *(side.base.surface for side in pair if with_bases)]
+        [
+            *((result.surface,) if whole else faces_of_blend(result, at)),
+            *(base.surface for side in pair if with_bases for base in side.bases),
+        ]
         for result, pair in zip(results, pairs, strict=True)
     ]
     _write(files, of_parts, ends[0].loaded.unit, report, record)
@@ -100,6 +115,20 @@ def blend_command(
         if len(results) > 1:
             typer.echo(f"part {k + 1} of {len(results)}, in {files[k] if len(files) > 1 else out}:")
         print_result(result)
+
+
+def split_name(word: str) -> Split:
+    """Return where the blend of several edges is cut.
+
+    Raises
+    ------
+    OptionError
+    """
+    from semispline.solver.blending import Split
+
+    if word not in get_args(Split):
+        raise OptionError(f"--split: found {word!r}, expected corners or joints")
+    return cast("Split", word)
 
 
 def _write(
@@ -148,12 +177,16 @@ def problem_command(
     """Write what blend would be asked as a problem file, which `generate --c` and scripts read; solve nothing."""
     from semispline.solver.io import StoredProblem, relative_spec, write_problem
     from semispline.solver.judge import Base
+    from semispline.solver.topology import ResolvedEdge
 
     check_words(edge_a, edge_b)
     check_outputs({"--out": out}, [a, b])
     ends = resolved(a, edge_a, b, edge_b)
-    # A name that the surface does not have is refused here; a free curve has a name in its file alone.
-    first, second = (end.edge if end.is_free else Base(end.surface, end.edge).edge for end in ends)
+    # A name that the surface does not have is refused here; a free curve and a chain have names in their file alone.
+    first, second = (
+        Base(end.surface, end.edge).edge if isinstance(end, ResolvedEdge) and not end.is_free else end.edge
+        for end in ends
+    )
     specs = [relative_spec(end.spec, out) for end in ends]
     write_problem(out, StoredProblem(specs[0], first, specs[1], second, options, ends[0].asked, ends[1].asked))
     print_resolved(ends)

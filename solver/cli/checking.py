@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from semispline.solver.cli.chain_table import chain_contact_record, chain_misses, print_chain_contact
 from semispline.solver.cli.contact_table import plot_limits, print_contact, profile_record
 from semispline.solver.cli.face_table import face_contact_record, face_misses, print_face_contact
 from semispline.solver.cli.words import (
@@ -23,20 +24,21 @@ from semispline.solver.cli.words import (
     asked,
     check_outputs,
     check_words,
+    edges_of,
     file_name,
     print_resolved,
     progress,
     resolved,
     write_json,
 )
-from semispline.solver.errors import ContactError
+from semispline.solver.errors import ContactError, OptionError
 from semispline.solver.exit_status import ANSWER_IS_NO, reports_errors
 from semispline.solver.options import Auto, Continuity, Limits, continuity_name, limits_name
 from semispline.solver.reports import contact_record, print_warnings
 
 if TYPE_CHECKING:
     from semispline.solver.judge import Base, Contact, Profile
-    from semispline.solver.topology import ResolvedEdge
+    from semispline.solver.topology import Resolved, ResolvedEdge
 
 _LIMITS_HELP = (
     "exact, cad (as checkers of CAD systems have them), or auto: cad along a free curve of a face that is no plane."
@@ -48,7 +50,7 @@ class _Measured:
     """What was measured of two edges: for JSON, for plots and for the terminal, and what a continuity misses."""
 
     record: dict[str, Any]
-    profile: Profile
+    profile: Profile | None
     limits: Mapping[str, float]
     misses: Sequence[str]
     doubts: Sequence[str]
@@ -84,11 +86,12 @@ def check_command(
         check_folder(plots)
     ends = resolved(a, edge_a, b, edge_b)
     with progress("measuring"):
-        measure = _on_face if any(end.is_free for end in ends) else _of_edges
-        found = measure(ends, required, kind)
-    warnings = face_warnings(*((end.spec, end.edge, end.loaded) for end in ends))
+        found = _measured(ends, required, kind)
+    warnings = face_warnings(*edges_of(ends))
     unit = ends[0].loaded.unit
-    if plots is not None:
+    if plots is not None and found.profile is None:
+        raise OptionError("--plots: found it with several edges at once, expected one at A and one at B")
+    if plots is not None and found.profile is not None:
         from semispline.solver.pictures import profile_plots
 
         write_files(plots, profile_plots(found.profile, found.limits, unit))
@@ -110,6 +113,30 @@ def check_command(
     print_warnings(warnings)
     if found.misses:
         raise typer.Exit(ANSWER_IS_NO)
+
+
+def _measured(ends: Sequence[Resolved], required: Continuity | None, kind: Limits | Auto) -> _Measured:
+    from semispline.solver.topology import ResolvedEdge
+
+    single = [end for end in ends if isinstance(end, ResolvedEdge)]
+    if len(single) < len(ends):
+        return _on_chain(ends, required, kind)
+    return _on_face(single, required, kind) if any(end.is_free for end in single) else _of_edges(single, required, kind)
+
+
+def _on_chain(ends: Sequence[Resolved], required: Continuity | None, kind: Limits | Auto) -> _Measured:
+    """Measure edges of which one or both are several that run end to end."""
+    from semispline.solver.topology import measure_chain_contact
+
+    found = measure_chain_contact(ends[0], ends[1], limits=kind)
+    return _Measured(
+        chain_contact_record(found),
+        None,
+        {},
+        chain_misses(found, required),
+        [],
+        lambda: print_chain_contact(found, ends[0].loaded.unit, required),
+    )
 
 
 def _of_edges(ends: Sequence[ResolvedEdge], required: Continuity | None, kind: Limits | Auto) -> _Measured:

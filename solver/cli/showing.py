@@ -77,18 +77,22 @@ def show_command(
     with progress("drawing"):
         blends = [isinstance(face.surface, SemiStructuredSurface) for face in faces]
         names = _labels(faces) if labels else [""] * len(faces)
+        kept = [
+            k
+            for k, face in enumerate(faces)
+            if true is None or (face.path, face.number or 0) != (true.path, true.number or 0)
+        ]
         drawn = [
             Drawn(
-                face.surface,
-                control_points=control_points and (is_blend or not any(blends)),
-                mesh=face.mesh,
-                edges=face.edges,
-                label=name,
+                faces[k].surface,
+                control_points=control_points and (blends[k] or not any(blends)),
+                mesh=faces[k].mesh,
+                edges=faces[k].edges,
+                label=names[k],
                 name_edges=labels and (edges or len(faces) == 1),
-                around=true is not None and face.path == true.path and face.path in files,
+                around=true is not None and faces[k].path == true.path and faces[k].path in files,
             )
-            for face, is_blend, name in zip(faces, blends, names, strict=True)
-            if true is None or (face.path, face.number or 0) != (true.path, true.number or 0)
+            for k in kept
         ]
         if true is not None and all(item.around for item in drawn):
             raise OptionError(
@@ -107,11 +111,15 @@ def show_command(
         unit, found = true.loaded.unit or "model units", picture.deviation
         place = ", ".join(f"{x:.5g}" for x in found.at)
         typer.echo(f"distance from {deviation_from}: largest {found.largest:.3g} {unit} at ({place}), ", nl=False)
-        typer.echo(f"mean {found.mean:.3g} {unit}")
+        measured = [k for k, item in zip(kept, drawn, strict=True) if not item.around]
+        others = (
+            f"; of {len(measured)} surfaces the largest is on {faces[measured[found.of]].spec}" if measured[1:] else ""
+        )
+        typer.echo(f"mean {found.mean:.3g} {unit}{others}")
     if picture.unnamed_edges:
         typer.echo(
-            f"edges not named for want of room: {picture.unnamed_edges}; `semispline show PATH#N --labels` names "
-            "those of one face",
+            f"edges not named, since no view shows them or leaves room: {picture.unnamed_edges}; "
+            "`semispline show PATH#N --labels` names those of one face, --views has other sides",
             err=True,
         )
     if picture.unseen:

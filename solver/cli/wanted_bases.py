@@ -5,6 +5,7 @@ Heavy imports wait inside the functions, so that `--help` answers fast.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -12,7 +13,7 @@ from semispline.solver.cli.words import check_word, check_words
 from semispline.solver.errors import OptionError
 
 if TYPE_CHECKING:
-    from semispline.solver.topology import ResolvedEdge
+    from semispline.solver.topology import Resolved
 
 
 @dataclass(frozen=True)
@@ -60,7 +61,7 @@ class WantedBases:
         else:
             check_words(self.edge_a, self.edge_b)
 
-    def resolved(self) -> tuple[list[ResolvedEdge], str]:
+    def resolved(self) -> tuple[Sequence[Resolved], str]:
         """Return both edges as `Base` knows them, and what is said of the place.
 
         Raises
@@ -81,7 +82,7 @@ class WantedBases:
 
     def _check_replace(self) -> None:
         from semispline.solver.io import split_spec
-        from semispline.solver.topology import is_of_a_face
+        from semispline.solver.topology import is_near, is_of_a_face
 
         if self.cuts != (None, None):
             raise OptionError("--replace: found it together with --cut-a or --cut-b, expected one of them")
@@ -92,7 +93,17 @@ class WantedBases:
             raise OptionError(
                 f"--replace: found {self.a!r}, expected the file alone, {path!r}: --replace says which face"
             )
+        if (self.edge_a is None) != (self.edge_b is None):
+            raise OptionError(
+                f"--edge-a and --edge-b: found one of them, expected none or two edges of face {self.replaced}"
+            )
         for name, word in (("--edge-a", self.edge_a), ("--edge-b", self.edge_b)):
+            if word is not None and is_near(word):
+                raise OptionError(
+                    f"{name}: found {word!r} together with --replace, expected an edge of face {self.replaced}, as "
+                    "e1; two points say themselves which face lies between: FILE FILE --edge-a near=x,y,z "
+                    "--edge-b near=x,y,z"
+                )
             if word is not None and not is_of_a_face(word):
                 raise OptionError(
                     f"{name}: found {word!r}, expected an edge of face {self.replaced}, as e1: "

@@ -12,13 +12,15 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 if TYPE_CHECKING:
-    from semispline.solver.topology import ResolvedEdge
+    from semispline.solver.io import LoadedSurface
+    from semispline.solver.topology import Resolved
 
 SURFACE_HELP = "PATH, or PATH#N as `semispline list PATH` numbers it (JSON, STEP, IGES, BREP, 3dm)."
 EDGE_HELP = (
     "Edge of {}: u0, u1, v0 or v1, the parameter that is constant along it and at which end; a part, u1[0.2,0.6]; a "
     "line inside, u=0.3+ (the side of larger u is kept) or u=0.3-; a part of it, u=0.3+[0.2,0.6]; e3, an edge of the "
-    "face as `semispline list PATH --edges N` numbers it; near=x,y,z, its edge nearest to a point."
+    "face as `semispline list PATH --edges N` numbers it; near=x,y,z, its edge nearest to a point; several end to end, "
+    "e3+e4, 12:e3+13:e1 (of faces 12 and 13 of the file), e3..e9, e3* (all that go on smoothly from e3)."
 )
 CONTINUITY_HELP = "C0, C1, C2, G0, G1, G2, G3 or G4."
 
@@ -36,14 +38,12 @@ def check_words(edge_a: str, edge_b: str) -> None:
 
 def check_word(word: str, name: str) -> None:
     """Refuse what names no edge; messages call it `name`."""
-    from semispline.solver.splines import parse_edge
-    from semispline.solver.topology import is_of_a_face
+    from semispline.solver.topology import check_edge_word
 
-    if not is_of_a_face(word):
-        parse_edge(word, name)
+    check_edge_word(word, name)
 
 
-def resolved(a: str, edge_a: str, b: str, edge_b: str) -> list[ResolvedEdge]:
+def resolved(a: str, edge_a: str, b: str, edge_b: str) -> list[Resolved]:
     """Return both edges as surfaces and names that `Base` knows; files are read at once."""
     from semispline.solver.topology import resolve_edges
 
@@ -51,12 +51,21 @@ def resolved(a: str, edge_a: str, b: str, edge_b: str) -> list[ResolvedEdge]:
         return resolve_edges([(a, edge_a), (b, edge_b)])
 
 
-def asked(ends: Sequence[ResolvedEdge]) -> dict[str, Any]:
+def asked(ends: Sequence[Resolved]) -> dict[str, Any]:
     """Return the words that were resolved, as a problem file and a report hold them."""
     return {f"asked_{side}": end.asked for side, end in zip("ab", ends, strict=True) if end.asked is not None}
 
 
-def print_resolved(ends: Sequence[ResolvedEdge]) -> None:
+def edges_of(ends: Sequence[Resolved]) -> Iterator[tuple[str, str, LoadedSurface]]:
+    """Yield of each edge, of chains too, what `face_warnings` takes."""
+    from semispline.solver.topology import members
+
+    for end in ends:
+        for edge in members(end):
+            yield edge.spec, edge.edge, edge.loaded
+
+
+def print_resolved(ends: Sequence[Resolved]) -> None:
     """Say which edge a word was found to be."""
     for side, end in zip("AB", ends, strict=True):
         if end.said:

@@ -38,8 +38,9 @@ _Text: TypeAlias = Annotated[str, Strict()]
 _Points: TypeAlias = list[list[_Number]]
 
 
-# A free curve of a face in a file, or a part of it.
-_FREE = re.compile(r"e[0-9]{1,9}(\[[0-9]{1,9}\])?")
+# A free curve of a face in a file, or a part of it; or edges that run end to end, of other faces with their number.
+_ONE = r"e[0-9]{1,9}(\[[0-9]{1,9}\])?"
+_FREE = re.compile(rf"{_ONE}(\+([0-9]{{1,9}}:)?{_ONE})*")
 # Knots beyond it are for the surface to refuse.
 _HUGE = 1e300
 
@@ -90,10 +91,11 @@ class StoredProblem:
     a, b : BSplineSurface, SemiStructuredSurface or str
         A surface, or "PATH#N" with PATH relative to the folder of the file.
     edge_a, edge_b : str
-        As `Base` takes them: "u1", "u=0.3+[0.2,0.6]"; of "PATH#N" also "e3" or "e3[0]", a free curve of the face.
+        As `Base` takes them: "u1", "u=0.3+[0.2,0.6]"; of "PATH#N" also "e3" or "e3[0]", a free curve of the face,
+        and "e3+e4", "e3+13:e1", edges that run end to end.
     options : BlendOptions
     asked_a, asked_b : str, optional
-        What was asked for where that is another word, "e3" or "near=1,2,3": an edge of the face in the file.
+        What was asked for where that is another word, "e3", "e3*" or "near=1,2,3": of the face in the file.
 
     Raises
     ------

@@ -159,6 +159,12 @@ def trimmed_edge_warning(spec: str | Path, edge: str, loaded: LoadedSurface) -> 
         return None
     unit = loaded.unit or "model units"
     part = "in part, by up to" if offset.in_part else "up to"
+    if "=" in edge:
+        # A line of constant parameter may run through the face.
+        return (
+            f"the edge {edge} of {spec} is no edge of the face, {part} {offset.distance:.3g} {unit} from the face's "
+            f"own boundary: it runs through the face, or beyond it; {_listing(spec)} names its own edges"
+        )
     return (
         f"the edge {edge} of {spec} lies outside of the face, {part} {offset.distance:.3g} {unit} from the face's own "
         f"boundary: the face is trimmed, its surface goes on; {_listing(spec)} names its own edges"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import reduce
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +14,7 @@ from semispline.solver.arrays import FloatArray
 IndexArray = NDArray[np.intp]
 
 # Bits of each coordinate by which boxes are ordered, and how many pairs are worked on at once.
-_BITS, _AT_ONCE = 10, 2**15
+_BITS, _AT_ONCE = 10, 2**13
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,7 +63,8 @@ def overlapping(a: BoxTree, b: BoxTree) -> Iterator[tuple[IndexArray, IndexArray
     while waiting:
         level, i, j = waiting.pop()
         (low_a, high_a), (low_b, high_b) = (t.levels[min(level, len(t.levels) - 1)] for t in (a, b))
-        near = ((low_a[i] <= high_b[j]) & (low_b[j] <= high_a[i])).all(axis=1)
+        # One coordinate after the other: there are two or three, and many pairs.
+        near = reduce(np.logical_and, ((low_a[i] <= high_b[j]) & (low_b[j] <= high_a[i])).T)
         i, j = i[near], j[near]
         if level == last:
             apart = i != j if a is b else np.ones(len(i), dtype=bool)

@@ -102,6 +102,7 @@ def crossings(a: Mesh, b: Mesh) -> Hits:
     # Around zero and of size 1: products neither overflow nor lose what is far from the origin.
     centre, size = b.points.mean(axis=0), extent(b.points)
     points = (b.points - centre) / (size if size > 0 else 1.0)
+    columns = np.ascontiguousarray(points.T)
 
     def tree(mesh: Mesh) -> BoxTree:
         corners = points[mesh.triangles]
@@ -113,9 +114,9 @@ def crossings(a: Mesh, b: Mesh) -> Hits:
     second: list[FloatArray] = []
     count = 0
     for i, j in overlapping(first_tree, second_tree):
-        hit, where = _crossing(points, a.triangles[i], b.triangles[j])
+        hit, where = _crossing(columns, a.triangles[i], b.triangles[j])
         for mesh, index, found in ((a, i[hit], first), (b, j[hit], second)):
-            found.append(_parameters(points[mesh.triangles[index]], mesh.corners[index], where))
+            found.append(_parameters(_corners(columns, mesh.triangles[index]), mesh.corners[index], where))
         count += int(hit.sum())
         if count >= _MOST_HITS:
             break
@@ -135,108 +136,127 @@ def _triangles(vertex: IndexArray, u: FloatArray, v: FloatArray) -> tuple[IndexA
     return triangles, np.stack([u[index // n_v], v[index % n_v]], axis=-1)
 
 
+# From here on the pairs are the last axis: points have shape (3, K), triangles (corner, coordinate, K). There are many
+# pairs, and an inner loop of length 3 would cost more than the arithmetic.
+
+
+def _corners(columns: FloatArray, triangles: IndexArray) -> FloatArray:
+    return columns[:, triangles.T].transpose(1, 0, 2)
+
+
 def _parameters(corners: FloatArray, parameters: FloatArray, points: FloatArray) -> FloatArray:
-    """Return the parameters of points in triangles, by barycentric coordinates."""
+    """Return the parameters of points in triangles, by barycentric coordinates, shape (K, 2)."""
     weights = _barycentric(points, corners)
-    return np.asarray(np.einsum("kc,kcd->kd", weights, parameters))
+    return np.asarray(np.einsum("ck,kcd->kd", weights, parameters))
 
 
 def _inside(points: FloatArray, corners: FloatArray, margin: float) -> NDArray[np.bool_]:
-    return np.asarray((_barycentric(points, corners) > margin).all(axis=-1))
+    return np.asarray((_barycentric(points, corners) > margin).all(axis=0))
 
 
 def _barycentric(points: FloatArray, corners: FloatArray) -> FloatArray:
-    a, b, c = (corners[:, k] for k in range(3))
-    normal = np.cross(b - a, c - a)
-    square = np.sum(normal**2, axis=-1)
+    a, b, c = corners
+    normal = _normal(corners)
+    square = _dot(normal, normal)
     with np.errstate(divide="ignore", invalid="ignore"):
-        weights = [
-            np.sum(np.cross(q - points, r - points) * normal, axis=-1) / square for q, r in ((b, c), (c, a), (a, b))
-        ]
-    return np.stack(weights, axis=-1)
+        weights = [_dot(_cross(q - points, r - points), normal) / square for q, r in ((b, c), (c, a), (a, b))]
+    return np.stack(weights)
 
 
-def _crossing(points: FloatArray, first: IndexArray, second: IndexArray) -> tuple[NDArray[np.bool_], FloatArray]:
+def _normal(corners: FloatArray) -> FloatArray:
+    a, b, c = corners
+    return _cross(b - a, c - a)
+
+
+def _cross(a: FloatArray, b: FloatArray) -> FloatArray:
+    return np.stack([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
+
+
+def _dot(a: FloatArray, b: FloatArray) -> FloatArray:
+    return np.asarray(a[0] * b[0] + a[1] * b[1] + a[2] * b[2])
+
+
+def _crossing(columns: FloatArray, first: IndexArray, second: IndexArray) -> tuple[NDArray[np.bool_], FloatArray]:
     """Return which pairs of triangles cross, and a point of each that does."""
-    same = first[:, :, None] == second[:, None, :]
-    common = same.sum(axis=(1, 2))
+    same = first.T[:, None] == second.T[None]
+    common = same.reshape(9, -1).sum(axis=0)
     hit = np.zeros(len(first), dtype=bool)
-    where = np.zeros((len(first), 3))
+    where = np.zeros((3, len(first)))
     candidates = np.flatnonzero(common <= 1)
-    p, q = points[first[candidates]], points[second[candidates]]
+    p, q = _corners(columns, first[candidates]), _corners(columns, second[candidates])
     # Both have corners on either side of the other's plane, or on it.
-    near = _reaches(p, q) & _reaches(q, p)
-    candidates, p, q = candidates[near], p[near], q[near]
+    for swapped in (False, True):
+        near = np.flatnonzero(_reaches(q, p) if swapped else _reaches(p, q))
+        candidates, p, q = candidates[near], p[..., near], q[..., near]
     # Of triangles with a common corner only the edges opposite to it.
-    shared_first, shared_second = same[candidates].any(axis=2), same[candidates].any(axis=1)
+    shared_first, shared_second = same[..., candidates].any(axis=1), same[..., candidates].any(axis=0)
     for edges, corners, shared in ((p, q, shared_first), (q, p, shared_second)):
         for k in range(3):
-            start, end = edges[:, k], edges[:, (k + 1) % 3]
-            allowed = ~(shared[:, k] | shared[:, (k + 1) % 3])
-            crossed, at = _pierces(start, end, corners)
-            new = crossed & allowed & ~hit[candidates]
-            hit[candidates[new]] = True
-            where[candidates[new]] = at[new]
+            m = (k + 1) % 3
+            allowed = np.flatnonzero(~(shared[k] | shared[m] | hit[candidates]))
+            crossed, at = _pierces(edges[k][:, allowed], edges[m][:, allowed], corners[..., allowed])
+            new = candidates[allowed[crossed]]
+            hit[new] = True
+            where[:, new] = at
     rest = np.flatnonzero(~hit[candidates] & (common[candidates] == 0))
-    flat, at = _overlap_in_plane(p[rest], q[rest])
+    flat, at = _overlap_in_plane(p[..., rest], q[..., rest])
     hit[candidates[rest[flat]]] = True
-    where[candidates[rest[flat]]] = at[flat]
-    return hit, where[hit]
+    where[:, candidates[rest[flat]]] = at[:, flat]
+    return hit, where[:, hit]
 
 
 def _heights(triangles: FloatArray, others: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return how far the corners of others are from the planes of triangles, times the area; and the size of that."""
-    a, b, c = (triangles[:, k] for k in range(3))
-    normal = np.cross(b - a, c - a)
-    heights = np.einsum("kd,kcd->kc", normal, others - a[:, None])
-    scale = np.linalg.norm(normal, axis=-1) * np.abs(others - a[:, None]).max(axis=(1, 2))
-    return heights, scale
+    normal, away = _normal(triangles), others - triangles[0]
+    heights = np.stack([_dot(normal, corner) for corner in away])
+    return heights, np.sqrt(_dot(normal, normal)) * np.abs(away).max(axis=(0, 1))
 
 
 def _reaches(triangles: FloatArray, others: FloatArray) -> NDArray[np.bool_]:
     heights, scale = _heights(triangles, others)
     touch = _TOUCH * scale
-    return np.asarray((heights.min(axis=1) <= touch) & (heights.max(axis=1) >= -touch))
+    return np.asarray((heights.min(axis=0) <= touch) & (heights.max(axis=0) >= -touch))
 
 
-def _pierces(start: FloatArray, end: FloatArray, corners: FloatArray) -> tuple[NDArray[np.bool_], FloatArray]:
-    """Tell which segments cross which triangles, and where; those within its plane do not."""
-    a, b, c = (corners[:, k] for k in range(3))
-    normal = np.cross(b - a, c - a)
-    at_start, at_end = np.sum(normal * (start - a), axis=-1), np.sum(normal * (end - a), axis=-1)
+def _pierces(start: FloatArray, end: FloatArray, corners: FloatArray) -> tuple[IndexArray, FloatArray]:
+    """Return which segments cross their triangle, and where; those within its plane do not."""
+    normal, a = _normal(corners), corners[0]
+    at_start, at_end = _dot(normal, start - a), _dot(normal, end - a)
     with np.errstate(divide="ignore", invalid="ignore"):
         share = at_start / (at_start - at_end)
-        inside = (share >= -_TOUCH) & (share <= 1 + _TOUCH)
-        where = start + np.where(inside, share, 0.0)[:, None] * (end - start)
-    return inside & _inside(where, corners, -_TOUCH), where
+        reached = np.flatnonzero((share >= -_TOUCH) & (share <= 1 + _TOUCH))
+    start = start[:, reached]
+    where = start + share[reached] * (end[:, reached] - start)
+    inside = _inside(where, corners[..., reached], -_TOUCH)
+    return reached[inside], where[:, inside]
 
 
 def _overlap_in_plane(p: FloatArray, q: FloatArray) -> tuple[NDArray[np.bool_], FloatArray]:
     """Tell which triangles that lie in one plane overlap, and a point of both: a crossing of edges or a corner."""
     heights, scale = _heights(p, q)
-    hit = np.zeros(len(p), dtype=bool)
-    where = np.zeros((len(p), 3))
-    flat = np.flatnonzero(np.abs(heights).max(axis=1, initial=0.0) <= _COPLANAR * scale)
+    hit = np.zeros(len(scale), dtype=bool)
+    where = np.zeros((3, len(scale)))
+    flat = np.flatnonzero(np.abs(heights).max(axis=0) <= _COPLANAR * scale)
     if not len(flat):
         return hit, where
-    p, q = p[flat], q[flat]
-    normal = np.cross(p[:, 1] - p[:, 0], p[:, 2] - p[:, 0])
+    p, q = p[..., flat], q[..., flat]
+    normal = _normal(p)
 
     def found(which: NDArray[np.bool_], at: FloatArray) -> None:
         new = which & ~hit[flat]
-        where[flat[new]] = at[new]
+        where[:, flat[new]] = at[:, new]
         hit[flat[new]] = True
 
     for corners, others in ((p, q), (q, p)):
         for k in range(3):
-            found(_inside(others[:, k], corners, _TOUCH), others[:, k])
+            found(_inside(others[k], corners, _TOUCH), others[k])
     for k in range(3):
         for m in range(3):
-            start, along = p[:, k], p[:, (k + 1) % 3] - p[:, k]
-            other, across = q[:, m], q[:, (m + 1) % 3] - q[:, m]
-            base = np.sum(np.cross(along, across) * normal, axis=-1)
+            start, along = p[k], p[(k + 1) % 3] - p[k]
+            other, across = q[m], q[(m + 1) % 3] - q[m]
+            base = _dot(_cross(along, across), normal)
             with np.errstate(divide="ignore", invalid="ignore"):
-                s, t = (np.sum(np.cross(other - start, x) * normal, axis=-1) / base for x in (across, along))
+                s, t = (_dot(_cross(other - start, x), normal) / base for x in (across, along))
             inside = (s > _TOUCH) & (s < 1 - _TOUCH) & (t > _TOUCH) & (t < 1 - _TOUCH)
-            found(inside, start + np.where(inside, s, 0.0)[:, None] * along)
+            found(inside, start + np.where(inside, s, 0.0) * along)
     return hit, where

@@ -6,7 +6,9 @@ as they are stored, rounded once. Plain de Boor, point by point, and slow: for a
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from decimal import Decimal, localcontext
+from functools import cached_property
 from itertools import pairwise
 from math import comb
 from typing import TypeAlias
@@ -15,7 +17,7 @@ import numpy as np
 
 from semispline.solver.arrays import FloatArray
 from semispline.solver.judge.base import Base
-from semispline.solver.splines import BSplineSurface, NaturalEdge
+from semispline.solver.splines import BSplineCurve, BSplineSurface, NaturalEdge
 
 _DIGITS = 60
 _Vector: TypeAlias = list[Decimal]
@@ -41,37 +43,34 @@ def precise_derivatives(base: Base, origin: FloatArray, s: FloatArray, order: in
         return {key: np.array([[float(x) for x in at[key]] for at in points]) for key in keys}
 
 
-class _Net:
-    """The control curves of a surface, each with four numbers in a point, and how they are joined across."""
+class _Curve:
+    """A control curve, four numbers in a point; made of Decimal numbers where it is read."""
 
-    def __init__(
-        self, curves: list[tuple[int, FloatArray, list[_Vector]]], degree: int, knots: FloatArray, edge: NaturalEdge
-    ) -> None:
-        self.curves, self.degree, self.knots, self.edge = curves, degree, [Decimal(x) for x in knots.tolist()], edge
+    def __init__(self, curve: BSplineCurve, origin: FloatArray) -> None:
+        self.curve, self.degree, self.origin = curve, curve.degree, origin
+
+    @cached_property
+    def knots(self) -> list[Decimal]:
+        return _decimals(self.curve.knots)
+
+    @cached_property
+    def points(self) -> list[_Vector]:
+        points, weights = self.curve.control_points, self.curve.weights
+        return _homogeneous(points, np.ones(len(points)) if weights is None else weights, self.origin)
+
+
+class _Net:
+    """The control curves of a surface, and how they are joined across."""
+
+    def __init__(self, curves: list[_Curve], degree: int, knots: FloatArray, edge: NaturalEdge) -> None:
+        self.curves, self.degree, self.knots, self.edge = curves, degree, _decimals(knots), edge
 
     @staticmethod
     def of(base: Base, origin: FloatArray) -> _Net:
         surface = base.surface
-        if isinstance(surface, BSplineSurface):
-            weights = np.ones(surface.control_points.shape[:2]) if surface.weights is None else surface.weights
-            curves = [
-                (surface.degree_v, surface.knots_v, _homogeneous(points, row, origin))
-                for points, row in zip(surface.control_points, weights, strict=True)
-            ]
-        else:
-            curves = [
-                (
-                    curve.degree,
-                    curve.knots,
-                    _homogeneous(
-                        curve.control_points,
-                        np.ones(len(curve.control_points)) if curve.weights is None else curve.weights,
-                        origin,
-                    ),
-                )
-                for curve in surface.control_curves
-            ]
-        return _Net(curves, surface.degree_u, surface.knots_u, base.side)
+        rows = surface.to_semistructured() if isinstance(surface, BSplineSurface) else surface
+        curves = [_Curve(curve, origin) for curve in rows.control_curves]
+        return _Net(curves, rows.degree_u, rows.knots_u, base.side)
 
     def derivatives(self, x: Decimal, order: int) -> dict[tuple[int, int], _Vector]:
         """Return derivatives of the quotient by (across, along), up to an order, inwards and along as the edge runs."""
@@ -82,21 +81,21 @@ class _Net:
                 if self.edge[0] == "u":
                     found[i, j] = self._at(self.knots[-1] if at_end else self.knots[0], x, i, j)
                 else:
-                    end = self.curves[0][1]
-                    found[i, j] = self._at(x, Decimal(float(end[-1] if at_end else end[0])), j, i)
+                    found[i, j] = self._at(x, self.curves[0].knots[-1 if at_end else 0], j, i)
         return _quotient(found)
 
     def _at(self, u: Decimal, v: Decimal, du: int, dv: int) -> _Vector:
         first = _span(self.degree, self.knots, u) - self.degree
         # Only the rows that act at u.
-        values = {
-            i: _derivative(
-                self.curves[i][0], [Decimal(t) for t in self.curves[i][1].tolist()], self.curves[i][2], v, dv
-            )
-            for i in range(first, first + self.degree + 1)
-        }
-        points = [values.get(i, [Decimal(0)] * 4) for i in range(len(self.curves))]
+        points = [[Decimal(0)] * 4] * len(self.curves)
+        for i in range(first, first + self.degree + 1):
+            curve = self.curves[i]
+            points[i] = _derivative(curve.degree, curve.knots, curve.points, v, dv)
         return _derivative(self.degree, self.knots, points, u, du)
+
+
+def _decimals(knots: FloatArray) -> list[Decimal]:
+    return [Decimal(x) for x in knots.tolist()]
 
 
 def _homogeneous(points: FloatArray, weights: FloatArray, origin: FloatArray) -> list[_Vector]:
@@ -109,9 +108,7 @@ def _homogeneous(points: FloatArray, weights: FloatArray, origin: FloatArray) ->
 
 def _span(degree: int, knots: list[Decimal], x: Decimal) -> int:
     """Return k with t_k <= x < t_(k+1); the end of the domain belongs to the last span."""
-    k = max(i for i, t in enumerate(knots) if t <= x)
-    last = len(knots) - degree - 2
-    return max(degree, min(k, last))
+    return max(degree, min(bisect_right(knots, x) - 1, len(knots) - degree - 2))
 
 
 def _derivative(degree: int, knots: list[Decimal], points: list[_Vector], x: Decimal, order: int) -> _Vector:

@@ -31,11 +31,14 @@ class Deviation:
         Over the area that is drawn, model units.
     at : (float, float, float)
         Where it is largest.
+    of : int
+        The surface on which that lies, of those measured.
     """
 
     largest: float
     mean: float
     at: tuple[float, float, float]
+    of: int
 
 
 class TrueFace:
@@ -85,4 +88,5 @@ def measure_deviation(samples: Sequence[Sampled], of_points: Sequence[FloatArray
     area, distance = np.concatenate([item.area for item in samples]), np.concatenate(of_points)
     k = int(distance.argmax())
     x, y, z = points[k].tolist()
-    return Deviation(float(distance[k]), float(area @ distance / area.sum()), (x, y, z))
+    of = int(np.searchsorted(np.cumsum([len(item.points) for item in samples]), k, side="right"))
+    return Deviation(float(distance[k]), float(area @ distance / area.sum()), (x, y, z), of)

@@ -22,8 +22,9 @@ from semispline.solver.arrays import FloatArray
 NOTHING = -1
 # A face that is nowhere seen so many pixels to all sides is seen along itself: what is left are stray pixels.
 _LEAST = 2.0
-# Points along an edge; one is seen where its face is within so many pixels.
-_ALONG, _NEAR = 101, 4
+# Points along an edge; one is seen where its face is within so many pixels, and no more than so many in front of it: a
+# face that closes round hides edges of its own.
+_ALONG, _NEAR, _IN_FRONT = 101, 4, 8
 # Around a text, pixels; steps outwards, in heights of the text, and directions in which room is sought.
 _PAD, _RINGS, _WAYS = 3, (1.0, 1.6, 2.4, 3.4, 4.6, 6.0, 8.0), 16
 _FACE_INK, _EDGE_INK = "black", "#0b3c8c"
@@ -114,15 +115,19 @@ def face_anchors(seen: Seen, names: Sequence[str], height: int) -> dict[int, Anc
     return found
 
 
-def edge_anchor(seen: Seen, face: int, pixels: FloatArray, text: str, height: int) -> Anchor | None:
+def edge_anchor(
+    seen: Seen, heights: FloatArray, face: int, pixels: FloatArray, text: str, height: int
+) -> Anchor | None:
     """Return where an edge of a face is named: beside the middle of its longest seen piece, on the face itself.
 
     Parameters
     ----------
     seen : ndarray of int, shape (rows, columns)
+    heights : ndarray, shape (rows, columns)
+        How near to the eye that is, in pixels.
     face : int
-    pixels : ndarray, shape (K, 2)
-        Points of the edge.
+    pixels : ndarray, shape (K, 3)
+        Points of the edge, the third coordinate towards the eye.
     text : str
     height : int
         Of the text.
@@ -131,15 +136,17 @@ def edge_anchor(seen: Seen, face: int, pixels: FloatArray, text: str, height: in
     # A straight edge may have no points but its ends.
     along = np.append(0.0, np.cumsum(np.linalg.norm(np.diff(pixels, axis=0), axis=1)))
     even = np.linspace(0, along[-1], _ALONG)
-    pixels = np.stack([np.interp(even, along, pixels[:, d]) for d in range(2)], axis=1)
-    at = np.rint(pixels).astype(int)
-    is_seen = np.array([bool((_window(seen, x, y, _NEAR) == face).any()) for x, y in at.tolist()])
-    runs = np.split(np.arange(len(at)), np.flatnonzero(np.diff(is_seen)) + 1)
+    pixels = np.stack([np.interp(even, along, pixels[:, d]) for d in range(3)], axis=1)
+    own_height = np.where(seen == face, heights, np.inf)
+    is_seen = np.array(
+        [bool((_window(own_height, round(x), round(y), _NEAR) <= z + _IN_FRONT).any()) for x, y, z in pixels.tolist()]
+    )
+    runs = np.split(np.arange(_ALONG), np.flatnonzero(np.diff(is_seen)) + 1)
     runs = [run for run in runs if is_seen[run[0]]]
     if not runs:
         return None
     best = max(runs, key=len)
-    x, y = pixels[best[len(best) // 2]].tolist()
+    x, y, _ = pixels[best[len(best) // 2]].tolist()
     reach = 2 * height
     own = np.argwhere(_window(seen, round(x), round(y), reach) == face)
     corner = np.array([max(round(x) - reach, 0), max(round(y) - reach, 0)])
@@ -150,8 +157,8 @@ def edge_anchor(seen: Seen, face: int, pixels: FloatArray, text: str, height: in
     return Anchor(face, text, inside, 0.0, (towards[0], towards[1]), of_edge=True)
 
 
-def _window(seen: Seen, x: int, y: int, reach: int) -> Seen:
-    return seen[max(y - reach, 0) : max(y + reach + 1, 0), max(x - reach, 0) : max(x + reach + 1, 0)]
+def _window(image: NDArray[Any], x: int, y: int, reach: int) -> NDArray[Any]:
+    return image[max(y - reach, 0) : max(y + reach + 1, 0), max(x - reach, 0) : max(x + reach + 1, 0)]
 
 
 def placed(anchors: Sequence[Anchor], size: tuple[int, int], height: int) -> list[Placed]:

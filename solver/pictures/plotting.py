@@ -321,7 +321,7 @@ class _Scene:
 
     def _name(self, image: Image.Image, frame: Frame) -> set[tuple[int, str]]:
         """Draw the names of what is seen; return them, each with the number of its surface."""
-        seen = self._seen(frame)
+        seen, heights = self._seen(frame)
         height = max(round(_NAMES * frame.size[1]), 9)
         anchors = list(face_anchors(seen, [item.label for item in self.items], height).values())
         alone = len(self.items) == 1
@@ -331,14 +331,14 @@ class _Scene:
                 continue
             for line in self.items[face.surface].edges:
                 at = frame.pixels(line.points)
-                anchor = edge_anchor(seen, face.surface, at, line.name, height)
+                anchor = edge_anchor(seen, heights, face.surface, at, line.name, height)
                 anchors += [] if anchor is None else [replace(anchor, nearby=not alone)]
         labels = placed(anchors, frame.size, height)
         draw_labels(image, labels, height)
         return {(label.anchor.surface, label.anchor.text) for label in labels}
 
-    def _seen(self, frame: Frame) -> Seen:
-        """Return the number of the surface at each pixel."""
+    def _seen(self, frame: Frame) -> tuple[Seen, FloatArray]:
+        """Return the number of the surface at each pixel, and how near to the eye it is there, in pixels."""
         counts = [len(item.points) for item in self.samples]
         starts = np.cumsum([0, *counts[:-1]])
         triangles = np.concatenate([s.triangles + start for s, start in zip(self.samples, starts, strict=True)])
@@ -352,10 +352,11 @@ class _Scene:
             plotter.disable_anti_aliasing()
             frame.aim(plotter)
             pixels = np.asarray(plotter.screenshot(return_img=True))[..., :3].astype(np.int64)
+            heights = frame.heights(plotter)
         finally:
             plotter.close()
         found = pixels @ np.array([1, 256, 65536])
-        return np.where(found < len(self.samples), found, NOTHING)
+        return np.where(found < len(self.samples), found, NOTHING), heights
 
 
 def _plotter(size: tuple[int, int]) -> Any:

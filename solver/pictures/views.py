@@ -67,19 +67,32 @@ class Frame:
     size: tuple[int, int]
 
     def pixels(self, points: FloatArray) -> FloatArray:
-        """Return where points are seen, from the upper left corner of the picture; shape (K, 2)."""
+        """Return where points are seen, from the upper left corner of the picture, and how near; shape (K, 3).
+
+        The third coordinate is towards the eye, from the middle of what is seen, in pixels too.
+        """
         width, height = self.size
         unit = height / 2 / self.scale
         x = (points @ self.view.right - self.middle[0]) * unit + width / 2
         y = height / 2 - (points @ self.view.up - self.middle[1]) * unit
-        return np.stack([x, y], axis=-1)
+        z = (points @ self.view.towards_eye - self.middle[2]) * unit
+        return np.stack([x, y, z], axis=-1)
+
+    def heights(self, plotter: Any) -> FloatArray:
+        """Return the third coordinate of what a plotter, aimed and drawn, shows at each pixel; NaN where nothing."""
+        away = -np.asarray(plotter.get_image_depth(), dtype=np.float64)
+        return (self._distance - away) * self.size[1] / 2 / self.scale
+
+    @property
+    def _distance(self) -> float:
+        """Of the camera from the middle."""
+        return 4 * (self.scale + self.depth)
 
     def aim(self, plotter: Any) -> None:
         """Point the camera of a plotter."""
         view = self.view
         focus = self.middle[0] * view.right + self.middle[1] * view.up + self.middle[2] * view.towards_eye
-        distance = 4 * (self.scale + self.depth)
-        plotter.camera_position = [focus + distance * view.towards_eye, focus, view.up]
+        plotter.camera_position = [focus + self._distance * view.towards_eye, focus, view.up]
         plotter.enable_parallel_projection()
         plotter.camera.parallel_scale = self.scale
         plotter.reset_camera_clipping_range()

@@ -45,6 +45,7 @@ from .operations import insert_knots as insert_knots
 from .operations import map_domain as map_domain
 from .operations import reverse_u as reverse_u
 from .operations import reverse_v as reverse_v
+from .operations import split_v as split_v
 from .operations import swap_directions as swap_directions
 from .operations import transform as transform
 from .products import multiply as multiply

@@ -34,6 +34,8 @@ LONGEST_STEP = 1 / 16
 FARTHEST = 1e12
 # Below this part of the metric the distance does not bend; others as near are sought so far beside, in spans.
 FLAT, BESIDE = 1e-4, 1 / 32
+# Places on the line between two parameters that may be one pole.
+_BETWEEN = 7
 STEPS = 60
 HALVINGS = 40
 POLISHES = 3
@@ -66,7 +68,8 @@ def closest_point(shape: BSplineCurve | Surface, point: ArrayLike) -> ClosestPoi
 
     The boundary counts: the line to the nearest point need not be normal to the surface. Where several points are
     equally near, to 1e-10 of the size or to what distances round, each is returned, and so is a point of a seam with
-    both its parameters. Where infinitely many are, these are some of them, and `continuum` says so.
+    both its parameters; a pole has infinitely many, of which one is returned. Where infinitely many points are, these
+    are some of them, and `continuum` says so.
 
     Spans are halved, and parts that are proved to be farther away than a point that was found are left out, until
     parts of 1/64 of a span remain. From each lowest one of them Newton's method with bounds, Gauss-Newton where the
@@ -116,6 +119,7 @@ def closest_point(shape: BSplineCurve | Surface, point: ArrayLike) -> ClosestPoi
     parameters = np.where(at == 1, patches.high[patch], patches.low[patch] + at * (patches.high - patches.low)[patch])
     width = patches.high.max(axis=0) - patches.low.min(axis=0)
     chosen = _distinct(parameters, distances, width, tie)
+    chosen = _one_for_each_pole(shape, parameters, points * scale, chosen, SAME_PARAMETER * size * scale)
     found = parameters[chosen]
     return ClosestPoint(
         float(distances.min()) * scale,
@@ -191,9 +195,11 @@ def _starts(patches: _Patches, target: FloatArray, tie: float) -> tuple[IndexArr
             owner, cell = np.tile(owner, 2), np.tile(cell, (2, 1))
             cell[:, axis] = 2 * cell[:, axis] + np.repeat([0, 1], len(cell) // 2)
         level += 1
-    lowest = _local_minima(owner, cell, corners.min(axis=1))
+    nearest = corners.argmin(axis=1)
+    ends = euclidean(_corners(nets))[0].reshape(len(nets), -1, 3)[np.arange(len(nets)), nearest]
+    lowest = _local_minima(owner, cell, corners.min(axis=1), ends, tie)
     # From the nearest corner: what is found is then no farther than any corner that was looked at.
-    place = cell[lowest] + np.array(list(product((0, 1), repeat=d)))[corners[lowest].argmin(axis=1)]
+    place = cell[lowest] + np.array(list(product((0, 1), repeat=d)))[nearest[lowest]]
     starts = np.unique(np.column_stack([owner[lowest], place]), axis=0)
     return starts[:, 0], starts[:, 1:] / 2**level
 
@@ -201,15 +207,19 @@ def _starts(patches: _Patches, target: FloatArray, tie: float) -> tuple[IndexArr
 def _bounds(nets: FloatArray, target: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Return for each patch a distance that none of its points is nearer than, and those of its corners."""
     points = (euclidean(nets)[0] - target).reshape(len(nets), -1, 3)
-    ends = nets
-    for axis in range(1, nets.ndim - 1):
-        ends = np.take(ends, [0, -1], axis=axis)
-    corners = euclidean(ends)[0] - target
+    corners = euclidean(_corners(nets))[0] - target
     sight = corners.reshape(len(nets), -1, 3).mean(axis=1)
     length = np.linalg.norm(sight, axis=1)
     unit = sight / np.where(length > 0, length, 1.0)[:, None]
     bound = np.maximum(0.0, np.einsum("kid,kd->ki", points, unit).min(axis=1))
     return bound, np.linalg.norm(corners, axis=-1).reshape(len(nets), -1)
+
+
+def _corners(nets: FloatArray) -> FloatArray:
+    """Return the control points at the corners of patches, two along each axis."""
+    for axis in range(1, nets.ndim - 1):
+        nets = np.take(nets, [0, -1], axis=axis)
+    return nets
 
 
 def _halved(nets: FloatArray, axis: int) -> FloatArray:
@@ -221,17 +231,32 @@ def _halved(nets: FloatArray, axis: int) -> FloatArray:
     return np.asarray(halves.reshape(-1, *nets.shape[1:]))
 
 
-def _local_minima(owner: IndexArray, cell: IndexArray, nearest: FloatArray) -> IndexArray:
-    """Return the parts that are no farther than their neighbours on the same patch, the nearest first."""
+def _local_minima(owner: IndexArray, cell: IndexArray, nearest: FloatArray, ends: FloatArray, tie: float) -> IndexArray:
+    """Return the parts that are no farther than their neighbours on the same patch, the nearest first.
+
+    Of neighbours whose nearest corners `ends` are one point there is one: those around a pole would leave no place.
+    """
     places = {(k, *place): i for i, (k, place) in enumerate(zip(owner.tolist(), cell.tolist(), strict=True))}
     around = [step for step in product((-1, 0, 1), repeat=cell.shape[1]) if any(step)]
-    lowest = []
+
+    def beside(i: int) -> list[int]:
+        keys = ((int(owner[i]), *(cell[i] + step).tolist()) for step in around)
+        return [places[key] for key in keys if key in places]
+
+    lowest: list[int] = []
+    met: set[int] = set()
     for i in np.argsort(nearest, kind="stable").tolist():
-        beside = ((int(owner[i]), *(cell[i] + step).tolist()) for step in around)
-        if all(nearest[i] <= nearest[places[key]] for key in beside if key in places):
-            lowest.append(i)
+        if i in met or any(nearest[j] < nearest[i] for j in beside(i)):
+            continue
+        lowest.append(i)
         if len(lowest) == MOST_STARTS:
             break
+        front = [i]
+        while front:
+            near = np.array([j for j in beside(front.pop()) if j not in met], dtype=np.intp)
+            alike = near[np.abs(ends[near] - ends[i]).max(axis=1, initial=0.0) <= tie].tolist()
+            met.update(alike)
+            front += alike
     return np.array(lowest)
 
 
@@ -382,3 +407,26 @@ def _distinct(parameters: FloatArray, distances: FloatArray, width: FloatArray, 
         if (np.abs(parameters[chosen] - parameters[k]) > SAME_PARAMETER * width).any(axis=1).all():
             chosen.append(k)
     return sorted(chosen, key=lambda k: tuple(parameters[k].tolist()))
+
+
+def _one_for_each_pole(
+    shape: BSplineCurve | Surface, parameters: FloatArray, points: FloatArray, chosen: list[int], same: float
+) -> list[int]:
+    """Leave out what is one point with an earlier one all along the line between their parameters, as at a pole.
+
+    Two parameters of a seam are one point too, but the line between them leads around.
+    """
+    kept: list[int] = []
+    for k in chosen:
+        alike = [i for i in kept if np.abs(points[i] - points[k]).max() <= same]
+        if not any(_is_one_point(shape, parameters[i], parameters[k], points[k], same) for i in alike):
+            kept.append(k)
+    return kept
+
+
+def _is_one_point(
+    shape: BSplineCurve | Surface, first: FloatArray, last: FloatArray, point: FloatArray, same: float
+) -> bool:
+    """Tell whether all the line between two parameters is one point."""
+    between = first + (last - first) * (np.arange(1, _BETWEEN + 1) / (_BETWEEN + 1))[:, None]
+    return bool(np.abs(shape.evaluate(*between.T) - point).max() <= same)

@@ -1,10 +1,15 @@
-from .bases import EdgeBase as EdgeBase
 from .bases import edge_bases as edge_bases
 from .bases import paired_bases as paired_bases
+from .chain_edges import ResolvedChain as ResolvedChain
+from .chain_edges import members as members
+from .chain_measuring import StretchContact as StretchContact
+from .chain_measuring import measure_chain_contact as measure_chain_contact
+from .chain_measuring import worst_of as worst_of
 from .cuts import parse_cut as parse_cut
 from .drawn_faces import DrawnFace as DrawnFace
 from .drawn_faces import read_drawn as read_drawn
 from .drawn_faces import read_true_face as read_true_face
+from .edge_base import EdgeBase as EdgeBase
 from .edge_blends import blend_bases as blend_bases
 from .edge_blends import blend_edges as blend_edges
 from .edge_listing import edge_lines as edge_lines
@@ -13,10 +18,9 @@ from .edge_moving import moved_edges as moved_edges
 from .face_edges import FaceEdge as FaceEdge
 from .face_edges import FaceEdges as FaceEdges
 from .face_edges import ResolvedEdge as ResolvedEdge
+from .face_edges import is_near as is_near
 from .face_edges import is_of_a_face as is_of_a_face
 from .face_edges import list_edges as list_edges
-from .face_edges import resolve_edge as resolve_edge
-from .face_edges import resolve_edges as resolve_edges
 from .face_meshes import EdgeLine as EdgeLine
 from .face_meshes import FaceMesh as FaceMesh
 from .free_contact import FreeContact as FreeContact
@@ -29,3 +33,7 @@ from .place import PlaceSide as PlaceSide
 from .places import find_places as find_places
 from .replacing import ReplacedPair as ReplacedPair
 from .replacing import replaced_pair as replaced_pair
+from .resolving import Resolved as Resolved
+from .resolving import check_edge_word as check_edge_word
+from .resolving import resolve_edge as resolve_edge
+from .resolving import resolve_edges as resolve_edges

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import shlex
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from math import floor, log10
 
 from semispline.solver.errors import EdgeError
 from semispline.solver.topology.between import Between
+from semispline.solver.topology.contact_words import beyond, contact_word, has_exact_bases, linked
 from semispline.solver.topology.half_edges import EdgeGraph
-from semispline.solver.topology.place import Place
+from semispline.solver.topology.place import Place, PlaceSide
 from semispline.solver.topology.relations import Relations
 from semispline.solver.topology.replacing import pair_of
 
@@ -19,7 +20,7 @@ _OF_CLEARANCE = 1 / 3
 
 
 def with_commands(graph: EdgeGraph, relations: Relations, place: Place, betweens: Mapping[int, Between]) -> Place:
-    """Return a place with its commands; a chain has those of its members, one by one.
+    """Return a place with its commands; a chain that is no single blend has those of its members, one by one.
 
     Parameters
     ----------
@@ -29,11 +30,57 @@ def with_commands(graph: EdgeGraph, relations: Relations, place: Place, betweens
     betweens : dict
         Face -> how it lies between the faces that are to be blended.
     """
+    words = _words(graph, relations, place, betweens)
+    if words is not None:
+        return replace(place, commands=(_between_chains(graph.path, place, words),))
     if not place.faces:
-        return replace(place, commands=(_two_faces(graph.path, place),))
+        return replace(place, commands=tuple(two_faces(graph.path, place)))
     edges = (_edges_to_name(graph, relations, betweens[face]) for face in place.faces)
     commands = (replacing(graph.path, face, names) for face, names in zip(place.faces, edges, strict=True))
     return replace(place, commands=tuple(commands))
+
+
+def _words(
+    graph: EdgeGraph, relations: Relations, place: Place, betweens: Mapping[int, Between]
+) -> tuple[str, str] | None:
+    """Return the words for both sides of a place, where one of them has several edges and both are one run each."""
+    sides: list[list[int]]
+    if place.kind == "gap":
+        sides = [_rows(graph, side) for side in (place.a, place.b)]
+        runs = [linked(graph, relations, side) for side in sides]
+        if max(map(len, sides)) == 1 or [len(x) for x in runs] != [1, 1]:
+            return None
+        found = [run[0] for run in runs]
+    elif place.faces:
+        members = [betweens[face] for face in place.faces]
+        uses = [use for member in members for side in (member.a, member.b) for use in side.uses]
+        rows = beyond(relations, uses)
+        if rows is None or len(rows) <= 2:
+            return None
+        found = linked(graph, relations, rows)
+        if len(found) != 2:
+            return None
+        first = beyond(relations, members[0].a.uses) or ()
+        if first and first[0] in found[1]:
+            found = found[::-1]
+    else:
+        return None
+    if not has_exact_bases(graph, [row for run in found for row in run]):
+        return None
+    return contact_word(graph, relations, found[0]), contact_word(graph, relations, found[1])
+
+
+def _rows(graph: EdgeGraph, side: PlaceSide) -> list[int]:
+    """Return the uses along a side."""
+    return [graph.uses.of_face(face).start + int(edge[1:]) for face, edge in ((side.face, side.edge), *side.more)]
+
+
+def _between_chains(path: str, place: Place, words: tuple[str, str]) -> str:
+    """Return the command that blends two chains of edges of a file."""
+    file = _safe(path)
+    name = "-".join(map(str, place.faces[:1] or (place.a.face, place.b.face)))
+    out = f"{place.kind.replace(' ', '-') if not place.faces else 'blend'}-{name}.step"
+    return shlex.join(["semispline", "blend", file, file, "--edge-a", words[0], "--edge-b", words[1], "-o", out])
 
 
 def replacing(path: str, face: int, edges: tuple[str, str] | None = None) -> str:
@@ -62,14 +109,19 @@ def _edges_to_name(graph: EdgeGraph, relations: Relations, between: Between) -> 
     return graph.uses.name(rows[0]), graph.uses.name(rows[1])
 
 
-def _two_faces(path: str, place: Place) -> str:
-    a, b = place.a, place.b
-    words = ["semispline", "blend", f"{_safe(path)}#{a.face}", f"{_safe(path)}#{b.face}"]
-    words += ["--edge-a", a.edge, "--edge-b", b.edge]
+def two_faces(path: str, place: Place) -> Iterator[str]:
+    """Yield the command of two edges; of a gap with as many on both sides, of each edge and the one that faces it."""
+    sides = [[(side.face, side.edge), *side.more] for side in (place.a, place.b)]
+    cuts: list[str] = []
     if place.kind == "sharp edge":
         distance = f"{_two_digits(place.measures['clearance'] * _OF_CLEARANCE):g}"
-        words += ["--cut-a", distance, "--cut-b", distance]
-    return shlex.join([*words, "-o", f"{place.kind.partition(' ')[0]}-{a.face}-{b.face}.step"])
+        cuts = ["--cut-a", distance, "--cut-b", distance]
+    for a, b in zip(*sides, strict=True) if len(sides[0]) == len(sides[1]) else [(sides[0][0], sides[1][0])]:
+        words = ["semispline", "blend", *(f"{_safe(path)}#{face}" for face, _ in (a, b))]
+        words += ["--edge-a", a[1], "--edge-b", b[1], *cuts]
+        # Two faces may have several edges in common.
+        out = "-".join([place.kind.partition(" ")[0], *(f"{face}{edge}" for face, edge in (a, b))])
+        yield shlex.join([*words, "-o", f"{out}.step"])
 
 
 def _safe(path: str) -> str:

@@ -14,6 +14,7 @@ from math import isfinite
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.integrate import fixed_quad
 from scipy.interpolate import make_interp_spline
 from scipy.optimize import brentq
@@ -32,8 +33,8 @@ _PARAMETER = re.compile(r"([uv])=(.+)")
 _PATHS, _PLACES, _DEGREE = 41, 161, 5
 # More places where these are too few: the curve between them may be off by this share of what a gap may be.
 _MOST_PLACES, _SHARE, _NEWTON = 2600, 0.1, 4
-# Bisections to the end of a free contact: the step is far below any tolerance.
-_HALVINGS = 40
+# Divisions to the end of a free contact, and parts of each: 40 bisections' worth, a step far below any tolerance.
+_DIVISIONS, _PARTS = 8, 32
 # Of the range of a parameter: what is nearer to an end means the end.
 _SNAP = 1e-9
 # Of the size of a face: what is farther is hardly in it; where one begins to look how far it goes, and how closely.
@@ -187,20 +188,20 @@ class _Curve:
         at, slope = (self.spline.evaluate(x, order)[:, :2] for order in (0, 1))
         return paths_from(face, at, slope, self.sign, distance)
 
-    def runs_out(self, face: Face, x: float, distance: float, outline: Outline) -> bool:
-        """Tell whether a path comes to an edge of the face at an end of this one first."""
-        return bool(crossings(self.paths(face, np.array([x]), distance), outline.ends).min(initial=np.inf) <= distance)
+    def run_out(self, face: Face, x: FloatArray, distance: float, outline: Outline) -> NDArray[np.bool_]:
+        """Tell which paths come to an edge of the face at an end of this one first."""
+        met = crossings(self.paths(face, x, distance), outline.ends).min(axis=0, initial=np.inf)
+        return np.asarray(met <= distance)
 
     def end_inside(self, face: Face, inside: float, outside: float, distance: float, outline: Outline) -> float:
         """Return the last place, towards an end, whose path stays inside."""
-        if not self.runs_out(face, outside + _SNAP * (inside - outside), distance, outline):
+        if not self.run_out(face, np.array([outside + _SNAP * (inside - outside)]), distance, outline)[0]:
             return outside
-        for _ in range(_HALVINGS):
-            middle = (inside + outside) / 2
-            if self.runs_out(face, middle, distance, outline):
-                outside = middle
-            else:
-                inside = middle
+        # Many paths at once take little longer than one.
+        for _ in range(_DIVISIONS):
+            x = np.linspace(inside, outside, _PARTS + 1)
+            first = int(np.argmax(np.append(self.run_out(face, x[1:-1], distance, outline), True)))
+            inside, outside = float(x[first]), float(x[first + 1])
         return inside
 
 
@@ -416,8 +417,7 @@ def _inside(face: Face, curve: _Curve, distance: float, outline: Outline) -> tup
     if curve.closed:
         return start, end
     inside = start + (np.arange(_PATHS) + 0.5) / _PATHS * (end - start)
-    ran_out = crossings(curve.paths(face, inside, distance), outline.ends).min(axis=0, initial=np.inf) <= distance
-    kept = inside[~ran_out]
+    kept = inside[~curve.run_out(face, inside, distance, outline)]
     return (
         curve.end_inside(face, float(kept[0]), start, distance, outline),
         curve.end_inside(face, float(kept[-1]), end, distance, outline),

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any, Literal
 
-from semispline.solver.blending import BandContact, BlendResult, blend
-from semispline.solver.errors import ComputationError, ContactError
+from semispline.solver.blending import BandContact, BlendResult, ChainContact, blend
+from semispline.solver.errors import ComputationError, ContactError, EdgeError
 from semispline.solver.judge import (
     Base,
     Contact,
@@ -17,9 +17,12 @@ from semispline.solver.judge import (
     measure_face_contact,
 )
 from semispline.solver.options import BlendOptions, Continuity, named_options
-from semispline.solver.topology.bases import EdgeBase, edge_bases, paired_bases
+from semispline.solver.topology.bands import Band
+from semispline.solver.topology.bases import edge_bases, paired_bases
+from semispline.solver.topology.chain_edges import ResolvedChain
+from semispline.solver.topology.edge_base import EdgeBase
 from semispline.solver.topology.edge_limits import default_limits, face_limits
-from semispline.solver.topology.face_edges import ResolvedEdge
+from semispline.solver.topology.face_edges import ResolvedEdge, split_part
 from semispline.solver.topology.trim_curves import TrimCurve
 
 # What `BandContact` calls the measures of `FaceContact`.
@@ -31,15 +34,16 @@ _SHORT = {
 
 
 def blend_edges(
-    a: ResolvedEdge, b: ResolvedEdge, options: BlendOptions | None = None, **named: Any
+    a: ResolvedEdge | ResolvedChain, b: ResolvedEdge | ResolvedChain, options: BlendOptions | None = None, **named: Any
 ) -> tuple[BlendResult, ...]:
     """Blend an edge of a face with another, of whatever kind: one blend, or one for each part of a free curve.
 
-    A free curve is cut at its corners and where the face's curvature jumps across it.
+    A free curve is cut at its corners and where the face's curvature jumps across it. Edges that run end to end are
+    one base.
 
     Parameters
     ----------
-    a, b : ResolvedEdge
+    a, b : ResolvedEdge or ResolvedChain
         As `resolve_edge` returns them.
     options : BlendOptions, optional
         Or its fields by name, as `blend` has them.
@@ -70,32 +74,43 @@ def blend_bases(a: EdgeBase, b: EdgeBase, options: BlendOptions, *, several: boo
 
     Messages name the parts where there are several.
     """
-    through_band = a.band is not None or b.band is not None
     try:
-        # To a band contact is as exact as to any base.
-        result = blend(a.base, b.base, replace(options, limits="exact") if through_band else options)
-        contacts = [_band_contact(result, side, which, options) for which, side in (("a", a), ("b", b))]
-        if options.limits == "cad" and not through_band:
-            result = replace(
-                result,
-                contact_a=_in_unit(result.contact_a, a, "a"),
-                contact_b=_in_unit(result.contact_b, b, "b"),
-            )
+        result = blend(a.base, b.base, _for_bands(options, [*a.parts, *b.parts], chained=bool(a.members or b.members)))
+        if options.limits == "cad" and not any(part.band for part in (*a.parts, *b.parts)):
+            contact_a, contact_b = _in_unit(result.contact_a, a, "a"), _in_unit(result.contact_b, b, "b")
+            result = replace(result, contact_a=contact_a, contact_b=contact_b)
+        band_a, band_b = (
+            None if side.band is None else _band_contact(result, side, side.band, edge, options)
+            for side, edge in ((a, "u0"), (b, "u1"))
+        )
+        chain_a, chain_b = (
+            None if met is None else _with_bands(result, met, side, edge, options)
+            for met, side, edge in ((result.chain_a, a, "u0"), (result.chain_b, b, "u1"))
+        )
     except ComputationError as error:
         if several:
             raise type(error)(f"{a.name} to {b.name}: {error}") from None
         raise
+    except EdgeError as error:
+        if not (a.members or b.members):
+            raise
+        raise EdgeError(f"{a.name} to {b.name}: {error}; blend the edges one by one") from None
+    contacts = [band_a, band_b, *(face.band for met in (chain_a, chain_b) if met is not None for face in met.faces)]
     return replace(
         result,
         edges=(a.name, b.name),
         options=replace(result.options, limits=_said(options, contacts)),
-        band_a=contacts[0],
-        band_b=contacts[1],
+        band_a=band_a,
+        band_b=band_b,
+        chain_a=chain_a,
+        chain_b=chain_b,
     )
 
 
 def _in_unit(contact: Contact, side: EdgeBase, which: str) -> Contact:
     """Return a contact within cad limits whose gap is held to 0.001 mm too: `blend` knows of no unit."""
+    if not isinstance(side.base, Base):
+        return contact
     length = edge_length(side.base)
     wide, gap = cad_measures(length)["gap"], cad_measures(length, side.millimetres)["gap"]
     if contact.allowed["gap"] > wide or gap == wide:
@@ -105,6 +120,33 @@ def _in_unit(contact: Contact, side: EdgeBase, which: str) -> Contact:
     return replace(contact, allowed=contact.allowed | {"gap": gap})
 
 
+def _for_bands(options: BlendOptions, parts: Sequence[EdgeBase], *, chained: bool) -> BlendOptions:
+    """Return the options for a blend with bands: to these contact is as exact as to any base.
+
+    Bands of one chain meet within the limits to which they were fitted.
+    """
+    bands = [part.band for part in parts if part.band is not None]
+    if not bands:
+        return options
+    return replace(options, limits="cad" if chained and not all(band.is_plane for band in bands) else "auto")
+
+
+def _with_bands(
+    result: BlendResult, met: ChainContact, side: EdgeBase, edge: str, options: BlendOptions
+) -> ChainContact:
+    """Return how a blend meets a chain, with the faces of bands measured themselves."""
+    parts = {part.name: part for part in side.parts}
+    faces = []
+    for face in met.faces:
+        part, (low, high) = parts.get(face.edge, side), face.range
+        if part.band is None:
+            faces.append(face)
+        else:
+            band = _band_contact(result, part, part.band, f"{edge}[{low!r},{high!r}]", options)
+            faces.append(replace(face, band=band))
+    return replace(met, faces=tuple(faces))
+
+
 def _said(options: BlendOptions, contacts: Sequence[BandContact | None]) -> Literal["exact", "cad"]:
     """Return the wider limits that were used."""
     if options.limits != "auto":
@@ -112,18 +154,18 @@ def _said(options: BlendOptions, contacts: Sequence[BandContact | None]) -> Lite
     return "cad" if any(x is not None and x.limits == "cad" for x in contacts) else "exact"
 
 
-def _band_contact(result: BlendResult, side: EdgeBase, which: str, options: BlendOptions) -> BandContact | None:
-    """Measure how a blend meets the face of a band, and refuse what misses its limits."""
-    band, curve = side.band, side.curve
-    if band is None or curve is None:
-        return None
+def _band_contact(result: BlendResult, side: EdgeBase, band: Band, edge: str, options: BlendOptions) -> BandContact:
+    """Measure how an edge of a blend meets the face of a band, and refuse what misses its limits."""
+    curve = side.curve
+    assert curve is not None
+    which = "a" if edge.startswith("u0") else "b"
     wanted = options.continuities["ab".index(which)]
-    own = Base(result.surface, "u0" if which == "a" else "u1")
+    own = Base(result.surface, edge)
     order = max(2, int(wanted[1]))
     contact = measure_face_contact(own, curve.free_edge(band.source), order=order)
     kind = default_limits(curve) if options.limits == "auto" else options.limits
     allowed = face_limits(curve, own, kind, length=band.length, smoothed_by=band.smoothed_by, order=order)
-    title = curve.name if side.name == curve.word else f"{side.name}, part of {curve.name}"
+    title = curve.name if split_part(side.name)[1] is None else f"{side.name}, part of {curve.name}"
     for name, value, limit in face_shortfalls(contact, allowed, wanted):
         x, y, z = contact.at[name].point
         raise ContactError(

@@ -11,6 +11,7 @@ import numpy as np
 from semispline.solver.errors import EdgeError
 from semispline.solver.io import MILLIMETRES, LoadedSurface, in_one_unit, read_surfaces, split_spec
 from semispline.solver.splines import BSplineSurface, bounding_box, parse_edge
+from semispline.solver.topology.chain_names import names_several
 from semispline.solver.topology.cuts import Cut, MovedContact, moved_contact, parse_cut
 from semispline.solver.topology.edge_names import LINE, line_tolerance
 from semispline.solver.topology.face_edges import (
@@ -19,7 +20,6 @@ from semispline.solver.topology.face_edges import (
     edge_of_use,
     is_of_a_face,
     only_face,
-    resolve_edge,
     resolved_use,
     row_of,
 )
@@ -27,6 +27,7 @@ from semispline.solver.topology.half_edges import NONE
 from semispline.solver.topology.measuring import MeasuredEdges, measured_edges
 from semispline.solver.topology.outlines import border, curved_edges, outline_of
 from semispline.solver.topology.relations import relate
+from semispline.solver.topology.resolving import resolve_edge
 from semispline.solver.topology.trim_curves import TrimCurve, read_trim_curves
 
 _NAMES = ("A", "B")
@@ -102,10 +103,13 @@ def _wanted(read: Callable[[str], MeasuredEdges], name: str, spec: str, word: st
     if word is None:
         raise EdgeError(f"{option}: found one edge of two, expected both, or none where the faces share an edge")
     word, wanted = word.strip(), None if cut is None else parse_cut(cut, f"--cut-{name.lower()}")
+    if names_several(word):
+        raise EdgeError(f"{option}: found {word!r} together with --cut-a or --cut-b, expected one edge")
     if not is_of_a_face(word):
         return _Wanted(name, spec, word, wanted)
     if not word.startswith("e"):
         at = resolve_edge(spec, word, option)
+        assert isinstance(at, ResolvedEdge)
         assert at.entry is not None
         spec, word = at.spec, at.entry.name
     path, face = split_spec(spec)

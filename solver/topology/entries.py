@@ -7,13 +7,16 @@ from dataclasses import dataclass
 from math import prod
 
 import numpy as np
+from scipy.optimize import linear_sum_assignment
+from scipy.spatial.distance import cdist
 
+from semispline.solver.arrays import FloatArray
 from semispline.solver.topology.between import Between
 from semispline.solver.topology.chamfers import Chamfer, chamfer_parts
 from semispline.solver.topology.clearance import clearance
 from semispline.solver.topology.fillets import bases_of, score_parts
 from semispline.solver.topology.gaps import Gap, gap_parts
-from semispline.solver.topology.half_edges import NONE, EdgeGraph
+from semispline.solver.topology.half_edges import NONE, EdgeGraph, Integers, Uses
 from semispline.solver.topology.place import Place, PlaceSide
 from semispline.solver.topology.relations import Relations
 from semispline.solver.topology.sides import Side
@@ -70,7 +73,7 @@ def chain_entry(graph: EdgeGraph, relations: Relations, members: Sequence[Betwee
 def gap_entry(graph: EdgeGraph, gap: Gap) -> Entry:
     """Return the place of a gap."""
     parts = gap_parts(gap)
-    a, b = (_naked_side(graph, side) for side in (gap.a, gap.b))
+    a, b = _naked_sides(graph, gap)
     measures = {
         "length": gap.length,
         "width": gap.width,
@@ -149,13 +152,48 @@ def _beyond(graph: EdgeGraph, relations: Relations, side: Side) -> PlaceSide:
     return PlaceSide(*first, more=tuple(others))
 
 
-def _naked_side(graph: EdgeGraph, side: Side) -> PlaceSide:
-    """Return the longest edge of a side of a hole, and the others."""
+def _naked_sides(graph: EdgeGraph, gap: Gap) -> tuple[PlaceSide, PlaceSide]:
+    """Return both sides of a gap, of each the edge that is named first: the longest of the side with more edges.
+
+    The first edges face each other. Of as many edges on both sides all do, one by one; else those of a side follow in
+    the order of their lengths.
+    """
     uses = graph.uses
-    length = np.linalg.norm(np.diff(uses.points[list(side.uses)], axis=1), axis=2).sum(axis=1)
-    first, *others = [side.uses[i] for i in np.argsort(-length, kind="stable")]
-    more = tuple((int(uses.face[row]), uses.name(row)) for row in others)
-    return PlaceSide(int(uses.face[first]), uses.name(first), more)
+    lines = [uses.points[list(side.uses)] for side in (gap.a, gap.b)]
+    order_a, order_b = (
+        np.argsort(-np.linalg.norm(np.diff(x, axis=1), axis=2).sum(axis=1), kind="stable") for x in lines
+    )
+    if max(len(order_a), len(order_b)) > 1:
+        apart = _apart(*lines)
+        if len(order_a) == len(order_b):
+            order_b = linear_sum_assignment(apart)[1][order_a]
+        elif len(order_a) > len(order_b):
+            order_b = _with_first(order_b, int(np.argmin(apart[order_a[0]])))
+        else:
+            order_a = _with_first(order_a, int(np.argmin(apart[:, order_b[0]])))
+    a, b = ([side.uses[k] for k in order] for side, order in ((gap.a, order_a), (gap.b, order_b)))
+    return _side_of(uses, a), _side_of(uses, b)
+
+
+def _apart(a: FloatArray, b: FloatArray) -> FloatArray:
+    """Return how far edges lie apart, of every second sample the mean to the nearest of the other; shape (n_a, n_b).
+
+    Parameters
+    ----------
+    a, b : ndarray, shapes (n_a, N, 3) and (n_b, N, 3)
+    """
+    a, b = a[:, ::2], b[:, ::2]
+    away = cdist(a.reshape(-1, 3), b.reshape(-1, 3)).reshape(*a.shape[:2], *b.shape[:2])
+    return np.asarray(away.min(axis=3).mean(axis=1) + away.min(axis=1).mean(axis=2))
+
+
+def _with_first(order: Integers, first: int) -> Integers:
+    return np.concatenate([[first], order[order != first]])
+
+
+def _side_of(uses: Uses, rows: Sequence[int]) -> PlaceSide:
+    (face, edge), *more = [(int(uses.face[row]), uses.name(row)) for row in rows]
+    return PlaceSide(face, edge, tuple(more))
 
 
 def _kinds(graph: EdgeGraph, *faces: int) -> tuple[str, ...]:

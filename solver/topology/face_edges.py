@@ -9,12 +9,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from semispline.solver.errors import EdgeError, FileError
-from semispline.solver.io import LoadedSurface, in_one_unit, read_surfaces, split_spec
-from semispline.solver.splines import Surface, parse_edge
+from semispline.solver.io import LoadedSurface, read_surfaces, split_spec
+from semispline.solver.splines import Surface
 from semispline.solver.topology.edge_names import EdgeKind, line_tolerance, named_edge
 from semispline.solver.topology.half_edges import NONE, EdgeGraph
 from semispline.solver.topology.measuring import MeasuredEdges, measured_edges
-from semispline.solver.topology.near import NEAR, nearest_edge, point_of
+from semispline.solver.topology.near import NEAR
 from semispline.solver.topology.relations import relate
 
 if TYPE_CHECKING:
@@ -147,9 +147,14 @@ class ResolvedEdge:
         return split_part(self.edge)[1]
 
 
+def is_near(word: str) -> bool:
+    """Tell whether a word names an edge by a point."""
+    return word.strip().startswith(NEAR)
+
+
 def is_of_a_face(word: str) -> bool:
     """Tell whether a word names an edge of a face in a file: e3, e3[0], near=x,y,z."""
-    return bool(_OF_A_FACE.fullmatch(split_part(word)[0])) or word.strip().startswith(NEAR)
+    return bool(_OF_A_FACE.fullmatch(split_part(word)[0])) or is_near(word)
 
 
 def split_part(word: str) -> tuple[str, int | None]:
@@ -180,79 +185,6 @@ def list_edges(path: str | Path, face: int) -> FaceEdges:
     return _edges_of(measured, face, loaded)
 
 
-def resolve_edge(spec: str | Path, word: str, name: str = "edge") -> ResolvedEdge:
-    """Return the surface and the name of an edge that is named as in a file.
-
-    Parameters
-    ----------
-    spec : str
-        PATH, or PATH#N.
-    word : str
-        "e3", "near=x,y,z", "e3[0]" (of a free curve the part up to the first place where bands are cut), or a name that
-        `Base` knows, which is returned as it is.
-    name : str
-        What messages call the word.
-
-    Raises
-    ------
-    EdgeError
-        No such edge, a point, none near the point or several; a part of what is no free curve.
-    FileError, ComputationError
-        As `read_surface` and `list_edges`.
-    """
-    (found,) = resolve_edges([(str(spec), word)], [name])
-    return found
-
-
-def resolve_edges(
-    edges: Sequence[tuple[str, str]], names: Sequence[str] = ("--edge-a", "--edge-b")
-) -> list[ResolvedEdge]:
-    """Return what `resolve_edge` does for the edges of a blend, each file read once; all in one unit.
-
-    Two points in one file without numbers of faces are two clicks: they say which face lies between, and the bases are
-    the faces beyond; the same edge twice is a sharp edge with its two faces.
-    """
-    words = [word.strip() for _, word in edges]
-    asked = [is_of_a_face(word) for word in words]
-    for word, special, name in zip(words, asked, names, strict=True):
-        if word.startswith(NEAR):
-            point_of(word, name)
-        elif not special:
-            parse_edge(word, name)
-    specs = [spec for spec, _ in edges]
-    measured = _measured(specs, words)
-    rows: list[int | None] = [None] * len(edges)
-    said = [""] * len(edges)
-    picked = [split_spec(spec) for spec in specs]
-    for k, (path, number) in enumerate(picked):
-        if not asked[k]:
-            continue
-        graph = measured[path].graph
-        if words[k].startswith(NEAR):
-            where = path if number is None else f"{path}#{number}"
-            rows[k], _, said[k] = nearest_edge(
-                graph, f"{names[k]} {words[k]}", measured[path].nearest[words[k], number], where
-            )
-        else:
-            rows[k] = row_of(graph, split_part(words[k])[0], only_face(graph, number, path), names[k])
-    _take_faces(rows, picked, words, measured, names)
-    faces = [
-        number if row is None else int(measured[path].graph.uses.face[row])
-        for (path, number), row in zip(picked, rows, strict=True)
-    ]
-    full = [spec if n is None else f"{path}#{n}" for spec, (path, _), n in zip(specs, picked, faces, strict=True)]
-    own = _in_own_units(full, [path for path, _ in picked])
-    found = []
-    for k, (path, _) in enumerate(picked):
-        loaded, row, face = own[k], rows[k], faces[k]
-        if row is None or face is None:
-            found.append(ResolvedEdge(full[k], loaded, str(parse_edge(words[k], names[k]))))
-            continue
-        found.append(resolved_use(measured[path], row, full[k], loaded, words[k], names[k], said[k]))
-    same = in_one_unit([one.loaded for one in found])
-    return [replace(one, loaded=loaded) for one, loaded in zip(found, same, strict=True)]
-
-
 def resolved_use(
     measured: MeasuredEdges, row: int, spec: str, loaded: LoadedSurface, word: str, name: str, near: str = ""
 ) -> ResolvedEdge:
@@ -270,76 +202,6 @@ def edge_of_use(measured: MeasuredEdges, row: int, loaded: LoadedSurface) -> Fac
     """Return what is known of an edge of a face whose surface is read."""
     uses = measured.graph.uses
     return _edges_of(measured, int(uses.face[row]), loaded).edges[int(uses.number[row])]
-
-
-def _in_own_units(specs: Sequence[str], paths: Sequence[str]) -> list[LoadedSurface]:
-    """Return the surfaces, each in the unit of its own file, as its edges are."""
-    found: dict[int, LoadedSurface] = {}
-    for path in dict.fromkeys(paths):
-        here = [k for k, other in enumerate(paths) if other == path]
-        found |= dict(zip(here, read_surfaces([specs[k] for k in here]), strict=True))
-    return [found[k] for k in range(len(specs))]
-
-
-def _measured(specs: Sequence[str], words: Sequence[str]) -> dict[str, MeasuredEdges]:
-    """Return the edges of each file of which a word speaks."""
-    wanted: dict[str, list[tuple[str, int | None]]] = {}
-    for spec, word in zip(specs, words, strict=True):
-        path, number = split_spec(spec)
-        if is_of_a_face(word):
-            wanted.setdefault(path, []).append((word, number))
-    return {
-        path: measured_edges(path, near=[key for key in keys if key[0].startswith(NEAR)])
-        for path, keys in wanted.items()
-    }
-
-
-def _take_faces(
-    rows: list[int | None],
-    picked: Sequence[tuple[str, int | None]],
-    words: Sequence[str],
-    measured: dict[str, MeasuredEdges],
-    names: Sequence[str],
-) -> None:
-    """Choose, for points in a file without a number, which face of their edge is meant; rows are changed."""
-    open_ones = [k for k, (_, number) in enumerate(picked) if number is None and words[k].startswith(NEAR)]
-    if len(open_ones) == 2 and picked[0][0] == picked[1][0]:
-        graph = measured[picked[0][0]].graph
-        first, second = (_uses_of_edge(graph, rows[k]) for k in open_ones)
-        pair = _beyond(graph, first, second)
-        if pair is not None:
-            rows[:] = pair
-            return
-    for k in open_ones:
-        graph = measured[picked[k][0]].graph
-        both = _uses_of_edge(graph, rows[k])
-        if len(both) > 1:
-            shown = " or ".join(f"{picked[k][0]}#{graph.uses.face[row]}" for row in both)
-            raise EdgeError(
-                f"{names[k]} {words[k]}: the edge lies between faces; say which is meant: {shown}, or give two points "
-                "whose edges bound one face: those beyond it are blended"
-            )
-
-
-def _beyond(graph: EdgeGraph, first: Sequence[int], second: Sequence[int]) -> list[int] | None:
-    """Return the uses by the faces beyond the one that two edges have in common; None where there is no such face."""
-    face = graph.uses.face
-    if set(first) == set(second):
-        return list(first) if len({int(face[row]) for row in first}) == 2 else None
-    shared = {int(face[row]) for row in first} & {int(face[row]) for row in second}
-    if len(shared) != 1:
-        return None
-    (between,) = shared
-    pair = [[row for row in uses if face[row] != between] for uses in (first, second)]
-    return [pair[0][0], pair[1][0]] if all(len(beyond) == 1 for beyond in pair) else None
-
-
-def _uses_of_edge(graph: EdgeGraph, row: int | None) -> list[int]:
-    """Return the use and that of the neighbour."""
-    assert row is not None
-    partner = int(relate(graph).partner[row])
-    twin = int(graph.uses.twin[row])
-    return [row, *(x for x in (partner, twin) if x != NONE)]
 
 
 def only_face(graph: EdgeGraph, number: int | None, path: str) -> int:

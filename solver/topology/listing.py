@@ -13,7 +13,7 @@ from semispline.solver.topology.place import KINDS, Place, Places
 _PRINTED = 20
 _PLURALS = {
     "fillet": "fillets: faces that can be blended anew between the faces beyond",
-    "chain": "chains of fillets: no single blend; each command replaces one of the faces",
+    "chain": "chains of fillets: blended anew together, or one by one where their sides are no chains",
     "gap": "gaps: free edges that face each other",
     "chamfer": "chamfers: faces between two sharp edges",
     "round end": "round ends: faces that turn by more than 150 degrees, as half a hole does",
@@ -52,6 +52,7 @@ def place_lines(places: Places) -> Iterator[str]:
             yield line
             if number:
                 yield from (f"    {command}" for command in found[number - 1].commands)
+                yield from (f"    # {left}" for left in _left_out(found[number - 1]))
         if len(found) > _PRINTED:
             yield f"and {len(found) - _PRINTED} more; --json has all"
     if places.found and places.counts:
@@ -106,6 +107,19 @@ def _row(place: Place) -> list[str]:
     sense = [("convex" if place.measures["convex"] else "concave")] if place.kind == "sharp edge" else []
     parts = ", ".join(f"{name.replace('_', ' ')} {value:.2f}" for name, value in place.parts.items() if value < _ONE)
     return [*between, *sides, *figures, *sense, f"{1 + len(place.repeats)}", f"{place.score:.2f}", parts]
+
+
+def _left_out(place: Place) -> Iterator[str]:
+    """Yield, of a gap whose sides have different numbers of edges, those that its command does not name.
+
+    A chain names them all: it says the faces with its edges, not with the files.
+    """
+    names_faces = any("#" in command for command in place.commands)
+    if place.kind == "gap" and names_faces and len(place.a.more) != len(place.b.more):
+        for name, side in (("A", place.a), ("B", place.b)):
+            if side.more:
+                others = ", ".join(f"#{face} {edge}" for face, edge in side.more)
+                yield f"one edge of several: side {name} goes on in {others}"
 
 
 def aligned(rows: Sequence[Sequence[str]]) -> Iterator[str]:

@@ -21,6 +21,8 @@ _STEPS = 40
 _NEWTON = 3
 # Of the domain: so far an edge may lie outside. Chords of steps are shorter by some of the second part where it bends.
 _OUTSIDE, _UNEVEN = 1e-3, 0.1
+# Of the range of a parameter: a step that is no longer changes nothing.
+_ROUNDING = 4 * float(np.finfo(np.float64).eps)
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,7 +100,10 @@ def _foot(face: Face, at: FloatArray, point: FloatArray) -> tuple[FloatArray, Je
     for _ in range(_NEWTON):
         jet = face.jet(at, 2)
         away = point - jet[0, 0]
-        at = at + parameters_of(jet, away, away)
+        step = parameters_of(jet, away, away)
+        at = at + step
+        if (np.abs(step) <= _ROUNDING * face.widths).all():
+            return at, jet
     return at, face.jet(at, 2)
 
 

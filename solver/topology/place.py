@@ -17,9 +17,11 @@ class PlaceSide:
     face : int
         The face to blend: N of `PATH#N`.
     edge : str
-        Its longest edge along the place, as `semispline list PATH --edges N` names it.
+        Its longest edge along the place, as `semispline list PATH --edges N` names it; of a gap with more edges on the
+        other side that which faces the longest there.
     more : tuple of (int, str)
-        Other faces and edges along the same side.
+        Other faces and edges along the same side. Of a gap with as many edges on both sides those of A and B face
+        each other one by one.
     """
 
     face: int

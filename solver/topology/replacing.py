@@ -13,6 +13,7 @@ from pathlib import Path
 from semispline.solver.errors import EdgeError
 from semispline.solver.io import LoadedSurface, read_surfaces
 from semispline.solver.topology.between import Between, measure, meet_in_a_corner
+from semispline.solver.topology.contact_words import beyond, contact_word, linked
 from semispline.solver.topology.face_edges import ResolvedEdge, check_face, resolved_use, row_of
 from semispline.solver.topology.half_edges import NONE, EdgeGraph
 from semispline.solver.topology.measuring import MeasuredEdges, measured_edges
@@ -217,7 +218,12 @@ def _no_base(graph: EdgeGraph, relations: Relations, side: Side) -> str:
     names = ", ".join(uses.name(row) for row in side.uses)
     title = f"{names} of {graph.path}#{uses.face[side.uses[0]]}"
     if len(side.uses) > 1:
-        return f"{title}: several edges, of which --edge-a or --edge-b takes one"
+        rows = beyond(relations, side.uses)
+        runs = [] if rows is None else linked(graph, relations, rows)
+        said = f"{title}: several edges, of which --edge-a or --edge-b takes one"
+        if len(runs) != 1:
+            return said
+        return f"{said}; without --replace all of them are {contact_word(graph, relations, runs[0])}"
     row = side.uses[0]
     if uses.degenerate[row]:
         return f"{title} is a point"

@@ -16,7 +16,7 @@ from scipy.spatial import cKDTree
 from semispline.solver.arrays import FloatArray
 from semispline.solver.errors import SemisplineError
 from semispline.solver.io import Model, RhinoFace, curve_evaluator
-from semispline.solver.splines import BSplineSurface
+from semispline.solver.splines import BSplineSurface, surface_jet
 from semispline.solver.topology.half_edges import SAMPLES, EdgeGraph, Faces, uses_of
 
 Curve = tuple[int, FloatArray, FloatArray]
@@ -102,7 +102,8 @@ def _projected(surface: BSplineSurface, curves: Sequence[Curve], far: float) -> 
         slopes.append(slope)
     samples = np.concatenate(points)
     uv, away = feet_on(surface, samples, far)
-    jet = np.stack([surface.evaluate(uv[:, 0], uv[:, 1], *order) for order in _ORDERS], axis=1)
+    of_orders = surface_jet(surface, uv[:, 0], uv[:, 1], 2)
+    jet = np.stack([of_orders[order] for order in _ORDERS], axis=1)
     # The part of the edge's derivative that the surface can follow.
     along = np.concatenate(slopes)
     uv_slope = _step(jet[:, 1], jet[:, 2], along)
@@ -146,15 +147,18 @@ def _feet(surface: BSplineSurface, points: FloatArray, starts: int) -> tuple[Flo
     offset = target - grid[start]
     part = np.ones((len(at), 1))
     nearest_yet = np.full(len(points), np.inf)
+    jet = surface_jet(surface, at[:, 0], at[:, 1], 1)
+    slope_u, slope_v = jet[1, 0], jet[0, 1]
     for step in range(_STEPS):
-        s_u, s_v = surface.evaluate(at[:, 0], at[:, 1], 1, 0), surface.evaluate(at[:, 0], at[:, 1], 0, 1)
-        tried = at + part * _step(s_u, s_v, offset)
+        tried = at + part * _step(slope_u, slope_v, offset)
         # Over a seam the search goes on at the other side.
         over = closed & ((tried < low) | (tried > high))
         tried = np.where(over, low + (tried - low) % (high - low), np.clip(tried, low, high))
-        left = target - surface.evaluate(tried[:, 0], tried[:, 1])
+        jet = surface_jet(surface, tried[:, 0], tried[:, 1], 1)
+        left = target - jet[0, 0]
         nearer = (np.sum(left**2, axis=1) < np.sum(offset**2, axis=1))[:, None]
         at, offset, part = np.where(nearer, tried, at), np.where(nearer, left, offset), np.where(nearer, 1.0, part / 2)
+        slope_u, slope_v = np.where(nearer, jet[1, 0], slope_u), np.where(nearer, jet[0, 1], slope_v)
         nearest_now = np.linalg.norm(offset, axis=1).reshape(-1, starts).min(axis=1)
         if step >= _LEAST_STEPS and (nearest_yet - nearest_now).max() <= _DONE * size:
             break

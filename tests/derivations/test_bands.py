@@ -118,10 +118,13 @@ def test_row_conditions_follow_from_the_second_form():
 
 
 @pytest.mark.parametrize(
-    ("name", "wrong"), [(None, None), ("e_0", "along"), ("e_1", "angle_across"), ("e_2", "across")]
+    ("name", "wrong"), [("", "along"), ("e_0", "along"), ("e_1", "angle_across"), ("e_2", "across")]
 )
 def test_measures_of_a_band_of_a_cylinder_whose_rows_are_wrong(name, wrong):
-    """The band itself, differentiated by the size of its errors, at a rational place; no frame takes part."""
+    """The band itself, differentiated by the size of its errors, at a rational place; no frame takes part.
+
+    One row has errors, or, without a name, all of them.
+    """
     w, e = symbols("w epsilon")
     radius = 2
     # Around a cylinder: T runs round, D along the axis, N inwards or outwards as S_s x S_t says.

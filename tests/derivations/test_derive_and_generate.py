@@ -21,8 +21,8 @@ from semispline.derivations.splines import end_derivatives
 
 ROOT = Path(__file__).parents[2]
 FORMULAS = (
-    "energy", "fairness", "homogeneous-conditions", "homogeneous-last", "linear-power", "linear-product",
-    "shape-conditions", "special-conditions", "stationarity",
+    "energy", "fairness", "homogeneous-conditions", "homogeneous-last", "joint-slopes", "joint-values", "linear-power",
+    "linear-product", "shape-conditions", "special-conditions", "stationarity", "strip-derivatives",
 )  # fmt: skip
 
 

@@ -135,7 +135,7 @@ class Seen:
     curvature: float
 
 
-def _frame(geometry, u, v):
+def frame(geometry, u, v):
     """Normal, and the second form as a symmetric 3 x 3 matrix."""
     props = GeomLProp_SLProps(geometry, float(u), float(v), 2, 1e-12)
     n = props.Normal()
@@ -158,7 +158,7 @@ def seen_by_open_cascade(surface, face, count=97):
         point, step = geometry.Value(0.0, v), geometry.DN(0.0, v, 0, 1)
         foot = GeomAPI_ProjectPointOnSurf(point, own)
         u_face, v_face = foot.LowerDistanceParameters()
-        (n_a, form_a), (n_b, form_b) = _frame(geometry, 0.0, v), _frame(own, u_face, v_face)
+        (n_a, form_a), (n_b, form_b) = frame(geometry, 0.0, v), frame(own, u_face, v_face)
         if n_a @ n_b < 0:
             n_b, form_b = -n_b, -form_b
         along = np.array([step.X(), step.Y(), step.Z()])

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import settings
 
 # Examples of a test with hypothesis that says nothing else.
-_WHOLE, _SOME = 100, 20
+_WHOLE, _SOME = 100, 12
 IS_WHOLE = os.environ.get("SEMISPLINE_SWEEPS", "") == "whole"
 
 

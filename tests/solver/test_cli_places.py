@@ -46,12 +46,13 @@ def test_printed_commands_run_as_printed(part, tmp_path, monkeypatch):
             # One of each kind.
             commands.setdefault(heading, line.strip())
     assert commands
-    for command in commands.values():
+    for kind, command in commands.items():
         words = shlex.split(command)
         done = run(*words[1:])
         assert done.exit_code == 0, (command, done.output)
         assert "warning" not in done.output, (command, done.output)
-        assert len(list_surfaces(words[-1])) == 1
+        # Of a chain a face for each of seven lines and arcs: what lies between is only G1.
+        assert len(list_surfaces(words[-1])) == (7 if kind == "chains of fillets" else 1)
 
 
 def test_bases_are_written_beside_the_blend(tmp_path):
@@ -76,7 +77,7 @@ def test_bases_are_written_beside_the_blend(tmp_path):
         (["--replace", "0", "--cut-a", "1"], "--replace: found it together with --cut-a or --cut-b"),
         (["part.brep", "--replace", "0"], "--replace: found a second file 'part.brep'"),
         (["--replace", "0", "--edge-a", "u0", "--edge-b", "e1"], "found 'u0', expected an edge of face 0, as e1"),
-        (["--replace", "0", "--edge-a", "e1"], "found one of them, expected none or two edges of face #0"),
+        (["--replace", "0", "--edge-a", "e1"], "found one of them, expected none or two edges of face 0"),
         (["--replace", "0", "--surfaces", "--with-bases"], "--surfaces: found it together with --with-bases"),
         (["--replace", "99"], "#99: no such surface; the file holds 18"),
         ([], "blend: B, --edge-a, --edge-b missing, expected A B --edge-a EDGE --edge-b EDGE, FILE --replace FACE"),
@@ -92,6 +93,21 @@ def test_what_does_not_go_together(words, said, tmp_path, monkeypatch):
     assert done.exit_code == 2
     assert said in done.output.replace("\n", " ")
     assert not (tmp_path / "out.step").exists()
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["--edge-a", "near=1,2,3", "--edge-b", "e1"], "--edge-a: found 'near=1,2,3' together with --replace"),
+        (["--edge-a", "e1", "--edge-b", "near=1,2,3"], "--edge-b: found 'near=1,2,3' together with --replace"),
+        (["--edge-a", "u0", "--edge-b", "e1"], "--edge-a: found 'u0', expected an edge of face 0"),
+        (["--edge-b", "e1"], "--edge-a and --edge-b: found one of them"),
+    ],
+)
+def test_edges_of_a_replaced_face_are_checked_before_a_file_is_read(words, said, tmp_path):
+    done = run("blend", str(tmp_path / "none.step"), "--replace", "0", *words, "-o", str(tmp_path / "out.step"))
+    assert done.exit_code == 2
+    assert said in done.output.replace("\n", " ")
 
 
 def test_a_numbered_file_is_refused_by_replace(tmp_path):

@@ -28,6 +28,7 @@ OTHER = {
     "v_scale": ("unit", ["--v-scale", "unit"]),
     "u_knots": ((0.25, 0.5), ["--u-knots", "0.25,0.5"]),
     "middle_knots": (((0.5,), ()), ["--middle-knots", "0.5", "--middle-knots", ","]),
+    "match": (((0.25, 0.5), (0.5, 0.75)), ["--match", "0.25:0.5,0.5:0.75"]),
     "limits": ("cad", ["--limits", "cad"]),
     "strict": (True, ["--strict"]),
     "search_meets": (True, ["--search-meets"]),
@@ -208,6 +209,23 @@ def test_what_is_not_searched_is_constant_and_zero(said, decided):
 def test_the_degree_leaves_neither_inner_knots_nor_middle_curves(continuity, degree):
     decided = BlendOptions(continuity=continuity).decided()
     assert (decided.degree_u, decided.middle_curves) == (degree, 0)
+
+
+@pytest.mark.parametrize(
+    ("continuity", "v_scale"),
+    [
+        ("G2", "length"),
+        (("G1", "G4"), "stretched"),
+        ("C1", "stretched"),
+        (("C0", "G2"), "straight"),
+        ("G0", "straight"),
+    ],
+)
+def test_the_lower_order_decides_how_long_v_is(continuity, v_scale):
+    assert BlendOptions(continuity=continuity).decided().v_scale == v_scale
+    assert BlendOptions(continuity=continuity, v_scale="unit").decided().v_scale == "unit"
+    if "G4" not in continuity:
+        assert BlendOptions(continuity=continuity, alpha="energy").decided().v_scale == "paper"
 
 
 @pytest.mark.parametrize("edge", [0.01, 100.0])

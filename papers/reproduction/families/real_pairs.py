@@ -60,7 +60,7 @@ REAL_PAIRS = (
     RealPair(_SHELL, 24, "u1", 47, "v0", 25, "patches of a shell"),
     RealPair(_WING, 2, "u1", 1, "u0", 0, "trailing edge and lower skin of a wing"),
     RealPair(_WING, 5, "u1", 4, "u0", 3, "trailing edge and lower skin of a wing"),
-    RealPair(f"{_CAD}v4_DinerMug.3dm", 2, "v0", 1, "v1", 3, "walls beside the rim of a mug"),
+    RealPair(f"{_CAD}v4_DinerMug.3dm", 2, "v0", 1, "v1", 3, "roundings at both ends of a mug's handle"),
     RealPair(_PART, 6, "v0", 7, "v1", 5, "sides of a bar"),
     RealPair(_PART, 5, "v0", 8, "v1", 6, "sides of a bar"),
 )

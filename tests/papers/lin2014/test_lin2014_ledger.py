@@ -74,9 +74,9 @@ def few_mutants(monkeypatch):
     """One mutant of each kind of each formula; all of them are tried by .ci/run."""
     every = mutation.mutants
     monkeypatch.setattr(mutation, "mutants", lambda formula: list({m.kind: m for m in every(formula)}.values()))
-    mutation._tried.cache_clear()
+    mutation._RESULTS.clear()
     yield
-    mutation._tried.cache_clear()
+    mutation._RESULTS.clear()
 
 
 @pytest.mark.usefixtures("few_mutants")

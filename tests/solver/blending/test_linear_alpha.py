@@ -17,9 +17,11 @@ from semispline import (
     OptionError,
     SemiStructuredSurface,
     blend,
+    map_domain,
     measure_contact,
     measure_fairness,
     measure_turn,
+    plane,
     revolve_polynomial,
     transform,
 )
@@ -220,6 +222,18 @@ def test_an_even_gap_needs_no_linear_alpha():
     asked = try_linear_alpha(problem, constant, always=True)
     assert asked.taken
     assert asked.solution.value <= constant.value * (1 + 1e-9)
+
+
+def test_the_gap_is_measured_up_to_the_end_of_any_range():
+    # 0.12 + (1.602 - 0.12) is rounded to above 1.602.
+    start, end = 0.12, 1.602
+    assert start + (end - start) > end
+    pair = tuple(
+        Base(map_domain(plane([x, 0, 0], [2, 0, 0], [0, 3, 0]), v_range=(start, end)), edge)
+        for x, edge in ((0, "u1"), (4, "u0"))
+    )
+    # The edges are parallel, and so are the ways across.
+    assert gap_ratio(state_problem(*pair, **QUINTIC).problem) == pytest.approx(1, abs=1e-12)
 
 
 def test_it_is_taken_where_it_pays():

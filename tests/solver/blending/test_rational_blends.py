@@ -59,6 +59,28 @@ def test_free_rows_do_not_pull_pipes_together(cuts, continuity):
     assert np.abs(radii(pulled.surface) / 5 - 1).max() > 0.02
 
 
+@pytest.mark.parametrize("gap", [30.0, 200.0])
+@pytest.mark.parametrize("continuity", ["G1", "C1", ("G1", "G3"), "G0", "C0", ("G0", "G2"), ("C0", "G1")])
+def test_pipes_far_apart_are_joined_by_that_pipe(continuity, gap):
+    # By thin plate with v 3.5 times as long as it is, a gap of 40 radii ends at the axis.
+    a, b = cylinder(5.0, 0.0, 4.0, FULL), cylinder(5.0, 4.0 + gap, 4.0, FULL)
+    result = blend(Base(a, "u1"), Base(b, "u0"), continuity=continuity)
+    assert np.abs(radii(result.surface) / 5 - 1).max() < 0.01
+    assert not result.warnings
+
+
+@pytest.mark.parametrize("continuity", ["G0", "C0", ("G0", "C0")])
+@pytest.mark.parametrize("far", [5.0, 2.0])
+def test_with_contact_of_position_alone_the_rows_are_straight(continuity, far):
+    # A cone, by far: as straight as a pull of 1e-6 of the radius leaves it.
+    a, b = cylinder(5.0, 0.0, 4.0, FULL), cylinder(far, 16.0, 4.0, FULL)
+    surface = blend(Base(a, "u1"), Base(b, "u0"), continuity=continuity).surface
+    u, v = np.linspace(0, 1, 21), np.linspace(*surface.domain[1], 41)
+    points = surface.evaluate_grid(u, v)
+    ruled = points[0] + u[:, None, None] * (points[-1] - points[0])
+    assert np.abs(points - ruled).max() < 1e-4
+
+
 def test_a_jump_of_curvature_at_the_seam_counts_in_the_search():
     """Racetracks whose lines and half circles meet at four places, one of them the seam."""
     track = [*line((0, -1), (2, -1)), *arc((2, 0), 1.0, -90, 90), *line((2, 1), (0, 1)), *arc((0, 0), 1.0, 90, 270)]
@@ -255,7 +277,7 @@ def check_pair(seed):
 
 
 # Of the last two rounding hid contact of fourth order: weights of the fifth power.
-@pytest.mark.parametrize("seed", [*first_ones(10, range(24)), 282, 338])
+@pytest.mark.parametrize("seed", [*first_ones(5, range(24)), 282, 338])
 def test_random_rational_pairs(seed):
     check_pair(seed)
 

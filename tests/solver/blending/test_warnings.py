@@ -89,6 +89,7 @@ def test_a_span_is_narrow_below_a_thousandth_of_the_base(width, named, edge):
     surface = flat_with(domain * np.array([0, 0, 0, 0, 1 - width, 1, 1, 1, 1])).surface
     base = Base(turned(turned(surface, "u1", False), edge, False), edge)
     assert remedy(FLOOR, NO_CAUSE, [], 1.0, 3).startswith("derivatives of order 3 round: ask for G2")
+    assert remedy(FLOOR, NO_CAUSE, [], 1.0, 4).startswith("derivatives of order 4 round: ask for G3")
     said = remedy(base, NO_CAUSE, [], None)
     assert (f"knots_{edge[0]} of the base leave a span of {width * domain:.1e} beside the edge" in said) is named
     # Nobody asks for what is narrow elsewhere.

@@ -237,6 +237,13 @@ def test_the_boundary_comes_out_of_the_process_that_reads(tmp_path):
         "the face is trimmed, its surface goes on; `semispline list two.step --edges 1` names its own edges"
     )
     assert "outside of the face, in part, by up to 12 mm" in trimmed_edge_warning("x", "v0", second)
+    # A line inside of the surface may run through the face: it is not called outside.
+    assert trimmed_edge_warning("x", "u=0.7-", second) is None
+    for line, away in (("u=0.3+", "up to 12"), ("u=0.9-", "up to 8")):
+        assert trimmed_edge_warning("two.step#1", line, second).startswith(
+            f"the edge {line} of two.step#1 is no edge of the face, {away} mm from the face's own boundary: "
+            "it runs through the face, or beyond it; "
+        )
     assert [entry.trimmed for entry in list_surfaces(path)] == [False, True]
 
 

@@ -328,6 +328,7 @@ STORED_OPTIONS = (
         p2=(0.5, -0.25),
         bulge=(2.0, 1.0),
         middle_knots="paper",
+        match=((0.25, 0.5), (0.5, 0.75)),
         search_meets=True,
     ),
 )

@@ -17,8 +17,12 @@ FLOOR = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
 
 
 def pierces(start, end):
-    hit, where = mesh_search._pierces(np.array([start]), np.array([end]), FLOOR[None])
-    return bool(hit[0]), where[0]
+    hit, where = mesh_search._pierces(column(start), column(end), FLOOR[..., None])
+    return hit.tolist() == [0], where.T.ravel()
+
+
+def column(point):
+    return np.array(point, dtype=float)[:, None]
 
 
 @pytest.mark.parametrize(("off", "touches"), [(-0.1, True), (0.5e-9, True), (2e-9, False), (0.1, False)])
@@ -43,15 +47,15 @@ def test_where_a_segment_pierces():
 def test_triangles_reach_a_plane_within_a_billionth_of_their_size(height, reaches):
     for side in (1, -1):
         above = FLOOR + np.array([0, 0, side * height])
-        assert mesh_search._reaches(FLOOR[None], above[None]).tolist() == [reaches]
+        assert mesh_search._reaches(FLOOR[..., None], above[..., None]).tolist() == [reaches]
         # On the other side of its first corner as well.
         beyond = np.array([0, 0, side * height]) - FLOOR
-        assert mesh_search._reaches(FLOOR[None], beyond[None]).tolist() == [reaches]
+        assert mesh_search._reaches(FLOOR[..., None], beyond[..., None]).tolist() == [reaches]
 
 
 def overlap(q):
-    hit, where = mesh_search._overlap_in_plane(FLOOR[None], np.array(q)[None])
-    return bool(hit[0]), where[0]
+    hit, where = mesh_search._overlap_in_plane(FLOOR[..., None], np.array(q)[..., None])
+    return bool(hit[0]), where[:, 0]
 
 
 @pytest.mark.parametrize(("height", "flat"), [(0.5e-9, True), (2e-9, False)])
@@ -121,7 +125,7 @@ def test_what_is_one_point_crosses_nothing():
 def test_the_search_ends_at_20000_hits(monkeypatch):
     a, b = crossing_pair()
     i, j = next(iter(overlapping(box_tree(*box(a, b.points)), box_tree(*box(b, b.points)))))
-    hit, _ = mesh_search._crossing(b.points, a.triangles[i], b.triangles[j])
+    hit, _ = mesh_search._crossing(b.points.T, a.triangles[i], b.triangles[j])
     one, other = (np.full(10_000, index[hit][0]) for index in (i, j))
     monkeypatch.setattr(mesh_search, "overlapping", lambda *_: iter([(one, other)] * 4))
     assert len(crossings(a, b).first) == 20_000

@@ -92,6 +92,12 @@ def test_show_says_and_colors_the_distance(pair, tmp_path):
         (np.abs(image - np.array(color)) < 60).all(axis=2).mean() for color in ((68, 1, 84), (253, 231, 37))
     )
     assert min(dark, yellow) > 0.005
+    # Beside another surface it is said whose distance that is.
+    assert "surfaces" not in done.stdout
+    write_surface(tmp_path / "flat.step", plane([0, 0, 0.1], [4, 0, 0], [0, 4, 0]), "mm")
+    for order in ((blend, tmp_path / "flat.step"), (tmp_path / "flat.step", blend)):
+        done = run("show", *order, "--deviation-from", true, "-o", out)
+        assert f"; of 2 surfaces the largest is on {blend}\n" in done.stdout
     # With a view in units of its own: the same square in inches.
     write_surface(tmp_path / "inch.step", plane([0, 0, 0], [4 / 25.4, 0, 0], [0, 4 / 25.4, 0]), "in")
     done = run("show", blend, "--deviation-from", tmp_path / "inch.step", "-o", out)

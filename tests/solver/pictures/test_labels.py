@@ -59,22 +59,36 @@ def test_faces_seen_along_themselves_and_unnamed_ones_are_not_named():
 
 def test_an_edge_is_named_on_its_own_face_beside_its_seen_middle():
     seen = blank()
+    flat = np.zeros(seen.shape)
     seen[50:250, 100:300] = 0
     seen[50:250, 300:390] = 1
-    line = np.stack([np.full(41, 300.0), np.linspace(50, 250, 41)], axis=1)
-    left, right = (edge_anchor(seen, face, line, "e3", HEIGHT) for face in (0, 1))
+    line = np.stack([np.full(41, 300.0), np.linspace(50, 250, 41), np.zeros(41)], axis=1)
+    left, right = (edge_anchor(seen, flat, face, line, "e3", HEIGHT) for face in (0, 1))
     assert left.at == right.at == (300.0, 150.0)
-    assert edge_anchor(seen, 0, line[[0, -1]], "e3", HEIGHT) == left
+    assert edge_anchor(seen, flat, 0, line[[0, -1]], "e3", HEIGHT) == left
     assert left.towards[0] < -0.9
     assert right.towards[0] > 0.9
     # Half of it is hidden: the middle of the rest.
     seen[50:170, :] = 2
-    _, y = edge_anchor(seen, 0, line, "e3", HEIGHT).at
+    _, y = edge_anchor(seen, flat, 0, line, "e3", HEIGHT).at
     assert 200 < y < 220
-    assert edge_anchor(seen, 5, line, "e3", HEIGHT) is None
+    assert edge_anchor(seen, flat, 5, line, "e3", HEIGHT) is None
     # Out of the picture.
-    assert edge_anchor(seen, 0, line + 1000, "e3", HEIGHT) is None
-    assert edge_anchor(seen, 0, line - 1000, "e3", HEIGHT) is None
+    out = np.array([1000, 1000, 0])
+    assert edge_anchor(seen, flat, 0, line + out, "e3", HEIGHT) is None
+    assert edge_anchor(seen, flat, 0, line - out, "e3", HEIGHT) is None
+
+
+def test_an_edge_behind_a_part_of_its_own_face_is_hidden():
+    seen = blank()
+    seen[50:250, 100:300] = 0
+    line = np.stack([np.full(41, 200.0), np.linspace(50, 250, 41), np.zeros(41)], axis=1)
+    in_front = np.full(seen.shape, 100.0)
+    assert edge_anchor(seen, in_front, 0, line, "e3", HEIGHT) is None
+    # The upper half of the face closes round in front of it.
+    in_front[150:] = 0.0
+    _, y = edge_anchor(seen, in_front, 0, line, "e3", HEIGHT).at
+    assert 195 < y < 205
 
 
 def boxes(labels):

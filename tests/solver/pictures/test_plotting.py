@@ -9,7 +9,7 @@ import rhino3dm
 from matplotlib.image import imread
 from typer.testing import CliRunner
 
-from semispline import BSplineCurve, BSplineSurface, FileError, OptionError, SemiStructuredSurface
+from semispline import BSplineCurve, BSplineSurface, FileError, OptionError, SemiStructuredSurface, revolve
 from semispline.solver.cli import app
 from semispline.solver.io.meshes import sampled
 from semispline.solver.io.surface_files import write_surface
@@ -321,6 +321,16 @@ def test_edges_of_one_face_are_all_named(tmp_path):
         [Drawn(flat(), label="a", edges=lines, name_edges=True)], tmp_path / "p.png", views=("left",), size=SIZE
     )
     assert (found.unseen, found.unnamed_edges) == (("a",), 4)
+
+
+def test_edges_behind_their_own_face_are_not_named(tmp_path):
+    # Of a whole cylinder about z that begins at x = 1: from the left the seam is behind the face that it closes.
+    wall = revolve(BSplineCurve(1, K, [[1.0, 0, 0], [1, 0, 2]]), [0, 0, 0], [0, 0, 1])
+    item = Drawn(wall, label="#0", edges=natural_edges(wall), name_edges=True)
+    hidden = {
+        view: render([item], tmp_path / "p.png", views=(view,), size=SIZE).unnamed_edges for view in ("right", "left")
+    }
+    assert hidden == {"right": 0, "left": 2}
 
 
 def test_what_is_trimmed_away_is_not_drawn(tmp_path):

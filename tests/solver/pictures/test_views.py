@@ -42,7 +42,7 @@ def test_iso_shows_front_right_and_top():
 @given(st.lists(st.tuples(UNIT, UNIT, UNIT), min_size=2, max_size=6), st.sampled_from([(400, 300), (300, 500)]))
 def test_all_points_are_inside_of_the_frame(points, size):
     frame = framed(np.array(points), view_from((1, 2, 0.5)), size)
-    x, y = frame.pixels(np.array(points)).T
+    x, y, _ = frame.pixels(np.array(points)).T
     # Rounding of a pixel's coordinates.
     assert min(x.min(), y.min()) > -1e-6
     assert x.max() < size[0] + 1e-6
@@ -53,7 +53,7 @@ def test_a_frame_is_filled_and_its_name_stands_above():
     points = np.array([[0, 0, 0], [4, 0, 1.0]])
     plain = framed(points, view_from((0, -1, 0)), (400, 100))
     np.testing.assert_allclose(
-        plain.pixels(points), [[200 - 200 / 1.06, 50 + 50 / 1.06], [200 + 200 / 1.06, 50 - 50 / 1.06]]
+        plain.pixels(points), [[200 - 200 / 1.06, 50 + 50 / 1.06, 0], [200 + 200 / 1.06, 50 - 50 / 1.06, 0]]
     )
     named = framed(points, named_view("front"), (400, 100)).pixels(points)
     assert named[:, 1].min() > 5.5

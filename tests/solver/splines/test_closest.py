@@ -11,7 +11,7 @@ from OCP.gp import gp_Pnt
 from helpers.closed import circle, cylinder, sphere, torus
 from helpers.occ import to_geom
 from helpers.splines import bspline_surfaces, curves, semistructured_surfaces
-from semispline import BSplineCurve, BSplineSurface, SemiStructuredSurface, closest_point
+from semispline import BSplineCurve, BSplineSurface, SemiStructuredSurface, closest_point, revolve, swap_directions
 from semispline.solver.errors import ControlPointError, InputError
 from semispline.solver.judge.de_boor import curve_points, surface_points
 from semispline.solver.splines.closest import _bounds
@@ -268,3 +268,26 @@ def test_two_points_that_are_equally_near_are_no_continuum():
     found = closest_point(PARABOLA, [0, 0, 3])
     assert len(found.parameters) == 2
     assert not found.continuum
+
+
+@pytest.mark.parametrize(("u", "v"), [(1.0, 3), (0.7, 2.9)])
+def test_a_pole_is_one_point_with_one_of_its_parameters(u, v):
+    """It came 32 times, once for each start that had ended there."""
+    ball = sphere(u)
+    for shape in (ball, swap_directions(ball)):
+        for end, where in ((-1, [0, 0, -v]), (1, [0, 0, v])):
+            found = closest_point(shape, where)
+            assert found.points.shape == (1, 3)
+            assert np.abs(found.points - [[0, 0, end * u]]).max() <= 1e-15
+            assert not found.continuum
+    # The whole seam of a sphere is still both its parameters.
+    assert len(closest_point(ball, [v, 0, 0]).parameters) == 2
+
+
+def test_two_poles_in_one_place_and_a_span_that_is_a_point_are_told_apart():
+    """A spindle that comes back to where it starts; a curve that stays at its corner for a span."""
+    profile = BSplineCurve(3, [0] * 4 + [1] * 4, [[0, 0, 0], [3, 0, 1], [3, 0, -1], [0, 0, 0]])
+    spindle = revolve(profile, [0, 0, 0], [0, 0, 1], angle=360)
+    assert len(closest_point(spindle, [0, 0, 0]).parameters) == 2
+    corner = BSplineCurve(1, [0, 0, 1, 2, 3, 3], [[-1, 1], [0, 0], [0, 0], [1, 1]])
+    assert len(closest_point(corner, [0, -1]).parameters) == 1

@@ -17,9 +17,10 @@ from semispline.solver.io.json_files import read_problem
 from semispline.solver.io.occ import _faces, read_occ
 from semispline.solver.io.occ_writing import occ_surface
 from semispline.solver.io.surface_files import LoadedSurface, face_warnings, read_surfaces
-from semispline.solver.topology.face_edges import _edges_of, resolve_edges
+from semispline.solver.topology.face_edges import _edges_of
 from semispline.solver.topology.measuring import measured_edges
 from semispline.solver.topology.near import point_of
+from semispline.solver.topology.resolving import resolve_edges
 
 
 def sheet(start=0.0, height=0.0):
@@ -310,4 +311,4 @@ def test_a_small_edge_of_a_large_model_is_the_faces_own(tmp_path):
     assert face_warnings((found.spec, found.edge, found.loaded)) == ()
     # The same line, asked for as a line of the surface, is told to be off.
     (loaded,) = read_surfaces([f"{path}#0"])
-    assert "lies outside of the face" in face_warnings((found.spec, found.edge, loaded))[0]
+    assert "is no edge of the face" in face_warnings((found.spec, found.edge, loaded))[0]

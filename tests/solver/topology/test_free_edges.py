@@ -39,9 +39,10 @@ from semispline.solver.topology.bands import band_along
 from semispline.solver.topology.bases import EdgeBase, bases_along, free_curves, paired_bases
 from semispline.solver.topology.edge_blends import blend_bases
 from semispline.solver.topology.face_curves import edge_on_face
-from semispline.solver.topology.face_edges import is_of_a_face, resolve_edges, split_part
+from semispline.solver.topology.face_edges import is_of_a_face, split_part
 from semispline.solver.topology.face_jets import Face
 from semispline.solver.topology.free_contact import measure_free_contact
+from semispline.solver.topology.resolving import resolve_edges
 from semispline.solver.topology.trim_curves import TrimCurve, read_trim_curves
 
 # .ci/run lets each file be read by a process of its own.

@@ -2,6 +2,7 @@
 
 import json
 import shlex
+from dataclasses import replace
 from math import prod
 
 import pytest
@@ -20,6 +21,7 @@ from helpers.random_parts import known_part
 from semispline import FileError, find_places
 from semispline.solver.cli import app
 from semispline.solver.topology import moved_edges
+from semispline.solver.topology.commands import two_faces
 from semispline.solver.topology.listing import place_lines, places_record
 from semispline.solver.topology.place import KINDS
 from semispline.solver.topology.places import places_of
@@ -49,7 +51,7 @@ def test_places_of_a_box_with_rounds():
     assert places.faces == 18
     assert (places.refused, places.counts, places.unwalked) == ({}, {}, ())
     (chain,) = places.of_kind("chain")
-    assert len(chain.commands) == 8
+    assert len(chain.commands) == 1
     assert chain.measures["length"] == pytest.approx(2 * (34 + 24) + 2 * 3.1416 * (3 + 1.5) / 2, rel=0.01)
 
 
@@ -84,6 +86,10 @@ def test_commands_name_file_and_edges_for_a_shell(name):
             assert words[-2] == "-o"
             path = f"./{name}" if name.startswith("-") else name
             if place.faces:
+                if place.kind == "chain":
+                    # Words say the faces.
+                    assert words[2:5:2] == [path, "--edge-a"]
+                    continue
                 assert words[2:4] == [path, "--replace"]
                 assert int(words[4]) in place.faces
                 continue
@@ -93,6 +99,60 @@ def test_commands_name_file_and_edges_for_a_shell(name):
                 assert edge == side.edge
                 assert int(edge[1:]) in graph.uses.number[graph.uses.of_face(side.face)]
     assert {place.kind for place in places.found} >= {"fillet", "gap", "sharp edge"}
+
+
+def sheets_with_broken_edges(cuts_a, cuts_b):
+    """Two sheets 10 long that face each other over 2, their edges broken at cuts along y."""
+    faces = []
+    for x, far, cuts in ((0, -8, cuts_a), (2, 10, cuts_b)):
+        polygon = BRepBuilderAPI_MakePolygon()
+        for y in (0, *cuts, 10):
+            polygon.Add(gp_Pnt(x, y, 0))
+        polygon.Add(gp_Pnt(far, 10, 0))
+        polygon.Add(gp_Pnt(far, 0, 0))
+        polygon.Close()
+        faces.append(BRepBuilderAPI_MakeFace(polygon.Wire()).Face())
+    return compound(faces)
+
+
+def facing(graph, command):
+    """The middles along y of the edges that a command names, and the file that it writes."""
+    words = shlex.split(command)
+    found = []
+    for spec, option in ((words[2], "--edge-a"), (words[3], "--edge-b")):
+        rows = graph.uses.of_face(int(spec.partition("#")[2]))
+        found.append(graph.uses.points[rows.start + int(words[words.index(option) + 1][1:]), 4, 1])
+    return (*found, words[-1])
+
+
+def test_of_a_gap_with_several_edges_each_is_named_with_the_one_that_faces_it():
+    graph = graph_of(sheets_with_broken_edges((1, 6), (1.2, 5.8)))
+    place = next(place for place in places_of(graph).of_kind("gap") if place.measures["length"] == pytest.approx(10))
+    assert [word for word in shlex.split(place.commands[0]) if "*" in word] == ["0:e0*", "1:e0*"]
+    # Where they are no chain each edge has its own command.
+    found = [facing(graph, command) for command in two_faces("part.brep", place)]
+    assert [(round(a, 6), round(b, 6)) for a, b, _ in found] in (
+        [(3.5, 3.5), (8, 7.9), (0.5, 0.6)],
+        [(3.5, 3.5), (7.9, 8), (0.6, 0.5)],
+    )
+    assert len({out for *_, out in found}) == 3
+    assert not any("#" in line and "one edge of several" in line for line in place_lines(places_of(graph)))
+
+
+def test_of_a_gap_with_other_numbers_of_edges_one_pair_is_named_and_the_rest_said():
+    graph = graph_of(sheets_with_broken_edges((1, 6), (4.5,)))
+    places = places_of(graph)
+    place = next(place for place in places.of_kind("gap") if place.measures["length"] == pytest.approx(10))
+    assert [word for word in shlex.split(place.commands[0]) if "*" in word] == ["0:e0*", "1:e0*"]
+    assert not any("one edge of several" in line for line in place_lines(places))
+    # Where they are no chain the longest of the three faces the shorter one of the two.
+    plain = replace(place, commands=tuple(two_faces("part.brep", place)))
+    ((a, b, _),) = (facing(graph, command) for command in plain.commands)
+    assert sorted([round(a, 6), round(b, 6)]) == [2.25, 3.5]
+    lines = place_lines(replace(places, found=(plain,)))
+    said = [line for line in lines if line.startswith("    # one edge of several: side ")]
+    assert len(said) == 2
+    assert sum(line.count(" e") - line.count(" edge") for line in said) == 3
 
 
 def test_a_sharp_edge_is_cut_by_less_than_the_face_has():
