@@ -325,6 +325,9 @@ def test_contacts_along_a_free_edge_are_measured_without_a_band(cylinder, tmp_pa
         measure_free_contact(resolve_edge(spec, f"{entry.name}[0]"), own)
     with pytest.raises(EdgeError, match="expected a free curve"):
         measure_free_contact(own, own)
+    far = resolve_edge(tube, "v0")
+    with pytest.raises(EdgeError, match=rf"^edge v0 against {result.band_a.edge}: face: the edge is .* away"):
+        measure_free_contact(far, a)
 
 
 def test_both_faces_of_a_hole_meet_at_their_edge(cylinder):
