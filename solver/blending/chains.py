@@ -328,12 +328,15 @@ def _assembled(joined: JoinedPieces) -> tuple[FloatArray, Basis]:
     found, along = joined_spans(points, np.array(places), smooth)
     for at in _cut_splines(joined, places):
         # Where one spline was cut it comes back as smooth as it was.
-        for order in range(_INNER_ORDER, min(piece.along.degree for piece in joined.pieces) + 1):
+        for order in range(_INNER_ORDER, degree + 1):
             smoother = [order if k == at else x for k, x in enumerate(smooth)]
             fewer, basis = joined_spans(points, np.array(places), smoother)
             if _change(fewer, basis, found, along) > _NO_KNOT:
                 break
             smooth, found, along = smoother, fewer, basis
+    if seam is not None:
+        # To the last bit: kernels make both ends of a closed surface one, and it would not be read as it was written.
+        found[:, -1] = found[:, 0]
     return found, along
 
 

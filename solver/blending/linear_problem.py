@@ -36,7 +36,9 @@ def gap_ratio(problem: BlendProblem) -> float:
     for index in (0, 1):
         if problem.free[index]:
             sizes = _natural_along(problem, index)
-            ratios.append(float(sizes.max() / max(sizes.min(), np.finfo(float).tiny)))
+            # Contacts that touch somewhere have no ratio: any that is too large says so.
+            with np.errstate(over="ignore"):
+                ratios.append(float(sizes.max() / max(sizes.min(), np.finfo(float).tiny)))
     return max(ratios)
 
 

@@ -17,7 +17,8 @@ from semispline.solver.topology.half_edges import EdgeGraph
 from semispline.solver.topology.relations import Relations, relate
 from semispline.solver.topology.sides import entering, leaving
 
-# Each of two edges that meet in a vertex may be off it by its own tolerance.
+# Each of two edges that meet in a vertex may be off it by its own tolerance; and their faces as far apart again as
+# samples of them show.
 _BOTH = 2.0
 
 
@@ -208,12 +209,19 @@ def chain_of_uses(
     """
     passages = passages_of(graph, relate(graph), rows, f"{name} {word}")
     sides = [row for passage in passages if passage is not None for row in passage.side or ()]
-    tolerance = _BOTH * float(graph.uses.tolerance[[*rows, *sides]].max())
+    # Edges go on in each other in a vertex of the file, or one that was found: that holds its ends, however far apart.
+    apart = [_ends_apart(graph, passage) for passage in passages if passage is not None]
+    tolerance = _BOTH * max(float(graph.uses.tolerance[[*rows, *sides]].max()), *apart, 0.0)
     ways = tuple(_way(graph, passage) for passage in passages)
     found = ResolvedChain(edges[0].spec, tuple(edges), word, "", tolerance, ways)
     count = f"{len(edges)} edges of {_counted_faces(edges)}"
     said = f"{found.edge} of {found.spec}, {count}" + (f"; {stops}" if stops else "")
     return replace(found, said=said)
+
+
+def _ends_apart(graph: EdgeGraph, passage: Passage) -> float:
+    end, start = leaving(graph.uses, passage.before)[0], entering(graph.uses, passage.after)[0]
+    return float(np.linalg.norm(end - start))
 
 
 def _counted_faces(edges: Sequence[ResolvedEdge]) -> str:

@@ -58,6 +58,13 @@ def unsewn(shape):
     return compound(BRepBuilderAPI_Copy(face).Shape() for face in _faces(shape))
 
 
+def with_moved_face(shape, number, trsf):
+    """Each face with edges of its own, one of them elsewhere."""
+    copies = [BRepBuilderAPI_Copy(face).Shape() for face in _faces(shape)]
+    copies[number] = moved(copies[number], trsf)
+    return compound(copies)
+
+
 def reordered(shape, order):
     faces = list(_faces(shape))
     return compound(faces[n] for n in order)

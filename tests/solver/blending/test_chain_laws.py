@@ -3,6 +3,7 @@
 from itertools import pairwise
 
 import numpy as np
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -113,6 +114,26 @@ def test_faces_along_lines_may_be_cut_further(ring_of, which, at):
     assert np.abs(sampled(here)[..., 0, :] - same).max() < SAME
     if kind == "prism":
         assert np.abs(sampled(here) - sampled(there, firsts)).max() < SAME
+
+
+def test_nothing_is_left_of_cuts_along_lines():
+    """No knots, which would cost points, and at which the search would look for more than there is."""
+    faces = ring((0.5, 1.0, 0.7, 0.4), "prism")
+    parts = [strips(face.surface, [0.3]) if face.surface.degree_v == 1 else [face.surface] for face in faces]
+    cut = [Base(part, "u0") for pair in parts for part in pair]
+    here, there = chain(faces).strip(2).surface.knots_v, chain(cut).strip(2).surface.knots_v
+    assert len(cut) == 12
+    assert there / there[-1] == pytest.approx(here / here[-1], abs=1e-12)
+
+
+@given(RINGS)
+@examples(25)
+def test_a_closed_strip_ends_where_it_begins_to_the_last_bit(ring_of):
+    """Kernels make both ends one when they read it: a blend that differs there would not be what was written."""
+    radii, kind, order = ring_of
+    surface = chain(ring(radii, kind)).strip(order).surface
+    assert (surface.control_points[:, 0] == surface.control_points[:, -1]).all()
+    assert (surface.weights[:, 0] == surface.weights[:, -1]).all()
 
 
 @given(st.floats(1.5, 4.0), st.floats(1.5, 4.0), st.floats(-0.4, 0.4), st.integers(2, 4))

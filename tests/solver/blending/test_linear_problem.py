@@ -79,3 +79,11 @@ def test_what_is_even_is_not_tried_unless_asked(monkeypatch):
     assert try_linear_alpha(strips(1.6), solution(1.0)).taken
     # Or unless a refusal stopped the search for a constant one.
     assert try_linear_alpha(strips(1.4), stopped(1.0)).taken
+
+
+def test_contacts_that_touch_have_a_ratio_without_a_word_of_the_machine():
+    """Bases that meet in a point: the gap there is nothing, and a division overflows."""
+    a = BSplineSurface(1, 1, [0, 0, 1, 1], [0, 0, 1, 1], [[[0, 0, 0], [0, 1, 0]], [[-1, 0, 0], [-1, 1, 0]]])
+    b = BSplineSurface(1, 1, [0, 0, 1, 1], [0, 0, 1, 1], [[[0, 0, 0], [9, 1, 0]], [[0, -1, 0], [9, -1, 0]]])
+    problem = state_problem(Base(a, "u0"), Base(b, "u0"), flip="no", middle_curves=0)
+    assert linear_problem.gap_ratio(problem.problem) > 1e300

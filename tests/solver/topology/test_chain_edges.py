@@ -7,9 +7,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from OCP.BRepPrimAPI import BRepPrimAPI_MakeCylinder
+from OCP.gp import gp_Trsf, gp_Vec
 
 from helpers.free_curves import bent_face, cubic
-from helpers.parts import compound, graph_of, rounded_box, unsewn, written
+from helpers.parts import compound, graph_of, rounded_box, unsewn, with_moved_face, written
 from helpers.profiles import oval_edges, polygon_edges, round_edges, tube
 from semispline import Base, EdgeError, FileError, blend_edges, faces_of_blend, list_edges, plane, resolve_edge
 from semispline.solver.judge import measure_contact
@@ -104,6 +105,22 @@ def test_a_smooth_rim_goes_on_over_all_faces(ovals):
 def test_unsewn_faces_go_on_in_each_other():
     graph = graph_of(unsewn(tube(oval_edges(30, 10, 0), 10)))
     assert len(smooth_run(graph, relate(graph), 1).uses) == 4
+
+
+@pytest.mark.parametrize("apart", [1e-6, 1e-5])
+def test_unsewn_faces_that_meet_within_a_gap_are_one_contact(tmp_path, apart):
+    """Edges of 1e-7 tolerance that end further apart: who finds that they go on in each other blends them too."""
+    step = gp_Trsf()
+    step.SetTranslation(gp_Vec(0.6 * apart, 0, 0.8 * apart))
+    walls = with_moved_face(tube(oval_edges(30, 10, 0), 10), 0, step)
+    path = written(compound([walls, tube(round_edges(8, 25, [0, 100, 190, 280]), 10)]), tmp_path / "gap.brep")
+    a, b = resolve_edges([(f"{path}#0", "e1*"), (f"{path}#4", "e3*")])
+    assert len(a.edges) == 4
+    (result,) = blend_edges(a, b, **QUICK)
+    # Half of the gap at both ends of the face that was moved, and that is said.
+    assert sorted(joint.moved for joint in result.chain_a.joints)[-2:] == pytest.approx([apart, apart], rel=1e-6)
+    assert result.chain_a.limits == "cad"
+    assert apart / 4 < result.chain_a.worst("gap") < apart
 
 
 def test_a_cut_rim_of_one_face_is_one_edge_of_it(tmp_path):
