@@ -22,7 +22,7 @@ blend as one contact: one surface, without a crease where the faces have none, i
     blend(chain([Base(wall, "u0"), Base(corner, "u0"), ..]), Base(tube, "v0"), continuity="G2")
 
 - Joints are classed by the equations that have to close there: *smooth*; *creased*, where the faces themselves are, by
-  an angle that is said and that the blend inherits; *corner*, where the contact turns by more than 0.1 degree: the
+  an angle that is said and that the blend inherits; *corner*, where the contact turns by more than a degree: the
   blend bends there, and is cut there when it is written. Corners of two chains answer each other where there are as
   many.
 - Where a line meets an arc, curvature along the contact jumps. The blend inherits it, and it fades out to the other

@@ -209,8 +209,8 @@ def print_result(result: BlendResult) -> None:
     at_a, at_b = result.continuity
     rows.append(("contact A", ", ".join(_figures(result.contact_a, at_a))))
     rows.append(("contact B", ", ".join(_figures(result.contact_b, at_b))))
-    for name, band in zip("AB", (result.band_a, result.band_b), strict=True):
-        rows += [] if band is None else _band_rows(name, band)
+    for name, band, wanted in zip("AB", (result.band_a, result.band_b), result.continuity, strict=True):
+        rows += [] if band is None else _band_rows(name, band, wanted)
     for name, chain, wanted in zip("AB", (result.chain_a, result.chain_b), result.continuity, strict=True):
         rows += [] if chain is None else _chain_rows(name, chain, wanted)
     if result.seam is not None:
@@ -229,11 +229,11 @@ def _chain_rows(name: str, chain: ChainContact, wanted: Continuity) -> Iterator[
         yield f"joint of {name}", note.removeprefix("joint ")
     for face in chain.faces:
         low, high = face.range
-        figures = ", ".join(_figures(face.contact, wanted)) if face.band is None else _band_figures(face.band)
+        figures = ", ".join(_figures(face.contact, wanted)) if face.band is None else _band_figures(face.band, wanted)
         yield f"face at {name}", f"{face.edge}, v in [{low:.4g}, {high:.4g}]: {figures}"
 
 
-def _band_figures(band: BandContact) -> str:
+def _band_figures(band: BandContact, wanted: Continuity) -> str:
     """Return how a blend meets the face of a band."""
     figures = [
         f"{words} {value:.2g}{unit} ({band.allowed[measure]:.2g} allowed)"
@@ -247,12 +247,13 @@ def _band_figures(band: BandContact) -> str:
         )
         if (value := getattr(band, measure)) is not None
     ]
-    return f"{', '.join(figures)}; {band.limits} limits"
+    counted = f"; {wanted}, which is of parameters, counts as G{wanted[1]}" if wanted in ("C1", "C2") else ""
+    return f"{', '.join(figures)}; {band.limits} limits{counted}"
 
 
-def _band_rows(name: str, band: BandContact) -> Iterator[tuple[str, str]]:
+def _band_rows(name: str, band: BandContact, wanted: Continuity) -> Iterator[tuple[str, str]]:
     """Yield how a blend meets the face of a band, and of which curve that is one."""
-    yield f"face at {name}", _band_figures(band)
+    yield f"face at {name}", _band_figures(band, wanted)
     of = "feet of the edge in space" if band.source == "foot" else "curve in the face's parameters"
     apart = [
         f"edge {distance:.2g} from the {other}"

@@ -21,8 +21,8 @@ from semispline.solver.errors import EdgeError
 
 # What is left of a condition, relative to what it compares, where it counts as met.
 CLOSED = 1e-8
-# Angles in degrees: contacts that turn by more have a corner, by less a kink that is no one's wish.
-CORNER, KINK = 0.1, 1e-6
+# Angles in degrees: contacts that turn by more have a corner; by more than the second, a kink that is no one's wish.
+CORNER, KINK = 1.0, 1e-6
 # Curvatures at both sides that differ by this, over the larger one, jump.
 BENT = 1e-6
 # Ends that lie apart by less than this part of their coordinates are one point.

@@ -22,7 +22,7 @@ from semispline.solver.blending.reparametrisation import (
 from semispline.solver.blending.spans import bezier_pieces, joined_spans
 from semispline.solver.blending.weights import rows_from_derivatives
 from semispline.solver.errors import EdgeError, OptionError
-from semispline.solver.judge import Base, is_closed, local_origin, model_size
+from semispline.solver.judge import Base, edge_length, is_closed, local_origin, model_size
 from semispline.solver.options import Continuity
 from semispline.solver.splines import Basis, BSplineSurface, basis_matrix, boundary_curve, closest_point, euclidean
 
@@ -199,7 +199,8 @@ def chain(edges: Sequence[Base], *, tolerance: float | None = None, names: Seque
     edges : sequence of Base
         In order; each may run either way.
     tolerance : float, optional
-        How far apart, in model units, ends that are to be one point may lie; 1e-7 of the size of the faces.
+        How far apart, in model units, ends that are to be one point may lie; 1e-7 of the size of the faces. Edges that
+        are shorter are left out.
     names : sequence of str, optional
         What each edge is called in what is said of it, as "12:e3" of a file; else what `Base` calls it.
 
@@ -213,6 +214,9 @@ def chain(edges: Sequence[Base], *, tolerance: float | None = None, names: Seque
         raise EdgeError("chain: found no edges, expected one at least")
     called = tuple(base.edge for base in bases) if names is None else tuple(names)
     within = _MEET * model_size(*(base.surface for base in bases)) if tolerance is None else tolerance
+    # An edge shorter than that is where its neighbours meet.
+    kept = [k for k, base in enumerate(bases) if edge_length(base) > within] or [0]
+    bases, called = tuple(bases[k] for k in kept), tuple(called[k] for k in kept)
     if len(bases) == 1:
         return Chain(bases, (False,), is_closed(bases[0]), called, within)
     for k, base in enumerate(bases):

@@ -49,6 +49,23 @@ class CuredRows:
     conic: Conic | None = None
 
 
+@dataclass(frozen=True)
+class Cure:
+    """What was done to knot lines where the rows of a side are only continuous.
+
+    Attributes
+    ----------
+    name : {"none", "conic", "spans", "slopes"}
+    words : str
+    left : tuple of Jump
+        Lines at which the blend is not smooth all the same.
+    """
+
+    name: CureName
+    words: str
+    left: tuple[Jump, ...]
+
+
 def cured_rows(
     rows: FloatArray,
     along: Basis,

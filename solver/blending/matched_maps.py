@@ -10,9 +10,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
+from math import factorial
 
 import numpy as np
-from scipy.interpolate import CubicHermiteSpline, CubicSpline, PchipInterpolator, PPoly
+from scipy.interpolate import CubicSpline, PchipInterpolator, PPoly
 
 from semispline.solver.arrays import FloatArray
 from semispline.solver.blending.layout import common_corners
@@ -29,9 +30,11 @@ _MOST_HALVINGS = 4
 _LENGTH_SAMPLES = 512
 # Stations nearer than this part of the domain are one.
 _APART = 1e-6
-# Of secants: a C2 map that rises more slowly somewhere is not taken, and one that is only C1 ends no more slowly.
-_LEAST_SLOPE, _END_SLOPE = 0.1, 0.5
 _MOST_DEGREE = 25
+# A smoother map that nearly stands still is left for one that does not.
+_LEAST_RISE = 0.2
+# Derivatives at a seam that agree to this part are the same.
+_SMOOTH = 1e-9
 _INNER_ORDER = 2
 
 
@@ -42,6 +45,7 @@ class VMap:
     Attributes
     ----------
     function : PPoly
+        Onto the domain, or, of closed sides, onto as long a range that begins later: there b goes around.
     order : int
         How many of its derivatives are continuous.
     """
@@ -53,15 +57,15 @@ class VMap:
 def length_map(a: Side, b: Side, *, closed: bool) -> VMap:
     """Return the map of v by which each share of the length of a meets the same share of b's.
 
-    Corners that both have answer each other, whatever the lengths between them are. Where both are closed the seam is
-    as smooth as any other place.
+    Corners that both have answer each other, whatever the lengths between them are.
     """
     start, end = float(a.along.knots[0]), float(a.along.knots[-1])
     stops = np.concatenate([[start], common_corners(a.along, b.along), [end]])
     # At the knots of b: then it has no more spans than before.
     stations = breakpoints(b.along.knots)
     for halvings in range(_MOST_HALVINGS + 1):
-        found = _through(*_length_stations(a, b, stops, stations), stops, closed=closed)
+        x, y = _length_stations(a, b, stops, stations)
+        found = _around(x[:-1], y[:-1], start, end) if closed and len(stops) == 2 else _through(x, y, stops)
         if halvings == _MOST_HALVINGS or _worst_share(a, b, found, stops) <= _SHARES:
             break
         stations = np.sort(np.concatenate([stations, (stations[1:] + stations[:-1]) / 2]))
@@ -97,8 +101,8 @@ def _worst_share(a: Side, b: Side, found: VMap, stops: FloatArray) -> float:
     return worst
 
 
-def point_map(pairs: Sequence[tuple[float, float]], along: Basis, *, closed: bool) -> tuple[VMap, float]:
-    """Return the map through pairs of values of v, and how far the start of b has to be moved first.
+def point_map(pairs: Sequence[tuple[float, float]], along: Basis, *, closed: bool) -> VMap:
+    """Return the map through pairs of values of v.
 
     Parameters
     ----------
@@ -107,7 +111,7 @@ def point_map(pairs: Sequence[tuple[float, float]], along: Basis, *, closed: boo
     along : Basis
         Of either.
     closed : bool
-        There is no end that has to answer an end: the pairs alone say where the seam goes.
+        There is no end that has to answer an end: the pairs alone say what the start of a meets.
 
     Raises
     ------
@@ -120,17 +124,12 @@ def point_map(pairs: Sequence[tuple[float, float]], along: Basis, *, closed: boo
     if closed:
         # Unwound: each one after the one before it.
         y = y[0] + np.cumsum(np.concatenate([[0.0], np.mod(np.diff(y), length)]))
-        around_x, around_y = (np.concatenate([z - length, z, z + length]) for z in (x, y))
-        _check_monotone(around_x, around_y, length)
-        shift = float(PchipInterpolator(around_x, around_y)(start)) - start
-        x, y = np.concatenate([[start], x, [end]]), np.concatenate([[start], y - shift, [end]])
-        keep = np.append(True, np.diff(x) > _APART * length)
-        keep[-2] &= x[-1] - x[-2] > _APART * length
-        return _through(x[keep], y[keep], np.array([start, end]), closed=True), shift
+        _check_monotone(np.append(x, x[0] + length), np.append(y, y[0] + length), length)
+        return _around(x, y, start, end)
     inside = (x > start + _APART * length) & (x < end - _APART * length)
     x, y = np.concatenate([[start], x[inside], [end]]), np.concatenate([[start], y[inside], [end]])
     _check_monotone(x, y, length)
-    return _through(x, y, np.array([start, end]), closed=False), 0.0
+    return _through(x, y, np.array([start, end]))
 
 
 def _check_monotone(x: FloatArray, y: FloatArray, length: float) -> None:
@@ -141,15 +140,15 @@ def _check_monotone(x: FloatArray, y: FloatArray, length: float) -> None:
         )
 
 
-def _through(x: FloatArray, y: FloatArray, stops: FloatArray, *, closed: bool) -> VMap:
-    """Return a map through the points, C2 where that is monotone, else C1; between stops each on its own."""
+def _through(x: FloatArray, y: FloatArray, stops: FloatArray) -> VMap:
+    """Return a map through the points, C2 where that rises enough, else C1; between stops each on its own."""
     pieces, smooth = [], True
     for low, high in pairwise(stops):
         inside = (x >= low) & (x <= high)
-        around = closed and len(stops) == 2
-        piece = _smoothest(x[inside], y[inside], around=around)
-        if not _rises(piece):
-            piece, smooth = _slower(x[inside], y[inside], around=around), False
+        own = x[inside], y[inside]
+        piece: PPoly = CubicSpline(*own) if inside.sum() > 2 else _monotone(*own)
+        if not _rises(piece, *own):
+            piece, smooth = _monotone(*own), False
         pieces.append(piece)
     coefficients = np.concatenate([np.pad(piece.c, ((4 - len(piece.c), 0), (0, 0))) for piece in pieces], axis=1)
     places = np.concatenate([pieces[0].x[:1], *(piece.x[1:] for piece in pieces)])
@@ -157,43 +156,43 @@ def _through(x: FloatArray, y: FloatArray, stops: FloatArray, *, closed: bool) -
     return VMap(PPoly(coefficients, places), order)
 
 
-def _smoothest(x: FloatArray, y: FloatArray, *, around: bool) -> PPoly:
-    """Return a C2 map through points; at the seam too where it goes `around`."""
-    if len(x) == 2:
-        return PchipInterpolator(x, y)
-    if not around:
-        return CubicSpline(x, y)
-    # What a map adds to the parameter comes back to itself.
-    added = y - x
-    added[-1] = added[0]
-    found = CubicSpline(x, added, bc_type="periodic")
-    coefficients = found.c.copy()
-    coefficients[2] += 1.0
-    coefficients[3] += x[:-1]
-    return PPoly(coefficients, x)
+def _monotone(x: FloatArray, y: FloatArray) -> PPoly:
+    """Return a C1 map that rises everywhere: at both ends as fast as between the points next to them."""
+    ghosts = [np.concatenate([[2 * z[0] - z[1]], z, [2 * z[-1] - z[-2]]]) for z in (x, y)]
+    return _cut(PchipInterpolator(*ghosts), x[0], x[-1])
 
 
-def _slower(x: FloatArray, y: FloatArray, *, around: bool) -> PPoly:
-    """Return a C1 map through points that rise, which rises; at the seam too where it goes `around`."""
-    if around:
-        length = x[-1] - x[0]
-        padded = (np.concatenate([z[:-1] - length, z, z[1:] + length]) for z in (x, y))
-        slopes = PchipInterpolator(*padded).derivative()(x)
-        slopes[-1] = slopes[0]
-    else:
-        slopes = PchipInterpolator(x, y).derivative()(x)
-        # At an end it may be zero: there the blend would have no tangent along.
-        secants = (np.diff(y) / np.diff(x))[[0, -1]]
-        slopes[[0, -1]] = np.maximum(slopes[[0, -1]], _END_SLOPE * secants)
-    return CubicHermiteSpline(x, y, slopes)
-
-
-def _rises(function: PPoly) -> bool:
-    """Tell whether a map rises everywhere, and nowhere much more slowly than between its points."""
+def _rises(function: PPoly, x: FloatArray, y: FloatArray) -> bool:
+    """Tell whether a function rises everywhere, by a part at least of the least slope between its points."""
     slope = function.derivative()
     places = np.concatenate([function.x, [x for x in slope.derivative().roots(extrapolate=False) if np.isfinite(x)]])
-    secants = np.diff(function(function.x)) / np.diff(function.x)
-    return bool(slope(places).min() > _LEAST_SLOPE * secants.min())
+    return bool(slope(places).min() > _LEAST_RISE * (np.diff(y) / np.diff(x)).min())
+
+
+def _around(x: FloatArray, y: FloatArray, start: float, end: float) -> VMap:
+    """Return a map of closed sides through the points of one period, as smooth at its ends as inside."""
+    length = end - start
+    over, order = np.append(x, x[0] + length), 2
+    change = CubicSpline(over, np.append(y - x, y[0] - x[0]), bc_type="periodic")
+    coefficients = np.pad(change.c, ((4 - len(change.c), 0), (0, 0)))
+    coefficients[-2:] += np.stack([np.ones(len(x)), x])
+    if not _rises(PPoly(coefficients, over), over, np.append(y, y[0] + length)):
+        pchip, order = PchipInterpolator(*(np.concatenate([z - length, z, z + length]) for z in (x, y))), 1
+        coefficients = _cut(pchip, over[0], over[-1]).c
+    before = coefficients.copy()
+    before[-1] -= length
+    both = PPoly(np.concatenate([before, coefficients], axis=1), np.concatenate([over[:-1] - length, over]))
+    function = _cut(both, start, end)
+    # It begins within the domain, however the pairs are counted.
+    function.c[-1] -= length * np.floor((float(function(start)) - start) / length + _APART)
+    return VMap(function, order)
+
+
+def _cut(function: PPoly, low: float, high: float) -> PPoly:
+    """Return a piecewise cubic function over a part of where it is known."""
+    within = _APART * (high - low)
+    x = np.concatenate([[low], function.x[(function.x > low + within) & (function.x < high - within)], [high]])
+    return PPoly(np.stack([function.derivative(k)(x[:-1]) / factorial(k) for k in (3, 2, 1, 0)]), x)
 
 
 def run_by(side: Side, by: VMap) -> Side:
@@ -211,9 +210,16 @@ def run_by(side: Side, by: VMap) -> Side:
             "match, or name the bases the other way round"
         )
     breaks, pieces = bezier_pieces(side.rows, side.along)
-    own = np.unique(np.concatenate([_before(by.function, breaks), by.function.x]))
-    keep = np.append(True, np.diff(own) > _APART * 1e-6 * np.ptp(own))
-    places = own[keep]
+    tiny, end, length = _APART * 1e-6 * np.ptp(breaks), float(breaks[-1]), float(np.ptp(breaks))
+    first, last = (float(x) for x in by.function(by.function.x[[0, -1]]))
+    at_seam = _seam_order(breaks, pieces)
+    knots = side.along.knots
+    if last > end + tiny:
+        breaks, pieces = np.concatenate([breaks, breaks[1:] + length]), np.concatenate([pieces, pieces])
+        knots = np.concatenate([knots[knots < end], np.repeat(end, q - at_seam), knots[knots > breaks[0]] + length])
+    inner = breaks[(breaks > first + tiny) & (breaks < last - tiny)]
+    own = np.unique(np.concatenate([_before(by.function, inner), by.function.x]))
+    places = own[np.append(True, np.diff(own) > _APART * 1e-6 * np.ptp(own))]
     t = chebyshev_places(3 * q + 1)
     points, smooth = [], []
     for low, high in pairwise(places):
@@ -222,20 +228,25 @@ def run_by(side: Side, by: VMap) -> Side:
         width = breaks[k + 1] - breaks[k]
         at = np.clip((by.function(low + (high - low) * t) - breaks[k]) / width, 0.0, 1.0)
         points.append(bezier_points(bezier_derivatives(pieces[k], float(width), at, 0)[:, 0]))
-    knots = side.along.knots
     for place in places[1:-1]:
-        value = float(by.function(place))
-        count = int(np.sum(np.abs(knots - value) <= _APART * 1e-6 * np.ptp(breaks)))
+        count = int(np.sum(np.abs(knots - float(by.function(place))) <= tiny))
         of_map = by.order if np.abs(by.function.x - place).min() <= _APART * 1e-6 * np.ptp(own) else _INNER_ORDER
         smooth.append(min(q - count, of_map, _INNER_ORDER))
     rows, along = joined_spans(points, places, smooth)
     return replace(side, rows=rows, along=along)
 
 
+def _seam_order(breaks: FloatArray, pieces: FloatArray) -> int:
+    """Return how many derivatives of a closed side agree at its seam: 0 or 1."""
+    before = (pieces[-1][:, -1] - pieces[-1][:, -2]) / (breaks[-1] - breaks[-2])
+    after = (pieces[0][:, 1] - pieces[0][:, 0]) / (breaks[1] - breaks[0])
+    return int(np.abs(before - after).max() <= _SMOOTH * np.abs(after).max())
+
+
 def _before(function: PPoly, values: FloatArray) -> FloatArray:
     """Return where a rising function has the given values."""
     found = []
-    for value in values[1:-1]:
+    for value in values:
         roots = function.solve(value, extrapolate=False)
         found.append(float(roots[np.isfinite(roots)][0]))
-    return np.array([function.x[0], *found, function.x[-1]])
+    return np.array(found)

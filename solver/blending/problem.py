@@ -12,6 +12,7 @@ import numpy as np
 
 from semispline.solver.arrays import FloatArray
 from semispline.solver.blending.closing import seam_order, with_least_size
+from semispline.solver.blending.cures import Cure
 from semispline.solver.blending.exits import Exits, measure_exits
 from semispline.solver.blending.facing import measure_facing
 from semispline.solver.blending.free_system import FreeSystem
@@ -20,7 +21,6 @@ from semispline.solver.blending.layout import blend_u_basis, middle_bases
 from semispline.solver.blending.linear_alpha import LinearEnds, LinearInV, linear_rows, monomials_of_ends, raised_basis
 from semispline.solver.blending.rational_energy import RationalForm, RationalSystem, free_weights
 from semispline.solver.blending.representative import (
-    Cure,
     Representative,
     smooth_along,
 )

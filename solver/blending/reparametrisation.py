@@ -98,8 +98,10 @@ def _composed(derivatives: FloatArray, w: FloatArray, q: FloatArray) -> FloatArr
 
 def _product(a: FloatArray, b: FloatArray) -> FloatArray:
     """Return the product of power series, cut off where they are."""
-    total = [sum((a[i] * b[k - i] for i in range(k + 1)), np.zeros_like(a[0] * b[0])) for k in range(len(a))]
-    return np.stack(total)
+    total = a[0] * b
+    for i in range(1, len(a)):
+        total[i:] += a[i] * b[:-i]
+    return np.asarray(total)
 
 
 def _factorials(count: int) -> FloatArray:

@@ -7,8 +7,7 @@ from dataclasses import dataclass, replace
 from semispline.solver.arrays import FloatArray
 from semispline.solver.blending.closing import seam_order
 from semispline.solver.blending.conics import recognised_conic, same_arcs
-from semispline.solver.blending.cures import CuredRows, CureName, cured_rows
-from semispline.solver.blending.jumps import Jump
+from semispline.solver.blending.cures import Cure, CuredRows, cured_rows
 from semispline.solver.blending.ladder import Rung, Window, tamed
 from semispline.solver.blending.sides import Side
 from semispline.solver.blending.weights import is_separable
@@ -59,23 +58,6 @@ def needs_constant_weights(options: BlendOptions) -> bool:
     return is_linear or "energy" in options.alphas or has_free_rows(options)
 
 
-@dataclass(frozen=True)
-class Cure:
-    """What was done to knot lines where the rows of a side are only continuous.
-
-    Attributes
-    ----------
-    name : {"none", "conic", "spans", "slopes"}
-    words : str
-    left : tuple of Jump
-        Lines at which the blend is not smooth all the same.
-    """
-
-    name: CureName
-    words: str
-    left: tuple[Jump, ...]
-
-
 def smooth_along(a: Side, b: Side, options: BlendOptions) -> tuple[tuple[Side, Cure | None], tuple[Side, Cure | None]]:
     """Make rows smooth along where they would crease the blend else; and say what was done.
 
@@ -83,8 +65,13 @@ def smooth_along(a: Side, b: Side, options: BlendOptions) -> tuple[tuple[Side, C
     not share it.
     """
     if a.keeps_lines and b.keeps_lines:
-        return (a, None), (b, None)
-    order, shared = max(a.order, b.order), not has_free_rows(options)
+        return (a, a.cure), (b, b.cure)
+    return smooth_sides(a, b, shared=not has_free_rows(options))
+
+
+def smooth_sides(a: Side, b: Side, *, shared: bool) -> tuple[tuple[Side, Cure | None], tuple[Side, Cure | None]]:
+    """As `smooth_along`; `shared` says whether what both sides share may stay."""
+    order = max(a.order, b.order)
     found_a, found_b = (_cured(side, order) for side in (a, b))
     if found_a.cure == found_b.cure == "none" or (shared and _jump_alike(a, found_a, found_b)):
         return (a, _as_found(found_a)), (b, _as_found(found_b))
@@ -92,7 +79,8 @@ def smooth_along(a: Side, b: Side, options: BlendOptions) -> tuple[tuple[Side, C
     if a.is_rational:
         found_a = _as_the_other(a, found_a, found_b, order)
         found_b = _as_the_other(b, found_b, found_a, order)
-    return _with_cure(a, found_a), _with_cure(b, found_b)
+    by_angle = found_a.cure == found_b.cure == "conic"
+    return _with_cure(a, found_a, by_angle), _with_cure(b, found_b, by_angle)
 
 
 def _cured(side: Side, order: int) -> CuredRows:
@@ -143,13 +131,15 @@ def _as_found(found: CuredRows) -> Cure | None:
     return Cure("none", "", left) if left else None
 
 
-def _with_cure(side: Side, found: CuredRows) -> tuple[Side, Cure | None]:
+def _with_cure(side: Side, found: CuredRows, by_angle: bool) -> tuple[Side, Cure | None]:
+    """Return the side with its cured rows; circles of both sides run by angle, one alone by its own parameter."""
     if found.cure == "none":
         return side, _as_found(found)
     places = ", ".join(f"{jump.v:.5g}" for jump in found.found if jump not in found.left)
     kind = "conic" if found.conic is None else found.conic.kind
     words = {
-        "conic": f"{kind} reparametrised, degree {found.along.degree}" + ", corresponds by angle" * (kind == "circle"),
+        "conic": f"{kind} reparametrised, degree {found.along.degree}"
+        + ", corresponds by angle" * (by_angle and kind == "circle"),
         "spans": f"spans scaled by the jump of speed at v = {places}",
         "slopes": f"G1 at v = {places}, closed by slopes of the reparametrisation",
     }[found.cure]

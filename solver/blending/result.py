@@ -8,8 +8,9 @@ from functools import cached_property
 from semispline.solver.blending.band_contact import BandContact
 from semispline.solver.blending.candidates import Candidate
 from semispline.solver.blending.chain_contact import ChainContact
+from semispline.solver.blending.cures import Cure
 from semispline.solver.blending.linear_alpha import LinearInV
-from semispline.solver.blending.representative import Cure, Representative
+from semispline.solver.blending.representative import Representative
 from semispline.solver.judge import Contact, Crease, Regularity, ShapeReport
 from semispline.solver.options import BlendOptions, Continuity
 from semispline.solver.proof import Certificate

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from semispline.solver.blending.representative import Cure
+from semispline.solver.blending.cures import Cure
 from semispline.solver.judge import FOLD_DEGREES, LOOP_DEGREES, Crease, Regularity, ShapeReport
 from semispline.solver.options import BlendOptions
 

@@ -98,7 +98,7 @@ def blend_command(
         check_outputs({f"--out {file}": file for file in files} | {"--report": report}, wanted.specs)
         results = [blend_bases(*pair, options, several=len(pairs) > 1) for pair in pairs]
     results[0] = replace(results[0], warnings=(*trims, *results[0].warnings))
-    record = reports_record(results) | asked(ends) | wanted.record
+    record = reports_record(results) | {"a": ends[0].spec, "b": ends[1].spec} | asked(ends) | wanted.record
     whole = Path(out).suffix.lower() == ".json"
     of_parts = [
         [

@@ -59,6 +59,8 @@ def print_face_contact(found: FreeContact, unit: str | None, required: Continuit
         f"measured on the face itself, at {found.face}, along {found.contact.length:.4g} of its {found.length:.4g} "
         f"{unit or 'model units'}, by parameters of edge {found.along.upper()}; {found.limits} limits"
     )
+    if required in ("C1", "C2"):
+        typer.echo(f"{required}, which is of parameters, counts as G{required[1]}: a free curve has none across it")
 
 
 def face_misses(found: FreeContact, required: Continuity | None) -> Sequence[str]:

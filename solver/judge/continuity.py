@@ -162,11 +162,11 @@ def _told(edges: Edges, pairs: Pairs, found: Samples, result: Contact, hidden: S
     with nothing allowed for rounding, it is what counts, and floating values may differ from it by what they do there.
     """
     kinds = [_KINDS[name] for name in hidden]
-    if not np.isfinite(found.values).all():
-        return result
-    worst = np.argsort(-found.values[kinds], axis=1)[:, :_LOOKED_AT].ravel()
-    spread = np.linspace(0, len(found.s_a) - 1, _LOOKED_AT).astype(int)
-    chosen = np.unique(np.concatenate([worst, spread]))
+    # Between samples stands only what is more than rounding.
+    sampled = np.flatnonzero(np.isfinite(found.values[kinds]).all(axis=0))
+    worst = np.argsort(-found.values[kinds][:, sampled], axis=1)[:, :_LOOKED_AT].ravel()
+    spread = np.linspace(0, len(sampled) - 1, _LOOKED_AT).astype(int)
+    chosen = sampled[np.unique(np.concatenate([worst, spread]))]
     s_a = found.s_a[chosen]
     precise = edges.measured_precisely(s_a, pairs.along_b(s_a), pairs.pace)
     rounding, limits = dict(result.rounding), allowed_measures(result.size, dict.fromkeys(hidden, 0.0))

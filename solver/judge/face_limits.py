@@ -4,15 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from semispline.solver.judge.base import Base
+import numpy as np
+
+from semispline.solver.judge.base import Base, local_origin
 from semispline.solver.judge.continuity import measure_contact, model_size
+from semispline.solver.judge.de_boor import edge_curves
 from semispline.solver.judge.face_contact import FaceContact
 from semispline.solver.judge.limits import CAD_ANGLE, CAD_JUMP, CAD_RATE, required_measures
+from semispline.solver.judge.rounding import derivative_noises
 from semispline.solver.options import Continuity
 from semispline.solver.splines import BSplineSurface
 
 # Power of a length in the scale of each relative measure: what is flat counts over the size of the face.
 _POWERS = {"curvature_jump_relative": 1, "rate_jump_relative": 2, "second_rate_jump_relative": 3}
+# Of the scale of curvature, over the size of the face.
+_FLOOR = 1e-3
 _MOST = {
     "angle_degrees": CAD_ANGLE,
     "curvature_jump_relative": CAD_JUMP,
@@ -33,7 +39,29 @@ def exact_face_limits(base: Base, face: BSplineSurface, order: int = 2) -> dict[
     for name, power in list(_POWERS.items())[: order - 1]:
         # The limit itself is of the scale of the face; rounding was over that of the surface.
         allowed[name] = own.allowed[name] + own.rounding[name] * (wider**power - 1)
+    allowed["curvature_jump_relative"] += _rounding_along(base, face)
     return {name: min(limit, _MOST.get(name, limit)) for name, limit in allowed.items()}
+
+
+def _rounding_along(base: Base, face: BSplineSurface) -> float:
+    """Bound what rounding may do to curvature along the edge and to the mixed one, over their scale.
+
+    Of two surfaces with a common edge these are the same, and no limit of `measure_contact` counts them. On a face the
+    edge's own derivatives are measured, and where a seam was moved its first span may be short.
+    """
+    origin = local_origin(base.surface, face)
+    breaks = base.breakpoints_along()
+    s = np.unique(np.concatenate([breaks, (breaks[1:] + breaks[:-1]) / 2]))
+    jet = edge_curves(base.surface, base.side, 2, origin).points(s, 2)
+    noises = derivative_noises(base, origin)
+    across, along = (np.linalg.norm(jet[key], axis=1).min() for key in ((1, 0), (0, 1)))
+    if not min(across, along) > 0:
+        return 0.0
+    normal = np.cross(jet[1, 0], jet[0, 1])
+    normal /= np.maximum(np.linalg.norm(normal, axis=1), 1e-300)[:, None]
+    bends = np.abs(np.sum(jet[0, 2] * normal, axis=1)) / np.sum(jet[0, 1] ** 2, axis=1)
+    scale = max(float(bends.max()), _FLOOR / model_size(face))
+    return float(max(noises[0, 2] / along**2, noises[1, 1] / (across * along)) / scale)
 
 
 def face_shortfalls(

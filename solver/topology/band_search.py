@@ -142,7 +142,14 @@ def worst_share(found: BandMeasures, limits: BandLimits) -> float:
 def is_plane(face: Face) -> bool:
     """Tell whether all control points lie in a plane, up to rounding."""
     points = face.surface.control_points.reshape(-1, 3)
-    points = points - points.mean(axis=0)
+    middle, normal = plane_of(face)
+    return bool(np.abs((points - middle) @ normal).max() <= 1e-13 * np.abs(points - middle).max())
+
+
+def plane_of(face: Face) -> tuple[FloatArray, FloatArray]:
+    """Return a point and the unit normal of the plane that is nearest to all control points."""
+    points = face.surface.control_points.reshape(-1, 3)
+    middle = points.mean(axis=0)
     # The smallest extent; singular values are of all points together.
-    _, _, axes = np.linalg.svd(points, full_matrices=False)
-    return bool(np.abs(points @ axes[-1]).max() <= 1e-13 * np.abs(points).max())
+    _, _, axes = np.linalg.svd(points - middle, full_matrices=False)
+    return middle, axes[-1]

@@ -19,7 +19,7 @@ from semispline.solver.errors import BandError, EdgeError, OptionError
 from semispline.solver.judge import Base
 from semispline.solver.splines import BSplineCurve, BSplineSurface
 from semispline.solver.topology.band_refusals import refusal, wild_end
-from semispline.solver.topology.band_search import BandFit, Continuity, band_limits, fit_band, is_plane
+from semispline.solver.topology.band_search import BandFit, Continuity, band_limits, fit_band, is_plane, plane_of
 from semispline.solver.topology.curve_pieces import Break, CurvePiece, pieces, turns_at_breaks
 from semispline.solver.topology.curve_smoothing import sagitta, smoothed
 from semispline.solver.topology.face_curves import Source, trim_curve
@@ -262,8 +262,8 @@ def _reason(piece: CurvePiece, end: float, breaks: list[Break]) -> str:
 
 def band_surface(fit: BandFit, flat: bool, origin: FloatArray) -> BSplineSurface:
     """Return sum over k of R_k w^k / k! for w in [0, L / 10], as a Bezier surface in w."""
-    width, order = _WIDTH * fit.piece.length, len(fit.rows) - 1
-    rows = fit.rows[:2] if flat else fit.rows
+    width = _WIDTH * fit.piece.length
+    rows = _in_plane(fit) if flat else fit.rows
     order = len(rows) - 1
     points = [
         sum((comb(j, i) / comb(order, i) * width**i / factorial(i)) * rows[i] for i in range(j + 1))
@@ -271,3 +271,10 @@ def band_surface(fit: BandFit, flat: bool, origin: FloatArray) -> BSplineSurface
     ]
     knots = np.repeat([0.0, width], order + 1)
     return BSplineSurface(order, fit.degree, knots, fit.knots, np.stack(points) + origin)
+
+
+def _in_plane(fit: BandFit) -> FloatArray:
+    """Return the rows along a curve of a flat face, brought into it: rounding of the fit would bend them."""
+    corner, normal = plane_of(fit.piece.face)
+    foot, into = fit.rows[:2]
+    return np.stack([foot - ((foot - corner) @ normal)[:, None] * normal, into - (into @ normal)[:, None] * normal])

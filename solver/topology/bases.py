@@ -10,7 +10,7 @@ import numpy as np
 
 from semispline.solver.arrays import FloatArray
 from semispline.solver.errors import EdgeError
-from semispline.solver.io import split_spec
+from semispline.solver.io import MILLIMETRES, split_spec
 from semispline.solver.judge import Base
 from semispline.solver.options import Continuity
 from semispline.solver.topology.chain_edges import ResolvedChain, members
@@ -96,7 +96,9 @@ def _runs(edges: Sequence[tuple[ResolvedEdge, str, TrimCurve | None]], wanted: C
 
 def _bases_of_edge(end: ResolvedEdge, curve: TrimCurve | None, wanted: Continuity) -> tuple[EdgeBase, ...]:
     if curve is None:
-        return (EdgeBase(end.edge, Base(end.surface, end.edge)),)
+        unit = end.loaded.unit
+        millimetres = None if unit is None else MILLIMETRES[unit]
+        return (EdgeBase(end.edge, Base(end.surface, end.edge), millimetres=millimetres),)
     return bases_along(curve, wanted, end.part)
 
 
@@ -137,7 +139,10 @@ def bases_along(curve: TrimCurve, continuity: Continuity = "G2", part: int | Non
     bands = curve.bands("G1" if continuity[1] == "0" else f"G{continuity[1]}", part)  # type: ignore[arg-type]
     numbers: Sequence[int] = range(len(bands)) if part is None else [part]
     names = [curve.word] if part is None and len(bands) == 1 else [f"{curve.word}[{k}]" for k in numbers]
-    return tuple(EdgeBase(name, band.base, band, curve) for name, band in zip(names, bands, strict=True))
+    return tuple(
+        EdgeBase(name, band.base, band, curve, millimetres=curve.millimetres)
+        for name, band in zip(names, bands, strict=True)
+    )
 
 
 def paired_bases(a: Sequence[EdgeBase], b: Sequence[EdgeBase]) -> list[tuple[EdgeBase, EdgeBase]]:

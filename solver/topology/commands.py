@@ -34,7 +34,7 @@ def with_commands(graph: EdgeGraph, relations: Relations, place: Place, betweens
     if words is not None:
         return replace(place, commands=(_between_chains(graph.path, place, words),))
     if not place.faces:
-        return replace(place, commands=tuple(_two_faces(graph.path, place)))
+        return replace(place, commands=tuple(two_faces(graph.path, place)))
     edges = (_edges_to_name(graph, relations, betweens[face]) for face in place.faces)
     commands = (replacing(graph.path, face, names) for face, names in zip(place.faces, edges, strict=True))
     return replace(place, commands=tuple(commands))
@@ -109,7 +109,7 @@ def _edges_to_name(graph: EdgeGraph, relations: Relations, between: Between) -> 
     return graph.uses.name(rows[0]), graph.uses.name(rows[1])
 
 
-def _two_faces(path: str, place: Place) -> Iterator[str]:
+def two_faces(path: str, place: Place) -> Iterator[str]:
     """Yield the command of two edges; of a gap with as many on both sides, of each edge and the one that faces it."""
     sides = [[(side.face, side.edge), *side.more] for side in (place.a, place.b)]
     cuts: list[str] = []

@@ -21,10 +21,11 @@ from scipy.optimize import brentq
 
 from semispline.solver.arrays import FloatArray
 from semispline.solver.errors import EdgeError, OptionError
+from semispline.solver.judge import cad_measures
 from semispline.solver.splines import BSplineCurve, BSplineSurface, EdgeName, parse_edge
-from semispline.solver.topology.face_jets import Face
+from semispline.solver.topology.face_jets import Face, dot
 from semispline.solver.topology.outlines import Outline
-from semispline.solver.topology.parallels import Paths, crossings, focal_distance, paths_from
+from semispline.solver.topology.parallels import Paths, crossings, focal_distance, lost_distances, paths_from
 from semispline.solver.topology.trim_curves import TrimCurve
 
 _PARAMETER = re.compile(r"([uv])=(.+)")
@@ -32,8 +33,13 @@ _PARAMETER = re.compile(r"([uv])=(.+)")
 _PATHS, _PLACES, _DEGREE = 41, 161, 5
 # Divisions to the end of a free contact, and parts of each: 40 bisections' worth, a step far below any tolerance.
 _DIVISIONS, _PARTS = 8, 32
+# More places where these are too few: the curve between them may be off by this share of what a gap may be.
+_MOST_PLACES, _SHARE, _NEWTON = 2600, 0.1, 4
 # Of the range of a parameter: what is nearer to an end means the end.
 _SNAP = 1e-9
+# Of the size of a face: what is farther is hardly in it; where one begins to look how far it goes, and how closely.
+_FAR, _NEAREST = 2.0, 1e-3
+_BEYOND, _OVER_A_POLE = "beyond the face", "over a pole of the face"
 _INTERVALS = 16
 _GAUSS = np.polynomial.legendre.leggauss(6)
 # Times that lengths of chords are made lengths of the curve through their ends.
@@ -145,8 +151,7 @@ def moved_contact(
     face = Face(surface)
     curve = _named_curve(surface, name) if name is not None else _trim_curve(outline, title)
     inside = curve.ends[0] + (np.arange(_PATHS) + 0.5) / _PATHS * (curve.ends[1] - curve.ends[0])
-    paths = curve.paths(face, inside, cut.distance)
-    _check_reach(paths, outline, cut.distance, title)
+    paths = _checked_paths(face, curve, inside, cut.distance, outline, title)
     if name is not None:
         axis = 0 if name.direction == "u" else 1
         last = paths.at[-1]
@@ -155,7 +160,7 @@ def moved_contact(
             value = _exactly(face, paths, axis, cut.distance)
             moved = _line(surface, name, value, float(last[_PATHS // 2, 1 - axis]), outline, title)
             return MovedContact(moved, None, f"{moved}, {cut.distance:g} inside")
-    through = _through(face, _inside(face, curve, cut.distance, outline))
+    through = _fine_enough(face, curve, cut.distance, outline, millimetres, title)
     points = np.column_stack([through.c, np.zeros(len(through.c))])
     moved_curve = TrimCurve(
         name=f"edge {word} moved {cut.distance:g} into its face",
@@ -223,16 +228,48 @@ def _trim_curve(outline: Outline, title: str) -> _Curve:
     return _Curve((first, last), 1.0 if trim.keep == "left" else -1.0, trim.pcurve, closed)
 
 
-def _check_reach(paths: Paths, outline: Outline, distance: float, title: str) -> None:
-    """Refuse a distance that leaves the face, or at which the paths have crossed."""
+def _checked_paths(face: Face, curve: _Curve, x: FloatArray, distance: float, outline: Outline, title: str) -> Paths:
+    """Return the paths from places of an edge; refuse a distance that leaves the face, or at which they have crossed.
+
+    Steps of a distance that is far too large tell nothing: how far one can go is found by doubling a small one.
+    """
+    good, tried = 0.0, distance if distance <= _FAR * face.size else _NEAREST * face.size
+    paths = curve.paths(face, x, tried)
+    reach, why = _reach(face, paths, outline)
+    if tried == distance:
+        if distance < reach:
+            return paths
+        tried = min(_NEAREST * face.size, distance / 2)
+        paths = curve.paths(face, x, tried)
+        reach, why = _reach(face, paths, outline)
+    while tried < reach:
+        if tried == distance:
+            return paths
+        good, tried = tried, min(2 * tried, distance)
+        paths = curve.paths(face, x, tried)
+        reach, why = _reach(face, paths, outline)
+    # Where paths are lost is known by steps alone, and what was passed before is no end.
+    while not (reach > good and why == _BEYOND) and tried - good > _NEAREST * tried:
+        middle = (good + tried) / 2
+        further, then = _reach(face, curve.paths(face, x, middle), outline)
+        good, tried, why = (middle, tried, why) if middle < further else (good, middle, then)
+        reach = good
+    raise EdgeError(f"{title}: {distance:g} reaches {why}, expected a distance below {reach:.4g}")
+
+
+def _reach(face: Face, paths: Paths, outline: Outline) -> tuple[float, str]:
+    """Return the distance at which paths leave the face or cross, or all have run out, and what is there.
+
+    It is infinite where they do not.
+    """
     leaves = crossings(paths, outline.others).min(axis=0, initial=np.inf)
     ends = crossings(paths, outline.ends).min(axis=0, initial=np.inf)
-    beyond = float(np.where(leaves < ends, leaves, np.inf).min())
+    lost = lost_distances(face, paths)
+    beyond, pole = (float(np.where(x < ends, x, np.inf).min()) for x in (leaves, lost))
     # Where all run out at the ends the contact has shrunk to nothing.
     nothing = float(ends.max())
     largest = min(beyond, nothing, focal_distance(paths))
-    if not distance < largest:
-        raise EdgeError(f"{title}: {distance:g} reaches beyond the face, expected a distance below {largest:.4g}")
+    return (pole, _OVER_A_POLE) if pole < largest else (largest, _BEYOND)
 
 
 def _to_parameter(surface: BSplineSurface, name: EdgeName, cut: Cut, outline: Outline, title: str) -> MovedContact:
@@ -321,8 +358,11 @@ def _met(lines: Sequence[FloatArray], axis: int, at: float, start: float, sign: 
     return nearest
 
 
-def _through(face: Face, at: FloatArray) -> Any:
-    """Return a spline through parameters, by lengths in space: the edge's own parameter may be no smoother than C1."""
+def _through(face: Face, at: FloatArray) -> tuple[Any, FloatArray]:
+    """Return a spline through parameters and where it meets them.
+
+    By lengths in space: the edge's own parameter may be no smoother than C1.
+    """
     points = face.jet(at, 0)[0, 0]
     s = np.append(0.0, np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1)))
     for _ in range(_REFINED):
@@ -330,21 +370,55 @@ def _through(face: Face, at: FloatArray) -> Any:
         half, middle = np.diff(s) / 2, (s[1:] + s[:-1]) / 2
         speeds = np.linalg.norm(slope(middle[:, None] + half[:, None] * _GAUSS[0]), axis=2)
         s = np.append(0.0, np.cumsum(half * (speeds @ _GAUSS[1])))
-    return make_interp_spline(s, at, _DEGREE)
+    return make_interp_spline(s, at, _DEGREE), s
 
 
-def _inside(face: Face, curve: _Curve, distance: float, outline: Outline) -> FloatArray:
-    """Return parameters at a distance from places of an edge, as far as the edges of the face at both its ends."""
-    start, end = curve.ends
-    if not curve.closed:
-        inside = start + (np.arange(_PATHS) + 0.5) / _PATHS * (end - start)
-        kept = inside[~curve.run_out(face, inside, distance, outline)]
-        start = curve.end_inside(face, float(kept[0]), start, distance, outline)
-        end = curve.end_inside(face, float(kept[-1]), end, distance, outline)
+def _fine_enough(
+    face: Face, curve: _Curve, distance: float, outline: Outline, millimetres: float | None, title: str
+) -> Any:
+    """Return a spline through parameters at a distance from an edge that is as far from it between its places.
+
+    Beside a pole the parameters turn much faster than the curve.
+    """
+    start, end = _inside(face, curve, distance, outline)
     x = np.linspace(start, end, _PLACES)
     at = curve.paths(face, x, distance).at[-1]
     if curve.closed:
         # The curve ends where it began, perhaps a turn later.
         ends = curve.spline.evaluate(x[[0, -1]])[:, :2]
         at[-1] = at[0] + ends[1] - ends[0]
-    return np.asarray(at)
+    while len(x) < _MOST_PLACES:
+        spline, s = _through(face, at)
+        middles = (x[1:] + x[:-1]) / 2
+        between = curve.paths(face, middles, distance)
+        if _off_spline(face, spline, between.point[-1], s) <= _SHARE * cad_measures(float(s[-1]), millimetres)["gap"]:
+            return spline
+        rows = np.arange(1, len(x))
+        x, at = np.insert(x, rows, middles), np.insert(at, rows, between.at[-1], axis=0)
+    raise EdgeError(
+        f"{title}: at {distance:g} the contact bends too sharply in the parameters of the face, as beside a pole, "
+        "expected a smaller distance"
+    )
+
+
+def _off_spline(face: Face, spline: Any, points: FloatArray, at: FloatArray) -> float:
+    """Return the largest distance of points from a spline in the parameters; each lies between two of its places."""
+    slope, s = spline.derivative(), (at[1:] + at[:-1]) / 2
+    for _ in range(_NEWTON):
+        jet, turn = face.jet(spline(s), 1), slope(s)
+        tangent = jet[1, 0] * turn[:, :1] + jet[0, 1] * turn[:, 1:]
+        s = np.clip(s + dot(points - jet[0, 0], tangent) / dot(tangent, tangent), at[:-1], at[1:])
+    return float(np.linalg.norm(points - face.jet(spline(s), 0)[0, 0], axis=1).max())
+
+
+def _inside(face: Face, curve: _Curve, distance: float, outline: Outline) -> tuple[float, float]:
+    """Return the places of an edge between which paths of a distance do not meet the edges at its ends."""
+    start, end = curve.ends
+    if curve.closed:
+        return start, end
+    inside = start + (np.arange(_PATHS) + 0.5) / _PATHS * (end - start)
+    kept = inside[~curve.run_out(face, inside, distance, outline)]
+    return (
+        curve.end_inside(face, float(kept[0]), start, distance, outline),
+        curve.end_inside(face, float(kept[-1]), end, distance, outline),
+    )

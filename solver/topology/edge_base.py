@@ -25,6 +25,8 @@ class EdgeBase:
         The free curve, with the surface of its face.
     members : tuple of EdgeBase
         Of a chain its edges.
+    millimetres : float or None
+        In one model unit, where that is known.
     """
 
     name: str
@@ -32,6 +34,7 @@ class EdgeBase:
     band: Band | None = None
     curve: TrimCurve | None = None
     members: tuple[EdgeBase, ...] = ()
+    millimetres: float | None = None
 
     @property
     def bases(self) -> tuple[Base, ...]:

@@ -8,7 +8,14 @@ from typing import Any, Literal
 
 from semispline.solver.blending import BandContact, BlendResult, ChainContact, blend
 from semispline.solver.errors import ComputationError, ContactError, EdgeError
-from semispline.solver.judge import Base, face_shortfalls, measure_face_contact
+from semispline.solver.judge import (
+    Base,
+    Contact,
+    cad_measures,
+    edge_length,
+    face_shortfalls,
+    measure_face_contact,
+)
 from semispline.solver.options import BlendOptions, Continuity, named_options
 from semispline.solver.topology.bands import Band
 from semispline.solver.topology.bases import edge_bases, paired_bases
@@ -77,6 +84,12 @@ def blend_bases(a: EdgeBase, b: EdgeBase, options: BlendOptions, *, several: boo
             None if met is None else _with_bands(result, met, side, edge, options)
             for met, side, edge in ((result.chain_a, a, "u0"), (result.chain_b, b, "u1"))
         )
+        if options.limits == "cad" and not any((a.band, b.band, a.members, b.members)):
+            result = replace(
+                result,
+                contact_a=_in_unit(result.contact_a, a, "a"),
+                contact_b=_in_unit(result.contact_b, b, "b"),
+            )
     except ComputationError as error:
         if several:
             raise type(error)(f"{a.name} to {b.name}: {error}") from None
@@ -122,6 +135,18 @@ def _with_bands(
             band = _band_contact(result, part, part.band, f"{edge}[{low!r},{high!r}]", options)
             faces.append(replace(face, band=band))
     return replace(met, faces=tuple(faces))
+
+
+def _in_unit(contact: Contact, side: EdgeBase, which: str) -> Contact:
+    """Return a contact within cad limits whose gap is held to 0.001 mm too: `blend` knows of no unit."""
+    (base,) = side.bases
+    length = edge_length(base)
+    wide, gap = cad_measures(length)["gap"], cad_measures(length, side.millimetres)["gap"]
+    if contact.allowed["gap"] > wide or gap == wide:
+        return contact
+    if not contact.gap <= gap:
+        raise ContactError(f"contact {which}: gap is {contact.gap:.3g}, expected at most {gap:.3g} within cad limits")
+    return replace(contact, allowed=contact.allowed | {"gap": gap})
 
 
 def _said(options: BlendOptions, contacts: Sequence[BandContact | None]) -> Literal["exact", "cad"]:

@@ -193,7 +193,12 @@ def _spline(loaded: LoadedSurface) -> BSplineSurface:
 def _shared_edge(read: Callable[[str], MeasuredEdges], specs: tuple[str, str]) -> tuple[str, str]:
     """Return what the one edge is called that two faces of a file share."""
     (path, face), (other_path, other) = (split_spec(spec) for spec in specs)
-    if path != other_path or face is None or other is None or face == other:
+    if path == other_path and face is not None and face == other:
+        raise EdgeError(
+            f"--edge-a, --edge-b: missing, expected two edges of {specs[0]}: a face shares no edge with itself; "
+            f"`semispline list {path} --edges {face}` lists them"
+        )
+    if path != other_path or face is None or other is None:
         raise EdgeError(
             f"--edge-a, --edge-b: missing, expected the edges of {specs[0]} and {specs[1]}: only two faces of one "
             "file, PATH#N and PATH#M, can share one"

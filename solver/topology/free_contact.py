@@ -81,7 +81,10 @@ def measure_free_contact(
     assert curve is not None
     base = Base(end.surface, end.edge) if own is None else own.free_edge()
     edge = curve.free_edge()
-    profile = measure_face_profile(base, edge, order=order)
+    try:
+        profile = measure_face_profile(base, edge, order=order)
+    except EdgeError as error:
+        raise EdgeError(f"edge {end.edge} against {curve.name}: {error}") from None
     contact = worst_of_face(profile)
     free = [x for x in curves if x is not None]
     kind = _kind(free) if limits == "auto" else limits

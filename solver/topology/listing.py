@@ -110,8 +110,12 @@ def _row(place: Place) -> list[str]:
 
 
 def _left_out(place: Place) -> Iterator[str]:
-    """Yield, of a gap whose sides have different numbers of edges, those that its command does not name."""
-    if place.kind == "gap" and len(place.a.more) != len(place.b.more):
+    """Yield, of a gap whose sides have different numbers of edges, those that its command does not name.
+
+    A chain names them all: it says the faces with its edges, not with the files.
+    """
+    names_faces = any("#" in command for command in place.commands)
+    if place.kind == "gap" and names_faces and len(place.a.more) != len(place.b.more):
         for name, side in (("A", place.a), ("B", place.b)):
             if side.more:
                 others = ", ".join(f"#{face} {edge}" for face, edge in side.more)

@@ -22,6 +22,8 @@ from semispline.solver.topology.occ_edges import wires
 _OWN_PARAMETERS = ("B-spline", "Bezier")
 # A pcurve is taken over to other parameters through so many points.
 _PLACES, _DEGREE = 400, 5
+# Of a period: a range that misses it by less is a whole turn.
+_TURN = 1e-8
 # Arguments of `BSplineCurve`.
 Content = tuple[int, FloatArray, FloatArray, FloatArray | None]
 
@@ -81,8 +83,8 @@ def edge_curve(
     """
     from OCP.BRep import BRep_Tool
     from OCP.BRepAdaptor import BRepAdaptor_Curve, BRepAdaptor_Curve2d
-    from OCP.Geom import Geom_TrimmedCurve
-    from OCP.Geom2d import Geom2d_TrimmedCurve
+    from OCP.Geom import Geom_BSplineCurve, Geom_TrimmedCurve
+    from OCP.Geom2d import Geom2d_BSplineCurve, Geom2d_TrimmedCurve
     from OCP.Geom2dConvert import Geom2dConvert
     from OCP.GeomConvert import GeomConvert
     from OCP.TopAbs import TopAbs_Orientation
@@ -93,13 +95,13 @@ def edge_curve(
     in_space: Content | None = None
     if geometry is not None:
         adaptor = BRepAdaptor_Curve(edge)
-        cut = Geom_TrimmedCurve(geometry, adaptor.FirstParameter(), adaptor.LastParameter())
+        cut = Geom_TrimmedCurve(geometry, *_range(geometry, adaptor, Geom_BSplineCurve))
         in_space = _content(GeomConvert.CurveToBSplineCurve_s(cut), lambda p: (p.X(), p.Y(), p.Z()))
     flat = BRep_Tool.CurveOnSurface_s(edge, face, 0.0, 0.0)
     pcurve: Content | None = None
     if flat is not None:
         plane = BRepAdaptor_Curve2d(edge, face)
-        flat = Geom2d_TrimmedCurve(flat, plane.FirstParameter(), plane.LastParameter())
+        flat = Geom2d_TrimmedCurve(flat, *_range(flat, plane, Geom2d_BSplineCurve))
         pcurve = _content(Geom2dConvert.CurveToBSplineCurve_s(flat), lambda p: (p.X(), p.Y()))
         if converted is not None:
             pcurve = _taken_over(pcurve, face, converted)
@@ -109,6 +111,21 @@ def edge_curve(
     # The face lies left of an edge that runs forward in a face taken forward, and each reversal swaps the sides.
     keep = "left" if (edge.Orientation() == turned) == (face.Orientation() == turned) else "right"
     return in_space, pcurve, keep, BRep_Tool.Tolerance_s(edge)
+
+
+def _range(curve: Any, adaptor: Any, periodic: Any) -> tuple[float, float]:
+    """Return the range of an edge on its curve; a whole turn of a periodic spline to the last digit.
+
+    The kernel cuts a spline that is a rounding short of a turn at the wrong knot: its last pieces are lost.
+    """
+    first, last = adaptor.FirstParameter(), adaptor.LastParameter()
+    if not isinstance(curve, periodic) or not curve.IsPeriodic():
+        return first, last
+    start, end = curve.FirstParameter(), curve.LastParameter()
+    near = _TURN * (end - start)
+    if abs(last - first - (end - start)) > near:
+        return first, last
+    return (start, end) if abs(first - start) <= near else (first, first + (end - start))
 
 
 def _taken_over(pcurve: Content, face: Any, converted: BSplineSurface) -> Content:

@@ -9,6 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from semispline.solver.arrays import FloatArray
 from semispline.solver.splines import Jet
@@ -20,6 +21,8 @@ _STEPS = 40
 _NEWTON = 3
 # Of the range of a parameter: a step that is no longer changes nothing.
 _ROUNDING = 4 * float(np.finfo(np.float64).eps)
+# Of the domain: so far an edge may lie outside. Chords of steps are shorter by some of the second part where it bends.
+_OUTSIDE, _UNEVEN = 1e-3, 0.1
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,6 +51,7 @@ class Paths:
         return self.distance / (len(self.at) - 1)
 
 
+@np.errstate(over="ignore", invalid="ignore", divide="ignore")
 def paths_from(face: Face, at: FloatArray, slope: FloatArray, sign: float, distance: float) -> Paths:
     """Return the geodesics that leave a curve squarely.
 
@@ -138,6 +142,26 @@ def focal_distance(paths: Paths) -> float:
     before, after = apart[last], apart[last + 1]
     share = np.where(crossed[last + 1], before / np.where(before > after, before - after, 1.0), 1.0)
     return (last + float(share.min())) * paths.step
+
+
+def lost_distances(face: Face, paths: Paths) -> FloatArray:
+    """Return the distances at which paths lose their way, shape (K,): infinite where they do not.
+
+    Where they run over a pole: it lies on an end of the surface, or between two neighbours, which go round it at both
+    sides; or where a step is none.
+    """
+    beyond = np.maximum(face.low - paths.at, paths.at - face.low - face.widths) / face.widths
+    outside = np.asarray(((beyond > _OUTSIDE) & ~face.closed).any(axis=2))
+    lost: NDArray[np.bool_] = np.asarray(outside | ~np.isfinite(paths.at).all(axis=2))
+    steps = np.linalg.norm(np.diff(paths.point, axis=0), axis=2)
+    lost[1:] |= ~(np.abs(steps / paths.step - 1) <= _UNEVEN)
+    jumps = np.asarray((np.abs(np.diff(paths.at, axis=1)) > face.widths / 2) & face.closed)
+    apart: NDArray[np.bool_] = np.asarray(jumps.any(axis=2))
+    # An edge itself may pass that near.
+    apart &= ~apart[0]
+    lost[:, 1:] |= apart
+    lost[:, :-1] |= apart
+    return np.where(lost.any(axis=0), np.argmax(lost, axis=0) * paths.step, np.inf)
 
 
 def _cross(a: FloatArray, b: FloatArray) -> FloatArray:

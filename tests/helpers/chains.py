@@ -7,6 +7,7 @@ from math import comb
 import numpy as np
 from OCP.GeomAPI import GeomAPI_ProjectPointOnSurf
 from scipy.interpolate import BSpline
+from scipy.optimize import brentq
 
 from helpers.free_curves import frame
 from helpers.occ import to_geom
@@ -144,6 +145,35 @@ def run_back_face(base):
     surface = base.surface
     weights = None if surface.weights is None else surface.weights[:, ::-1]
     return Base(with_net(surface, surface.control_points[:, ::-1], weights), base.edge)
+
+
+def bernstein(q, t):
+    return np.stack([comb(q, k) * t**k * (1 - t) ** (q - k) for k in range(q + 1)], axis=1)
+
+
+def run_through(base, function, degree=3):
+    """The face run through by a polynomial map of its range along onto itself, both over [0, 1]: by interpolation.
+
+    Span by span, each knot of the result as often as its degree.
+    """
+    surface, (low, high) = base.surface, base.range_along
+    net = surface.control_points if surface.weights is None else surface.homogeneous
+    spline = BSpline(surface.knots_v, net, surface.degree_v, axis=1)
+    q, breaks = degree * surface.degree_v, (np.unique(surface.knots_v) - low) / (high - low)
+    # Where the map has the knots: bisection, since it rises.
+    own = [0.0, *(brentq(lambda t, x=x: function(t) - x, 0.0, 1.0, xtol=1e-15) for x in breaks[1:-1]), 1.0]
+    t = (1 - np.cos(np.linspace(0, np.pi, q + 1))) / 2
+    points = []
+    for start, end in pairwise(own):
+        values = spline(np.clip(low + (high - low) * function(start + (end - start) * t), low, high))
+        found = np.linalg.solve(bernstein(q, t), values.transpose(1, 0, 2).reshape(q + 1, -1))
+        found = found.reshape(q + 1, len(net), -1).transpose(1, 0, 2)
+        points.append(found if not points else found[:, 1:])
+    knots = low + (high - low) * np.concatenate([[0.0], np.repeat(own, q), [1.0]])
+    net = np.concatenate(points, axis=1)
+    weights = None if surface.weights is None else net[..., 3]
+    net = net if weights is None else net[..., :3] / net[..., 3:]
+    return Base(BSplineSurface(surface.degree_u, q, surface.knots_u, knots, net, weights), base.edge)
 
 
 def strips(surface, cuts):

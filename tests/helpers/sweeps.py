@@ -18,3 +18,8 @@ def examples(count=_WHOLE):
 def first_ones(count, values):
     """Parameters of a test, all but the first `count` of them marked slow."""
     return [v if k < count else pytest.param(v, marks=pytest.mark.slow) for k, v in enumerate(values)]
+
+
+def first_rows(count, rows):
+    """The same of tests with several parameters: each row has one value of each."""
+    return [row if k < count else pytest.param(*row, marks=pytest.mark.slow) for k, row in enumerate(rows)]

@@ -207,3 +207,21 @@ def test_words_of_free_edges_need_a_file_with_faces(tmp_path):
     assert done.exit_code == 2
     assert "cannot be read from '.json'" in done.stderr
     assert not (tmp_path / "out.json").exists()
+
+
+def test_continuity_of_parameters_along_a_free_edge_is_said_to_be_geometric(tmp_path):
+    path = written(drilled_part("cylinder"), tmp_path / "part.brep")
+    face, entry = hole(path, "cylinder")
+    spec, other = f"{path}#{face}", beyond(tmp_path / "other.json", entry, "cylinder")
+    out, report = tmp_path / "out.json", tmp_path / "report.json"
+    words = ("--edge-a", entry.name, "--edge-b", "v0", "--continuity", "C1", "-o", out, "--report", report)
+    done = run("blend", spec, other, *words)
+    assert done.exit_code == 0, done.output
+    assert "C1, which is of parameters, counts as G1" in done.stdout
+    # Which faces were blended stands in the report, as in that of check.
+    record = json.loads(report.read_text())
+    assert (record["a"], record["b"]) == (spec, str(other))
+    for required, said in (("C1", True), ("G1", False)):
+        checked = run("check", spec, out, "--edge-a", entry.name, "--edge-b", "u0", "--require", required)
+        assert checked.exit_code == 0, checked.output
+        assert ("counts as G1: a free curve has none across it" in checked.stdout) == said

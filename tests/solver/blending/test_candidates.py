@@ -9,6 +9,7 @@ from helpers.facing import random_facing
 from semispline import Base, BlendOptions, BSplineSurface, FoldError, OptionError, blend, measure_fairness
 from semispline.papers.reproduction.families.suite import shape_problem
 from semispline.solver.blending import candidates, pipeline, shape_parameters
+from semispline.solver.blending.chain_bases import StatedBases
 from semispline.solver.blending.fair_search import FairSolution, solve_fair
 from semispline.solver.blending.linear_problem import gap_ratio
 from semispline.solver.blending.pipeline import state_problem
@@ -86,19 +87,34 @@ def test_a_little_fairness_is_not_worth_a_warning():
     assert result.flipped == middle.flipped
 
 
+@pytest.mark.parametrize(("seed", "is_fairer"), [(1, True), (2, False)])
+def test_only_a_fairer_middle_curve_is_led_away_from_its_ends(monkeypatch, seed, is_fairer):
+    asked, away = [], candidates._away_from_ends
+
+    def watched(best, search):
+        asked.append(best.options.middle_curves)
+        return away(best, search)
+
+    monkeypatch.setattr(candidates, "_away_from_ends", watched)
+    result = blend(*facing(seed))
+    without, middle = (c.fairness for c in result.candidates)
+    assert (middle < without) is is_fairer
+    assert asked == ([0, 1] if is_fairer else [0])
+
+
 def test_what_is_warned_of_either_way_keeps_its_middle_curve():
     # A pair of whatever shape, and a warning that both of them carry.
     a, b = facing(103)
     one = blend(a, b)
     warned = replace(one, warnings=("loud",))
-    assert pipeline._unwarned(a, b, BlendOptions(), one) is one
-    assert pipeline._unwarned(a, b, BlendOptions(), warned).options.middle_curves == 0
-    assert pipeline._unwarned(a, b, BlendOptions(middle_curves=1), warned) is warned
+    assert pipeline._unwarned(StatedBases(a, b, BlendOptions()), one) is one
+    assert pipeline._unwarned(StatedBases(a, b, BlendOptions()), warned).options.middle_curves == 0
+    assert pipeline._unwarned(StatedBases(a, b, BlendOptions(middle_curves=1)), warned) is warned
     # That of least energy was not chosen for its fairness.
     energy = replace(blend(a, b, alpha="energy"), warnings=("loud",))
-    assert pipeline._unwarned(a, b, BlendOptions(alpha="energy"), energy) is energy
+    assert pipeline._unwarned(StatedBases(a, b, BlendOptions(alpha="energy")), energy) is energy
     # Too small a box leaves both at its end.
-    assert pipeline._unwarned(a, b, BlendOptions(box=(1.3, 1.4)), warned) is warned
+    assert pipeline._unwarned(StatedBases(a, b, BlendOptions(box=(1.3, 1.4))), warned) is warned
 
 
 @pytest.mark.parametrize("options", [{"degree_u": 4}, {"degree_u": 3}, {"continuity": "G3"}, {"continuity": "G4"}])

@@ -328,8 +328,8 @@ def test_what_both_sides_share_is_left_along(monkeypatch, cures, alike, is_left)
     monkeypatch.setattr(representative, "_cured", lambda side, order: found[side.index])
     monkeypatch.setattr(representative, "_jump_alike", lambda *_: alike)
     monkeypatch.setattr(representative, "_as_found", lambda cured: "left")
-    monkeypatch.setattr(representative, "_with_cure", lambda side, cured: (side, "cured"))
-    a, b = (SimpleNamespace(order=2, index=index, is_rational=False) for index in (0, 1))
+    monkeypatch.setattr(representative, "_with_cure", lambda side, cured, by_angle: (side, "cured"))
+    a, b = (SimpleNamespace(order=2, index=index, is_rational=False, keeps_lines=False) for index in (0, 1))
     options = BlendOptions(continuity=("G2", "G2"), middle_curves=0)
     said = [cure for _, cure in representative.smooth_along(a, b, options)]
     assert said == ["left" if is_left else "cured"] * 2

@@ -289,9 +289,9 @@ def test_where_two_directions_tie_only_the_less_turning_one_is_judged(monkeypatc
     assert not state_problem(*strips()).matched.flipped
     judge, directions = pipeline._judged, []
 
-    def judged(a, b, solved, seconds):
+    def judged(stated, solved, seconds):
         directions.append(solved.flip)
-        return judge(a, b, solved, seconds)
+        return judge(stated, solved, seconds)
 
     tied(monkeypatch, judged)
     assert blend(*strips()).flipped
@@ -302,10 +302,10 @@ def test_where_two_directions_tie_only_the_less_turning_one_is_judged(monkeypatc
 def test_the_direction_that_is_refused_makes_room_for_the_other(monkeypatch):
     judge = pipeline._judged
 
-    def judged(a, b, solved, seconds, refused=("yes",)):
+    def judged(stated, solved, seconds, refused=("yes",)):
         if solved.flip in refused:
             raise ContactError(solved.flip)
-        return judge(a, b, solved, seconds)
+        return judge(stated, solved, seconds)
 
     tied(monkeypatch, judged)
     assert not blend(*strips()).flipped

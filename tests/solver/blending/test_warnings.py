@@ -84,9 +84,10 @@ def test_a_base_without_a_normal_is_named():
 
 @pytest.mark.parametrize(("width", "named"), [(0.9e-3, True), (1.1e-3, False)])
 @pytest.mark.parametrize("edge", ["u0", "u1", "v0", "v1"])
-def test_a_span_is_narrow_below_a_thousandth_of_the_base(width, named, edge):
+@pytest.mark.parametrize("start", [0.0, 300.0])
+def test_a_span_is_narrow_below_a_thousandth_of_the_base(width, named, edge, start):
     domain = 400.0
-    surface = flat_with(domain * np.array([0, 0, 0, 0, 1 - width, 1, 1, 1, 1])).surface
+    surface = flat_with(start + domain * np.array([0, 0, 0, 0, 1 - width, 1, 1, 1, 1])).surface
     base = Base(turned(turned(surface, "u1", False), edge, False), edge)
     assert remedy(FLOOR, NO_CAUSE, [], 1.0, 3).startswith("derivatives of order 3 round: ask for G2")
     assert remedy(FLOOR, NO_CAUSE, [], 1.0, 4).startswith("derivatives of order 4 round: ask for G3")
@@ -137,9 +138,11 @@ def test_the_worse_cause_of_rounding_is_named_first_and_no_other_one_is(least, d
     assert ("weights of the blend" in other) is ("weights" in said)
 
 
-@pytest.mark.parametrize(("knots", "named"), [(1.0, "weights"), (1e-2, "weights"), (1e-7, "knots_u")])
+@pytest.mark.parametrize(
+    ("knots", "named"), [(1.0, "weights"), (1e-2, "weights"), (1e-5, "knots_u"), (1e-7, "knots_u")]
+)
 def test_of_weights_and_narrow_spans_the_worse_is_named(knots, named):
-    """A span of 1e-7 beside one of 1, to the second power, against weights of ratio 1000."""
+    """A span of 1e-5 or less beside one of 1, to the second power, against weights of ratio 1000, to that power too."""
     base = flat_with([0, 0, 0, 0, 1 - knots / 2, 1, 1, 1, 1])
     causes = RoundingCauses(1.0, 1.0, (1e3, 1.0), 1e6)
     assert named in remedy(base, causes, [], None)

@@ -16,6 +16,20 @@ def strips():
     return Base(first, "u1"), Base(second, "u0")
 
 
+def windows_of(monkeypatch, options):
+    """The windows that both sides are made fit for."""
+    asked = []
+
+    def tame(side, u, spans, window):
+        asked.append(window)
+        return tamed(side, u, spans, window)
+
+    tamed = windows.tame_side
+    monkeypatch.setattr(windows, "tame_side", tame)
+    state_problem(*strips(), degree_u=5, middle_curves=0, **options)
+    return asked
+
+
 @pytest.mark.parametrize(
     ("options", "ends"),
     [
@@ -32,13 +46,12 @@ def strips():
     ],
 )
 def test_weights_of_a_rational_side_are_positive_over_what_may_be_searched(monkeypatch, options, ends):
-    asked = []
+    assert windows_of(monkeypatch, options)[0].a == pytest.approx(ends, rel=1e-12)
 
-    def tame(side, u, spans, window):
-        asked.append(window)
-        return tamed(side, u, spans, window)
 
-    tamed = windows.tame_side
-    monkeypatch.setattr(windows, "tame_side", tame)
-    state_problem(*strips(), degree_u=5, middle_curves=0, **options)
-    assert asked[0].a == pytest.approx(ends, rel=1e-12)
+@pytest.mark.parametrize(("bulge", "times"), [(0.5, 1.0), (3.0, 9.0)])
+def test_p2_reaches_as_much_farther_as_the_square_of_the_bulge(monkeypatch, bulge, times):
+    (plain, _) = windows_of(monkeypatch, {})[:2]
+    (more, _) = windows_of(monkeypatch, {"bulge": (bulge, 1.0)})[:2]
+    assert plain.p2[1] > 0
+    assert more.p2 == pytest.approx((times * plain.p2[0], times * plain.p2[1]), rel=1e-12)

@@ -257,6 +257,23 @@ def test_what_the_bound_on_rounding_hides_is_told_where_it_is_within_the_limit(d
         assert contact.rounding["angle_degrees"] > 0.01
 
 
+@pytest.mark.parametrize("order", [3, 4])
+@pytest.mark.parametrize(("times", "is_told"), [(0.5, True), (1.5, False)])
+def test_a_rate_that_rounding_may_hide_is_told_beside_a_second_rate_that_jumps(order, times, is_told):
+    # z is (t / 100)^3 or so on both sides, its second rate the opposite one: its weights differ by a hundred.
+    knots = [0, 0, 0, 0, 1, 1, 1, 1]
+    weights = np.multiply.outer([100.0, 1, 1, 1], [1.0, 3.0])
+    net = np.array([[[t, y, z] for y in (0.0, 3.0)] for t, z in zip((0, 0.25, 0.5, 1), (0, 0, 0, 1), strict=True)])
+    other = np.concatenate([net[:1], 2 * net[:1] - net[1:]])
+    other[3, :, 2] *= 1 + times * 1e-8
+    a, b = (Base(BSplineSurface(3, 1, knots, BEZIER_1, points, weights), "u0") for points in (net, other))
+    contact = measure_contact(a, b, order=order)
+    assert contact.rate_jump_relative == pytest.approx(times * 1e-8, rel=1e-3)
+    # The bound is 5e-3, above what can be told; many digits leave less than the limit, 1e-8.
+    assert (contact.rounding["rate_jump_relative"] < 1e-9) == is_told
+    assert bool(contact.rounding["rate_jump_relative"] > 1e-3) != is_told
+
+
 @pytest.mark.parametrize(
     ("degrees", "weight", "expected"),
     [

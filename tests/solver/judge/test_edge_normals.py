@@ -134,3 +134,11 @@ def test_a_zero_in_a_span_that_is_narrow_beside_its_neighbour_is_found(width):
     base = Base(BSplineSurface(1, 1, [0, 0, 1, 1], [0, *s, 1], net), "u0")
     (place,) = places_without_normal(base, "a")
     assert place.parameter == pytest.approx(0.5 + width * 0.4 / 9.4, abs=1e-4 * width)
+
+
+def test_a_simple_zero_is_found_to_a_billionth_wherever_it_is():
+    """The edge runs along y and back, its speed v - at: what sections find there is less than counts as nothing."""
+    for at in np.linspace(0.05, 0.95, 37):
+        net = [[[x, y, 0.0] for y in (0.0, -at, 1 - 2 * at)] for x in (0.0, 1.0)]
+        with pytest.raises(EdgeError, match="no normal at parameter"):
+            check_regular_edge(Base(BSplineSurface(1, 2, K1, [0, 0, 0, 1, 1, 1], net), "u0"))

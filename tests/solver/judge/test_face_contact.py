@@ -5,7 +5,7 @@ import pytest
 
 from helpers.free_curves import cylinder, line, sphere
 from semispline import Base, BSplineCurve, BSplineSurface, EdgeError, plane, revolve, split_v
-from semispline.solver.judge import cad_measures, face_contact, measure_face_contact
+from semispline.solver.judge import FreeEdge, cad_measures, face_contact, measure_face_contact
 
 
 def cap(radius=10.0):
@@ -181,3 +181,25 @@ def test_without_a_tangent_plane_there_is_no_normal_and_no_warning():
         normals = face_contact._normal(jet)
     assert np.isnan(normals[0]).all()
     assert normals[1].tolist() == [0, 0, 1]
+
+
+@pytest.mark.parametrize("way", [1.0, -1.0])
+@pytest.mark.parametrize("size", [1e-3, 1.0, 1e3])
+def test_which_way_an_edge_runs_is_seen_at_any_size(way, size):
+    """A blend's sheet rises by 45 degrees from the edge of a floor, away from what is kept."""
+    floor = plane([-size, -size, 0], [2 * size, 0, 0], [0, 2 * size, 0])
+    edge = FreeEdge(floor, line([-size / 2, 0, 0], [size / 2, 0, 0]), True, "left")
+    sheet = plane([-way * size / 2, 0, 0], [way * size, 0, 0], [0, -size, size])
+    assert measure_face_contact(Base(sheet, "v0"), edge).angle_degrees == pytest.approx(45)
+    folded = plane([-way * size / 2, 0, 0], [way * size, 0, 0], [0, size, size])
+    assert measure_face_contact(Base(folded, "v0"), edge).angle_degrees == pytest.approx(135)
+
+
+@pytest.mark.parametrize(("part", "is_closed"), [(0.5e-6, True), (2e-6, False)])
+def test_ends_of_an_edge_are_one_point_within_a_millionth_of_its_length(part, is_closed):
+    """A sleeve on a cylinder, from its seam all round but for a part: of a closed edge no side of the seam is read."""
+    face = revolve(line([10, 0, 0], [10, 0, 5]), [0, 0, 0], [0, 0, 1])
+    sleeve = revolve(line([10, 0, 1], [10, 0, 3]), [0, 0, 0], [0, 0, 1], 360 * (1 - part))
+    found = measure_face_contact(Base(sleeve, "v0"), face)
+    # Rounding of coordinates of size 10, or a billionth of the domain beside the seam.
+    assert (found.angle_degrees < 1e-10) == is_closed

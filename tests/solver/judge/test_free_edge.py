@@ -2,11 +2,11 @@
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from helpers.free_curves import bent_face, cubic, cylinder, ellipse_on_cylinder, free_form, line
-from semispline import Base, band_along, blend, extrude, plane
+from semispline import Base, BSplineCurve, BSplineSurface, band_along, blend, extrude, plane
 from semispline.solver.judge import (
     FreeEdge,
     exact_face_limits,
@@ -64,6 +64,7 @@ def test_beyond_the_end_of_an_edge_is_off_it():
 
 
 @given(st.floats(0, 1), st.integers(1, 2000))
+@example(0.0, 21)
 def test_the_ends_of_a_closed_edge_are_no_ends(turn, count):
     edge = FreeEdge(cylinder(), ellipse_on_cylinder(), True, "left")
     x = np.mod(turn + np.linspace(-1e-3, 1e-3, count), 1.0)
@@ -78,6 +79,53 @@ def test_a_curve_that_runs_on_over_the_seam_of_a_face():
     assert np.hypot(points[:, 0], points[:, 1]) == pytest.approx([10, 10])
     assert points[0, 1] < 0 < points[1, 1]
     assert (slope[:, 2] > 0).all()
+
+
+@pytest.mark.parametrize("ends", [(0.8, 1.2), (0.2, -0.2)])
+def test_over_the_seam_an_edge_goes_on_at_the_other_end(ends):
+    face = cylinder()
+    edge = FreeEdge(face, line((ends[0], 0.5), (ends[1], 0.5)), False, "left")
+    x = np.linspace(0, 1, 9)[[1, 3, 5, 7]]
+    u = np.mod(ends[0] + (ends[1] - ends[0]) * x, 1.0)
+    # Rounding of coordinates of size 10.
+    np.testing.assert_allclose(edge.at(x)[0], face.evaluate(u, np.full(4, 0.5)), atol=1e-12)
+
+
+@pytest.mark.parametrize(("times", "height"), [(0.5, 0.0), (2.0, 1 - 2e-5)])
+@pytest.mark.parametrize("upper", [False, True])
+def test_a_curve_may_miss_the_border_of_its_face_by_a_hundred_thousandth(times, height, upper):
+    """Beyond that it is taken for one that runs on over a seam: from the other side."""
+    v = 3 + times * 1e-5 if upper else 2 - times * 1e-5
+    face = BSplineSurface(1, 1, [0, 0, 1, 1], [2, 2, 3, 3], [[[x, 0, z] for z in (0, 1)] for x in (0, 1)])
+    point, _ = FreeEdge(face, line((0.2, v), (0.8, v)), False, "left").at(np.array([0.5]))
+    assert point[0] == pytest.approx([0.5, 0, 1 - height if upper else height], abs=1e-9)
+
+
+def test_an_edge_is_as_long_as_two_thousand_chords_of_it():
+    # Of a circle: the n-th part of it is longer than its chord by (pi / n)^2 / 6, and that is 4e-7.
+    circle = FreeEdge(cylinder(), line((0.0, 0.5), (1.0, 0.5)), False, "left")
+    assert circle.length == pytest.approx(20 * np.pi, rel=1e-6)
+
+
+@pytest.mark.parametrize(("spans", "chords"), [(1, 2000), (3, 3 * 667), (1000, 8 * 1000)])
+def test_of_many_spans_each_has_eight_chords(spans, chords):
+    knots = np.concatenate([[0.0], np.arange(spans + 1.0), [spans]])
+    points = [[x, 0.0, 0.0] for x in range(spans + 1)]
+    edge = FreeEdge(FLOOR, BSplineCurve(1, knots, points), True, "left")
+    nodes = edge._nodes()
+    assert len(nodes) == chords + 1
+    np.testing.assert_allclose(np.diff(nodes), spans / chords, rtol=1e-9)
+
+
+@pytest.mark.parametrize(("gap", "closed"), [(0.5, True), (2.0, False)])
+def test_ends_are_one_point_within_a_millionth_of_the_extent(gap, closed):
+    # Round a square of size 10 from a corner, and back to beside it.
+    ends = [[0, 0, 0], [10, 0, 0], [10, 10, 0], [0, 10, 0], [0, 1e-5 * gap, 0]]
+    edge = FreeEdge(FLOOR, BSplineCurve(1, [0, 0, 1, 2, 3, 4, 4], ends), True, "left")
+    # Beside the start, and a little nearer to the end: a step from there leads on to the start, if that is one point.
+    beside = np.array([[3e-3, 6e-6 * gap, 0.0]])
+    foot = edge.nearest(beside)[0][0]
+    assert foot == pytest.approx([3e-3 if closed else 0.0, 0.0 if closed else 1e-5 * gap, 0.0], abs=1e-12)
 
 
 def test_two_faces_at_the_edge_that_they_share():
@@ -117,12 +165,18 @@ def test_exact_limits_are_those_of_contacts_with_rounding_by_the_size_of_the_fac
     # 1e-11 of the size and 1e-9; little more, since the sheet is at the origin.
     assert 1e-11 * model_size(small.surface) <= limits["gap"] <= 2e-11 * model_size(small.surface)
     assert 1e-9 <= limits["angle_degrees"] <= 2e-9
+    # Up to second order unless more is asked for.
+    assert set(exact_face_limits(small, FLOOR)) == {"gap", "angle_degrees", "curvature_jump_relative"}
     wide = plane([-5e3, -5e3, 0], [1e4, 0, 0], [0, 1e4, 0])
     wider = exact_face_limits(small, wide, 3)
     assert wider["gap"] == limits["gap"]
     grown = (wider["curvature_jump_relative"] - 1e-9) / (limits["curvature_jump_relative"] - 1e-9)
     # The floor is of size 10, more than the sheet's.
     assert grown == pytest.approx(1e4 / 10, rel=1e-6)
+    # Rates are over the square and the cube of the size.
+    near, far = (exact_face_limits(small, plane([-5, -5, 0], [x, 0, 0], [0, 10, 0]), 4) for x in (10, 20))
+    for name, limit, power in (("rate_jump_relative", 1e-8, 2), ("second_rate_jump_relative", 1e-7, 3)):
+        assert far[name] - limit == pytest.approx(2**power * (near[name] - limit), rel=1e-6)
     # Where rounding is more than a checker allows that stands.
     far = Base(plane([1e9, 1e9, 0], [1e-3, -1e-3, 0], [8e-3, 8e-3, 0]), "u0")
     assert exact_face_limits(far, wide)["angle_degrees"] == 0.01

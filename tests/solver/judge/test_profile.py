@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from helpers.circles import cylinder, full_circle
 from semispline import Base, BSplineSurface, InputError, measure_contact
 from semispline.solver.judge.face_contact import measure_face_contact, measure_face_profile
-from semispline.solver.judge.profile import measure_profile, with_worse
+from semispline.solver.judge.profile import Profile, _places, measure_profile, with_worse
 from semispline.solver.splines.construction import plane
 
 K = [0.0, 0, 1, 1]
@@ -115,3 +115,32 @@ def test_a_mean_is_over_the_length_and_not_over_the_parameter():
         for net, ends in zip(nets, ((-1.0, 0.0), (0.0, 1.0)), strict=True)
     )
     assert profile_of(Base(left, "u1"), Base(right, "u0")).means["gap"] == pytest.approx(2 / 3, rel=1e-4)
+
+
+@pytest.mark.parametrize("size", [1e-3, 0.0])
+def test_the_mean_over_a_short_edge_and_over_a_point(size):
+    # Of values 0, 1, 1 at 0, 1/4 and 1 of the length: 7/8 over the length. A pole has none.
+    places = np.array([0.0, 0.25, 1.0])
+    values = np.array([0.0, 1.0, 1.0])
+    with np.errstate(all="raise"):
+        means = Profile(places, np.zeros((3, 3)), size * places, {"gap": values}).means
+    assert means["gap"] == pytest.approx(7 / 8 if size else 2 / 3)
+
+
+@pytest.mark.parametrize(
+    ("breaks", "counts"), [([0, 1], [400]), ([0, 1, 4], [100, 300]), ([0, 1, 99, 100], [8, 392, 8])]
+)
+def test_places_are_shared_out_by_spans(breaks, counts):
+    places = _places(np.array(breaks, dtype=float))
+    assert np.histogram(places, breaks)[0].tolist() == counts
+
+
+def test_feet_may_be_twice_as_far_as_the_largest_gap():
+    """Two arcs, 0.001 apart: what a contact says of them decides whether these are its edges."""
+    a, b = Base(cylinder(full_circle(3)), "u1"), Base(cylinder(full_circle(4), 1.001, heights=(1, 2)), "u0")
+    contact = replace(measure_contact(a, b), corresponds="foot points")
+    for gap in (0.45e-3, 0.34e-3):
+        with pytest.raises(InputError, match="give its own edges"):
+            measure_profile(a, b, replace(contact, gap=gap))
+    profile = measure_profile(a, b, replace(contact, gap=0.55e-3))
+    np.testing.assert_allclose(profile.values["gap"], 1e-3, rtol=1e-6)

@@ -8,7 +8,13 @@ from hypothesis import strategies as st
 from helpers.sweeps import examples
 from semispline import Base, BSplineCurve, BSplineSurface, SemiStructuredSurface
 from semispline.solver.judge.curvature_rates import curvature_rates
-from semispline.solver.judge.rounding import derivative_noises, edge_noises
+from semispline.solver.judge.rounding import (
+    RoundingCauses,
+    derivative_noises,
+    edge_noises,
+    noises_of_derivatives,
+    rounding_causes,
+)
 
 KEYS = [(i, j) for i in range(5) for j in range(5 - i)]
 ORIGIN = np.zeros(3)
@@ -152,3 +158,49 @@ def test_no_small_error_of_a_derivative_does_more(seed, place):
         other = rates(at | {place: at[place] + size * error / np.linalg.norm(error)})
         for before, after, bound in zip(plain.values, other.values, plain.noises, strict=True):
             assert abs(after - before)[0] <= bound[0] * (1 + 1e-3) + 1e-9 * abs(before[0]) + 1e-12
+
+
+def test_what_rounding_once_does():
+    # Across 1, 2, 4; once along 6, 12; twice along 20. An error across is magnified by the worst of 6 / 1 and 12 / 2.5.
+    sizes = {(0, 0): 1.0, (1, 0): 2.5, (2, 0): 4.0, (0, 1): 6.0, (1, 1): 12.0, (0, 2): 20.0}
+    found = noises_of_derivatives({key: np.array([[0.0, -size, 0.5]]) for key, size in sizes.items()}, 2)
+    one = 8 * 2.0**-52
+    np.testing.assert_allclose(found.derivatives, one * np.array([[1, 6, 20], [2.5, 12, 0], [4, 0, 0]]), rtol=1e-13)
+    np.testing.assert_allclose(found.rows, one * np.diag([1, 2.5, 4]), rtol=1e-13)
+    np.testing.assert_allclose(found.along, [1, 6, 20], rtol=1e-13)
+    # Where nothing is there across nothing is magnified.
+    with np.errstate(all="raise"):
+        flat = noises_of_derivatives({key: np.zeros((1, 3)) if key[0] else np.ones((1, 3)) for key in sizes}, 2)
+    np.testing.assert_allclose(flat.along, 1, rtol=1e-13)
+
+
+@pytest.mark.parametrize(("ratios", "named"), [((1e3, 1.9e3), "blend"), ((1e3, 2.1e3), "base"), ((2e3, 1e3), "blend")])
+def test_the_second_surface_is_named_where_its_weights_are_twice_as_uneven(ratios, named):
+    causes = RoundingCauses(1.0, 1.0, ratios, 51.0)
+    ratio = ratios[named == "base"]
+    assert causes.words(("blend", "base")) == (
+        f"weights of {named} that act together differ by a factor of {ratio:.2g}: "
+        "even them out, or ask for a lower continuity"
+    )
+    # What is fifty times larger at the most is not told.
+    assert not RoundingCauses(1.0, 50.0, ratios, 50.0).words(("blend", "base"))
+
+
+@pytest.mark.parametrize(
+    ("edge", "order", "expected"),
+    # Of degree 1 two neighbours along the edge act together, and across as many rows as there are orders and one more.
+    [
+        ("u0", 0, 3),
+        ("v0", 0, 8),
+        ("u1", 0, 3),
+        ("v1", 0, 8),
+        ("u0", 1, 6),
+        ("v0", 1, 24),
+        ("u1", 1, 24),
+        ("v1", 1, 40 / 3),
+    ],
+)
+def test_weights_that_act_together(edge, order, expected):
+    knots = [0, 0, 0.5, 1, 1]
+    base = Base(square(1, knots, 1, knots, np.multiply.outer([1.0, 2, 16], [1.0, 3, 5])), edge)
+    assert rounding_causes(base, base, order).weight_ratios == pytest.approx((expected, expected))

@@ -20,6 +20,7 @@ from semispline import (
     BandError,
     Base,
     BSplineCurve,
+    BSplineSurface,
     ContactError,
     EdgeError,
     blend,
@@ -32,6 +33,7 @@ from semispline import (
     write_surface,
 )
 from semispline.solver.io.occ import _faces
+from semispline.solver.judge import exact_face_limits
 from semispline.solver.options import BlendOptions
 from semispline.solver.topology.bands import band_along
 from semispline.solver.topology.bases import EdgeBase, bases_along, free_curves, paired_bases
@@ -323,6 +325,9 @@ def test_contacts_along_a_free_edge_are_measured_without_a_band(cylinder, tmp_pa
         measure_free_contact(resolve_edge(spec, f"{entry.name}[0]"), own)
     with pytest.raises(EdgeError, match="expected a free curve"):
         measure_free_contact(own, own)
+    far = resolve_edge(tube, "v0")
+    with pytest.raises(EdgeError, match=rf"^edge v0 against {result.band_a.edge}: face: the edge is .* away"):
+        measure_free_contact(far, a)
 
 
 def test_both_faces_of_a_hole_meet_at_their_edge(cylinder):
@@ -374,3 +379,28 @@ def test_without_a_band_limits_are_those_of_both_contacts():
         for contact in (result.contact_a, result.contact_b):
             assert contact.allowed["angle_degrees"] == pytest.approx(angle, rel=0.5)
             assert contact.angle_degrees <= 1e-9
+
+
+def test_rounding_along_a_short_first_span_does_not_bend_what_lies_in_a_plane():
+    """Where a seam was moved the first span is short; rounding there is curvature along, which is no jump of a face."""
+    knots = np.array([0.0] * 6 + [0.02, 4.0, 8.0] + [12.0] * 6)
+    along = np.array([np.mean(knots[k + 1 : k + 6]) for k in range(9)])
+    noise = 2e-14 * np.where(np.arange(9) % 2, 1.0, -1.0)
+    net = np.stack([np.column_stack([np.full(9, x), along, noise]) for x in (0.0, 0.5, 1.0)])
+    strip = Base(BSplineSurface(2, 5, [0, 0, 0, 1, 1, 1], knots, net), "u0")
+    floor = plane([-20, -20, 0], [40, 0, 0], [0, 40, 0])
+    found = measure_face_contact(strip, floor)
+    limit = exact_face_limits(strip, floor)["curvature_jump_relative"]
+    assert 1e-7 < found.curvature_jump_relative <= limit < 1e-2
+
+
+def test_cad_limits_of_edges_that_are_their_surfaces_know_the_unit(tmp_path):
+    """0.001 mm of a unit of 25.4 mm, along an edge whose length would allow 10 times as much."""
+    for name, height in (("low", 0.0), ("high", 20.0)):
+        write_surface(
+            tmp_path / f"{name}.step", plane([0, height, height], [100, 0, 0], [0, 10, height / 2]), unit="in"
+        )
+    ends = [resolve_edge(tmp_path / "low.step", "v1"), resolve_edge(tmp_path / "high.step", "v0")]
+    (result,) = blend_edges(*ends, limits="cad", **QUICK)
+    assert result.contact_a.allowed["gap"] == pytest.approx(0.001 / 25.4)
+    assert result.contact_a.allowed["angle_degrees"] == 0.01

@@ -12,6 +12,7 @@ from OCP.BRepPrimAPI import (
     BRepPrimAPI_MakeCylinder,
     BRepPrimAPI_MakeHalfSpace,
     BRepPrimAPI_MakePrism,
+    BRepPrimAPI_MakeSphere,
     BRepPrimAPI_MakeWedge,
 )
 from OCP.gp import gp_Dir, gp_Pln, gp_Pnt, gp_Vec
@@ -60,7 +61,8 @@ def edge_points(end):
 def free_points(end):
     """Points of the free curve that a contact was moved to."""
     along = np.linspace(*end.curve.pcurve.knots[[0, -1]], 50)
-    return end.surface.evaluate(*end.curve.pcurve.evaluate(along)[:, :2].T)
+    # It may run on over a seam.
+    return Face(end.surface).jet(end.curve.pcurve.evaluate(along)[:, :2], 0)[0, 0]
 
 
 def test_a_rim_is_moved_into_both_faces(pin):
@@ -223,3 +225,43 @@ def test_a_straight_edge_that_slants_in_a_plane_is_moved(tmp_path):
         away = np.linalg.norm(np.cross(points - np.array(entry.start), along / np.linalg.norm(along)), axis=1)
         # Interpolated, where it is a free contact.
         assert away == pytest.approx(1.0, abs=1e-7)
+
+
+@pytest.mark.parametrize("far", ["31", "1000"])
+def test_the_largest_distance_does_not_hang_on_the_one_that_was_asked(far, tmp_path):
+    # The shortest ruling of the slanted pin is 8 - 5 / 2 long.
+    path = written(slanted_pin(), tmp_path / "part.brep")
+    round_one = next(k for k in range(3) if len(list_edges(path, k).edges) > 1)
+    slanted = next(e for e in list_edges(path, round_one).edges if e.kind == "free")
+    words = specs(path, round_one, slanted.neighbour)
+    with pytest.raises(EdgeError, match=rf"--cut-a {far} .*: {far} reaches beyond the face, .* below 5.5$|below 5.5$"):
+        moved_edges(words, (None, None), (far, None))
+    a, _ = moved_edges(words, (None, None), ("5.4", None))
+    assert 0.1 - 1e-6 <= free_points(a)[:, 2].min() < 0.11
+
+
+@pytest.mark.parametrize("far", ["7", "15", "1000"])
+def test_contacts_that_would_run_over_a_pole_are_refused_before_it(far, tmp_path):
+    # A cap that holds the upper pole is cut off, and lies away from the seam.
+    axis = np.array([-0.8, 0.2, 0.3]) / np.linalg.norm([0.8, 0.2, 0.3])
+    cutter = BRepPrimAPI_MakeHalfSpace(
+        BRepBuilderAPI_MakeFace(gp_Pln(gp_Pnt(*(3.0 * axis)), gp_Dir(*axis))).Face(), gp_Pnt(*(50.0 * axis))
+    )
+    shape = BRepAlgoAPI_Cut(BRepPrimAPI_MakeSphere(10.0).Shape(), cutter.Solid()).Shape()
+    path = written(shape, tmp_path / "part.brep")
+    kinds = [list_edges(path, k).kind for k in range(2)]
+    words = specs(path, kinds.index("sphere"), kinds.index("plane"))
+    # From the rim to the lower pole along a great circle.
+    pole = 10 * (np.arccos(-axis[2]) - np.arccos(0.3))
+    with pytest.raises(EdgeError, match=r"reaches .* the face, expected a distance below") as said:
+        moved_edges(words, (None, None), (far, None))
+    largest = float(str(said.value).rpartition(" ")[2])
+    # By 41 paths the pole is seen a little late or early.
+    assert largest == pytest.approx(pole, rel=0.02)
+    a, _ = moved_edges(words, (None, None), (f"{0.95 * largest:.6g}", None))
+    assert free_points(a) @ axis == pytest.approx(10 * np.cos(np.arccos(0.3) + 0.095 * largest), abs=1e-4)
+
+
+def test_one_face_shares_no_edge_with_itself(pin):
+    with pytest.raises(EdgeError, match=r"expected two edges of .*#0: a face shares no edge with itself"):
+        moved_edges(specs(pin, 0, 0), (None, None), ("1", None))

@@ -2,6 +2,7 @@
 
 import json
 import shlex
+from dataclasses import replace
 from math import prod
 
 import pytest
@@ -20,6 +21,7 @@ from helpers.random_parts import known_part
 from semispline import FileError, find_places
 from semispline.solver.cli import app
 from semispline.solver.topology import moved_edges
+from semispline.solver.topology.commands import two_faces
 from semispline.solver.topology.listing import place_lines, places_record
 from semispline.solver.topology.place import KINDS
 from semispline.solver.topology.places import places_of
@@ -126,7 +128,9 @@ def facing(graph, command):
 def test_of_a_gap_with_several_edges_each_is_named_with_the_one_that_faces_it():
     graph = graph_of(sheets_with_broken_edges((1, 6), (1.2, 5.8)))
     place = next(place for place in places_of(graph).of_kind("gap") if place.measures["length"] == pytest.approx(10))
-    found = [facing(graph, command) for command in place.commands]
+    assert [word for word in shlex.split(place.commands[0]) if "*" in word] == ["0:e0*", "1:e0*"]
+    # Where they are no chain each edge has its own command.
+    found = [facing(graph, command) for command in two_faces("part.brep", place)]
     assert [(round(a, 6), round(b, 6)) for a, b, _ in found] in (
         [(3.5, 3.5), (8, 7.9), (0.5, 0.6)],
         [(3.5, 3.5), (7.9, 8), (0.6, 0.5)],
@@ -139,10 +143,14 @@ def test_of_a_gap_with_other_numbers_of_edges_one_pair_is_named_and_the_rest_sai
     graph = graph_of(sheets_with_broken_edges((1, 6), (4.5,)))
     places = places_of(graph)
     place = next(place for place in places.of_kind("gap") if place.measures["length"] == pytest.approx(10))
-    # The longest of the three faces the shorter one of the two.
-    ((a, b, _),) = (facing(graph, command) for command in place.commands)
+    assert [word for word in shlex.split(place.commands[0]) if "*" in word] == ["0:e0*", "1:e0*"]
+    assert not any("one edge of several" in line for line in place_lines(places))
+    # Where they are no chain the longest of the three faces the shorter one of the two.
+    plain = replace(place, commands=tuple(two_faces("part.brep", place)))
+    ((a, b, _),) = (facing(graph, command) for command in plain.commands)
     assert sorted([round(a, 6), round(b, 6)]) == [2.25, 3.5]
-    said = [line for line in place_lines(places) if line.startswith("    # one edge of several: side ")]
+    lines = place_lines(replace(places, found=(plain,)))
+    said = [line for line in lines if line.startswith("    # one edge of several: side ")]
     assert len(said) == 2
     assert sum(line.count(" e") - line.count(" edge") for line in said) == 3
 

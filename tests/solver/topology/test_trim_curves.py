@@ -2,9 +2,15 @@
 
 import numpy as np
 import pytest
+from OCP.BRep import BRep_Builder
+from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge, BRepBuilderAPI_MakeFace, BRepBuilderAPI_MakeWire
 from OCP.BRepClass import BRepClass_FaceClassifier
+from OCP.BRepLib import BRepLib
 from OCP.BRepPrimAPI import BRepPrimAPI_MakeCylinder, BRepPrimAPI_MakeSphere
-from OCP.gp import gp_Pnt
+from OCP.collections import HArray1_gp_Pnt2d
+from OCP.Geom import Geom_Plane
+from OCP.Geom2dAPI import Geom2dAPI_Interpolate
+from OCP.gp import gp_Dir, gp_Pnt, gp_Pnt2d
 from OCP.TopAbs import TopAbs_State
 
 from helpers.drilled import WHOLE, drilled_part
@@ -138,3 +144,30 @@ def test_the_seam_of_a_closed_face_is_met_from_both_sides():
         directions.append(band.surface.evaluate([0.0], [band.length / 2], 1, 0)[0])
         assert directions[-1] @ graph.uses.inward[use, 4] > 0.99
     assert directions[0] @ directions[1] < -0.99
+
+
+@pytest.mark.parametrize("short", [0.0, 4e-16, 1e-13, 1e-10])
+def test_a_periodic_curve_that_is_a_rounding_short_of_a_turn_is_whole(short, tmp_path):
+    """The kernel cuts such a curve at the wrong knot, and its last pieces are lost."""
+    turns = np.linspace(0, 2 * np.pi, 12, endpoint=False)
+    radius = 3 + 0.3 * np.sin(3 * turns)
+    points = HArray1_gp_Pnt2d(1, 12)
+    for k, (x, y) in enumerate(zip(radius * np.cos(turns), radius * np.sin(turns), strict=True)):
+        points.SetValue(k + 1, gp_Pnt2d(float(x), float(y)))
+    through = Geom2dAPI_Interpolate(points, True, 1e-9)
+    through.Perform()
+    face = Geom_Plane(gp_Pnt(1, 2, 3), gp_Dir(0.1, 0.2, 1))
+    edge = BRepBuilderAPI_MakeEdge(through.Curve(), face).Edge()
+    made = BRepBuilderAPI_MakeFace(face, BRepBuilderAPI_MakeWire(edge).Wire(), True).Face()
+    BRepLib.BuildCurves3d_s(made)
+    BRep_Builder().Range(edge, 0.0, through.Curve().LastParameter() * (1 - short), False)
+    path = written(made, tmp_path / "loop.brep")
+    (curve,) = read_trim_curves(path, [(0, 0)])
+    ends = curve.pcurve.evaluate(curve.pcurve.knots[[0, -1]])
+    assert ends[0] == pytest.approx(ends[1], abs=1e-8)
+    assert curve.on_face.edge_to_pcurve < 1e-4
+    # A closed curve in a leaning plane: the rows of its band lie in it up to rounding.
+    (band,) = curve.bands()
+    normal = np.array([0.1, 0.2, 1]) / np.linalg.norm([0.1, 0.2, 1])
+    away = (band.surface.control_points - [1, 2, 3]) @ normal
+    assert np.abs(away).max() < 64 * np.finfo(float).eps * 10
