@@ -30,6 +30,9 @@ blend as one contact: one surface, without a crease where the faces have none, i
 - A chain that is one conic, such as a cylinder in three arcs, is run through by one smooth circle.
 - Rims whose joints answer each other one to one, as around a rounded edge, are taken as they are: straight stretches
   of the blend are extruded, its corners revolved.
+- Limits: G4 onto flat bands that are small beside the whole chain is refused, since rounding alone may hide it; an arc
+  that is cut in two beside lines is two pieces, exact in contact, with a jump of curvature of its own parametrisation;
+  edges below 1e-4 of the chain leave creases up to 1e-8 degree.
 """
 
 
