@@ -41,18 +41,35 @@ EndFaces: TypeAlias = tuple[EndFace | None, EndFace | None]
 class Coefficients:
     """lambda, w and q along a piece: cubic in v.
 
+    But for q on a piece with inner knots: it brings in derivatives of R along v, which are less smooth there. It fades
+    out to third order within the first and the last span.
+
     Attributes
     ----------
     values, slopes : ndarray, shape (2, 3, order + 1)
         At the start and the end; of lambda, w and q; by order in u.
+    first, last : float
+        Where the first span ends and the last one begins, the piece being [0, 1].
     """
 
     values: FloatArray
     slopes: FloatArray
+    first: float = 1.0
+    last: float = 0.0
 
-    def at(self, t: FloatArray) -> FloatArray:
-        """Return them at places in [0, 1], shape (3, order + 1, T)."""
-        return np.asarray(np.tensordot(self.bezier, bernstein(3, t), axes=(0, 1)))
+    def at(self, low: float, high: float, t: FloatArray) -> FloatArray:
+        """Return them at places t in [0, 1] of the span from `low` to `high`, shape (3, order + 1, T)."""
+        places = low + (high - low) * t
+        found = np.asarray(np.tensordot(self.bezier, bernstein(3, places), axes=(0, 1)))
+        if self.first < 1:
+            found[_Q] = self._fading(0, places / self.first, self.first) if high <= self.first else 0.0
+            if low >= self.last:
+                found[_Q] = self._fading(1, (1 - places) / (1 - self.last), self.last - 1)
+        return found
+
+    def _fading(self, end: int, s: FloatArray, span: float) -> FloatArray:
+        value, slope = self.values[end, _Q, :, None], self.slopes[end, _Q, :, None]
+        return np.asarray((1 - s) ** 3 * (value + (slope * span + 3 * value) * s))
 
     @property
     def bezier(self) -> FloatArray:
@@ -71,7 +88,10 @@ class Coefficients:
         quadratic = np.abs(rise - change) > within
         linear = np.abs(change) > within
         found = np.where(cubic, 3.0, np.where(quadratic, 2.0, np.where(linear, 1.0, 0.0)))
-        return np.where(size > 0, found, -np.inf)
+        found = np.where(size > 0, found, -np.inf)
+        if self.first < 1:
+            found[_Q] = np.where(size[_Q] > 0, 4.0, -np.inf)
+        return found
 
 
 @dataclass(frozen=True, eq=False)
@@ -258,12 +278,15 @@ def _with_values(
         if k:
             wanted = end_values(ends[k - 1][:, :, 1], start)
             start, apart[k] = _matching(ends[k][:, :, 0], wanted, k, tolerance, pieces[k].width)
-        found.append(Coefficients(np.stack([start, start]), np.zeros((2, 3, order + 1))))
+        breaks = np.unique(pieces[k].along.knots)
+        found.append(
+            Coefficients(np.stack([start, start]), np.zeros((2, 3, order + 1)), float(breaks[1]), float(breaks[-2]))
+        )
     if closed:
         first = end_values(ends[0][:, :, 0], found[0].values[0])
         last, apart[0] = _matching(ends[-1][:, :, 1], first, 0, tolerance, pieces[-1].width)
         if np.abs(last - start).max() > _SAME * np.abs(start).max():
-            found[-1] = Coefficients(np.stack([start, last]), np.zeros((2, 3, order + 1)))
+            found[-1] = replace(found[-1], values=np.stack([start, last]))
     return found, apart
 
 

@@ -320,7 +320,7 @@ def _assembled(joined: JoinedPieces) -> tuple[FloatArray, Basis]:
             if _is_plain(own):
                 points.append(elevation(piece.along.degree, degree) @ bezier * own.values[0, 0, 0])
                 continue
-            by = Reparametrisation.of(own.at(low + (high - low) * t))
+            by = Reparametrisation.of(own.at(low, high, t))
             values = composed(bezier_derivatives(bezier, high - low, t, len(bezier) - 1), by)
             points.append(bezier_points(values))
     found, along = joined_spans(points, np.array(places), smooth)
