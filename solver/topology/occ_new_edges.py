@@ -1,0 +1,178 @@
+"""Edges made by hand along the border of a new face, with their curves on both faces and measured tolerances."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from typing import Any
+
+import numpy as np
+
+from semispline.solver.arrays import FloatArray
+from semispline.solver.errors import ComputationError
+from semispline.solver.splines import BSplineCurve
+from semispline.solver.topology.occ_shapes import (
+    CONFUSION,
+    MARGIN,
+    add_pcurve,
+    ends,
+    feet,
+    forward,
+    parameters_of,
+    plane_curve,
+    point_of,
+    points_of,
+    raise_tolerance,
+    range_of,
+    surface_at,
+    tolerance_of,
+    with_range,
+)
+
+# Samples of a curve in the parameters of a face: the first number, and where doubling ends.
+_FEWEST, _MOST = 33, 257
+_DEGREE = 5
+# A curve that is this near, of the range, to a straight one is one.
+_STRAIGHT = 1e-11
+# Places at which a curve is compared with its edge, and those of the border from which a nearest point is sought.
+_MEASURED, _NODES = 129, 1000
+_STEPS = 30
+
+
+def copied_edge(edge: Any, face: Any) -> Any:
+    """Return an edge anew, in its own direction, with the same vertices and its curve on one face alone."""
+    from OCP.BRep import BRep_Tool
+
+    edge = forward(edge)
+    first, last = range_of(edge)
+    new = with_range(BRep_Tool.Curve_s(edge, first, last), first, last, tolerance_of(edge), ends(edge))
+    add_pcurve(new, BRep_Tool.CurveOnSurface_s(edge, face, first, last), face)
+    return new
+
+
+def add_along_border(edge: Any, face: Any, border: BSplineCurve, u: float, at_ends: tuple[float | None, ...]) -> None:
+    """Give an edge its curve along the border u of a new face, by feet.
+
+    Parameters
+    ----------
+    edge : TopoDS_Edge
+    face : TopoDS_Face
+    border : BSplineCurve
+        The line u of the surface of the face.
+    u : float
+    at_ends : (float or None, float or None)
+        Which v its ends have, where that is known.
+    """
+
+    def places(t: FloatArray) -> FloatArray:
+        v = _nearest(border, points_of(edge, t), at_ends)
+        return np.stack([np.full_like(v, u), v], axis=1)
+
+    add_pcurve(edge, _fitted(places, edge, face), face)
+
+
+def end_edge(old: Any, line: Any, *, backwards: bool) -> Any:
+    """Return the edge in the place of an old one along a line across a new face, which is a spline.
+
+    Parameters
+    ----------
+    old : TopoDS_Edge
+    line : Geom_BSplineCurve
+    backwards : bool
+        The line runs from the old edge's last vertex to its first.
+    """
+    curve = line.Reversed() if backwards else line
+    first, last = curve.FirstParameter(), curve.LastParameter()
+    return with_range(curve, first, last, CONFUSION, ends(forward(old)))
+
+
+def line_on(edge: Any, start: tuple[float, float], end: tuple[float, float]) -> Any:
+    """Return the straight curve in the parameters of a face from one point to another over the range of an edge."""
+    return plane_curve(np.array(range_of(edge)), np.array([start, end]), 1)
+
+
+def add_by_feet(edge: Any, face: Any, start: FloatArray) -> None:
+    """Give an edge its curve on a face that it lies on; the foot of its first point is sought from `start`."""
+    from OCP.BRep import BRep_Tool
+    from OCP.BRepAdaptor import BRepAdaptor_Surface
+    from OCP.GeomAbs import GeomAbs_SurfaceType
+    from OCP.GeomAPI import GeomAPI
+
+    surface = BRepAdaptor_Surface(face, False)
+    if surface.GetType() == GeomAbs_SurfaceType.GeomAbs_Plane:
+        curve = BRep_Tool.Curve_s(edge, *range_of(edge))
+        add_pcurve(edge, GeomAPI.To2d_s(curve, surface.Plane()), face)
+        return
+    add_pcurve(edge, _fitted(lambda t: feet(face, points_of(edge, t), start), edge, face), face)
+
+
+def first_parameters(edge: Any, face: Any, vertex: Any) -> FloatArray:
+    """Return where on a face the end of an edge is that lies at a vertex."""
+    edge = forward(edge)
+    t = range_of(edge)[0 if ends(edge)[0].IsSame(vertex) else 1]
+    return np.asarray(parameters_of(edge, face, np.array([t]))[0])
+
+
+def settle(edge: Any, faces: Iterable[Any]) -> float:
+    """Raise the tolerance of an edge and of its vertices to what its curves on faces need; return that of the edge."""
+    t = np.linspace(*range_of(edge), _MEASURED)
+    points = points_of(edge, t)
+    if not np.isfinite(points).all():
+        raise ComputationError("a new edge has points that are not finite; nothing was written")
+    at_ends = [points[[0, -1]]]
+    for face in faces:
+        on_face = surface_at(face, parameters_of(edge, face, t))
+        raise_tolerance(edge, MARGIN * float(np.linalg.norm(on_face - points, axis=1).max()))
+        at_ends.append(on_face[[0, -1]])
+    for k, vertex in enumerate(ends(forward(edge))):
+        away = max(float(np.linalg.norm(x[k] - point_of(vertex))) for x in at_ends)
+        raise_tolerance(vertex, max(tolerance_of(edge), MARGIN * away))
+    return tolerance_of(edge)
+
+
+def _fitted(places: Callable[[FloatArray], FloatArray], edge: Any, face: Any) -> Any:
+    """Return the curve through places on a face, with as many samples as make it follow its edge."""
+    first, last = range_of(edge)
+    checked = np.linspace(first, last, _MEASURED)
+    points = points_of(edge, checked)
+    wanted = places(checked)
+    line = wanted[0] + (wanted[-1] - wanted[0]) * ((checked - first) / (last - first))[:, None]
+    extent = max(float(np.ptp(wanted, axis=0).max()), 1e-300)
+    if np.abs(wanted - line).max() <= _STRAIGHT * extent:
+        return plane_curve(np.array([first, last]), wanted[[0, -1]], 1)
+    reached = float(np.linalg.norm(surface_at(face, wanted) - points, axis=1).max())
+    best, count = None, _FEWEST
+    while count <= _MOST:
+        t = np.linspace(first, last, count)
+        curve = plane_curve(t, places(t), _DEGREE)
+        uv = np.array([curve.Value(x).Coord() for x in checked.tolist()])
+        away = float(np.linalg.norm(surface_at(face, uv) - points, axis=1).max())
+        if best is None or away < best[0]:
+            best = away, curve
+        if away <= max(CONFUSION / 4, 1.2 * reached):
+            break
+        count = 2 * count - 1
+    assert best is not None
+    return best[1]
+
+
+def _nearest(border: BSplineCurve, points: FloatArray, at_ends: tuple[float | None, ...]) -> FloatArray:
+    """Return where on a curve the points nearest to others are, which run along it."""
+    low, high = float(border.knots[0]), float(border.knots[-1])
+    nodes = np.linspace(low, high, _NODES + 1)
+    there = border.evaluate(nodes)
+    v = nodes[((points[:, None] - there) ** 2).sum(axis=2).argmin(axis=1)]
+    for _ in range(_STEPS):
+        away = points - border.evaluate(v)
+        slope, bend = border.evaluate(v, 1), border.evaluate(v, 2)
+        # Newton's step, or that of Gauss where the curve bends away.
+        full = (slope**2).sum(axis=1) - (away * bend).sum(axis=1)
+        full = np.where(full > 0.5 * (slope**2).sum(axis=1), full, (slope**2).sum(axis=1))
+        step = (away * slope).sum(axis=1) / np.maximum(full, 1e-300)
+        moved = np.clip(v + step, low, high)
+        if np.abs(moved - v).max() <= 1e-15 * (high - low):
+            break
+        v = moved
+    for k, end in zip((0, -1), at_ends, strict=True):
+        if end is not None:
+            v[k] = end
+    return v
