@@ -1,7 +1,9 @@
 from .band_contact import BandContact as BandContact
 from .chain_contact import ChainContact as ChainContact
+from .chain_joints import EndFaces as EndFaces
 from .chains import Chain as Chain
 from .chains import chain as chain
+from .end_faces import EndFace as EndFace
 from .linear_alpha import LinearInV as LinearInV
 from .measured_energy import thin_plate_energy as thin_plate_energy
 from .nlp import ConstrainedProblem as ConstrainedProblem

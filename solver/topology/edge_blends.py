@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any, Literal
 
-from semispline.solver.blending import BandContact, BlendResult, blend
+from semispline.solver.blending import BandContact, BlendResult, Chain, EndFaces, blend, chain
 from semispline.solver.errors import ComputationError, ContactError
 from semispline.solver.judge import Base, face_shortfalls, measure_face_contact
 from semispline.solver.options import BlendOptions, Continuity, named_options
@@ -58,15 +58,25 @@ def blend_edges(
     return tuple(blend_bases(one, other, said, several=len(pairs) > 1) for one, other in pairs)
 
 
-def blend_bases(a: EdgeBase, b: EdgeBase, options: BlendOptions, *, several: bool = False) -> BlendResult:
+def blend_bases(
+    a: EdgeBase,
+    b: EdgeBase,
+    options: BlendOptions,
+    *,
+    several: bool = False,
+    ends_on: tuple[EndFaces, EndFaces] | None = None,
+) -> BlendResult:
     """Blend two bases, and measure on the true face what a band stands for; errors as `blend_edges`.
 
-    Messages name the parts where there are several.
+    Messages name the parts where there are several. `ends_on` are the faces where a starts and ends, and those of b,
+    on which the end curves of the blend are to lie.
     """
     through_band = a.band is not None or b.band is not None
     try:
         # To a band contact is as exact as to any base.
-        result = blend(a.base, b.base, replace(options, limits="exact") if through_band else options)
+        said = replace(options, limits="exact") if through_band else options
+        bases = (a.base, b.base) if ends_on is None else map(_ended, (a.base, b.base), ends_on)
+        result = blend(*bases, said)
         contacts = [_band_contact(result, side, which, options) for which, side in (("a", a), ("b", b))]
     except ComputationError as error:
         if several:
@@ -79,6 +89,10 @@ def blend_bases(a: EdgeBase, b: EdgeBase, options: BlendOptions, *, several: boo
         band_a=contacts[0],
         band_b=contacts[1],
     )
+
+
+def _ended(base: Base, ends_on: EndFaces) -> Chain:
+    return replace(chain([base]), ends_on=ends_on)
 
 
 def _said(options: BlendOptions, contacts: Sequence[BandContact | None]) -> Literal["exact", "cad"]:

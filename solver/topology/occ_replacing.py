@@ -6,7 +6,7 @@ Runs in the process that read the file.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -35,11 +35,13 @@ from semispline.solver.topology.occ_shapes import (
     is_reversed,
     parts,
     point_of,
+    points_of,
     range_of,
     tolerance_of,
     turned,
     with_range,
 )
+from semispline.solver.topology.solid_gate import Change
 
 
 @dataclass(frozen=True, eq=False)
@@ -134,7 +136,9 @@ def opening(shape: Any, number: int, contacts: tuple[Sequence[int], Sequence[int
             )
         return Opening(number, face, rims[0], rims[1], None, None)
     if len(found) != 1 or not all(whole for _, whole in found):
-        raise EdgeError(f"{title} has {len(found)} wires; a fillet with one of four sides, or with two rims, can be replaced")
+        raise EdgeError(
+            f"{title} has {len(found)} wires; a fillet with one of four sides, or with two rims, can be replaced"
+        )
     between = [_between(sides[0][-1], sides[1][0], len(walked)), _between(sides[1][-1], sides[0][0], len(walked))]
     if any(len(side) != 1 for side in between):
         counts = " and ".join(str(len(side)) for side in between)
@@ -143,8 +147,8 @@ def opening(shape: Any, number: int, contacts: tuple[Sequence[int], Sequence[int
     return Opening(number, face, rims[0], rims[1], after[0], after[1])
 
 
-def put_in(shape: Any, place: Opening, surface: BSplineSurface) -> Any:
-    """Return the shape with a new face in the place of the old one, which has the same number.
+def put_in(shape: Any, place: Opening, surface: BSplineSurface) -> tuple[Any, Callable[[Any], Any]]:
+    """Return the shape with a new face, which has the number of the old one, and what each of its parts became.
 
     Parameters
     ----------
@@ -186,7 +190,26 @@ def put_in(shape: Any, place: Opening, surface: BSplineSurface) -> Any:
     for old, edge, _ in made:
         reshape.Replace(forward(old), edge)
     reshape.Replace(place.face, whole)
-    return reshape.Apply(shape)
+    return reshape.Apply(shape), reshape.Value
+
+
+def change_of(place: Opening) -> Change:
+    """Return what is meant to happen where a face is replaced."""
+    from OCP.BRepGProp import BRepGProp
+    from OCP.GProp import GProp_GProps
+
+    properties = GProp_GProps()
+    BRepGProp.SurfaceProperties_s(place.face, properties)
+    lines = [_line(rim) for rim in (place.a, place.b)]
+    length = float(np.mean([np.linalg.norm(np.diff(line, axis=0), axis=1).sum() for line in lines]))
+    gap = float(np.linalg.norm(evenly(lines[0]) - evenly(lines[1])[::-1], axis=1).mean())
+    return Change(
+        old=(place.number,),
+        new=(place.number,),
+        touched=(place.number, *(face for rim in place.rims for face in rim.faces)),
+        volume=float(properties.Mass()) * min(length, gap),
+        contacts=(*place.a.faces, *place.b.faces),
+    )
 
 
 def runs_against(place: Opening, surface: BSplineSurface) -> bool:
@@ -199,23 +222,27 @@ def runs_against(place: Opening, surface: BSplineSurface) -> bool:
         # Both ends are one point: which way it goes is seen a quarter later.
         v = v0 + (v1 - v0) * np.array([0.25, 0.75])
         corners = surface.evaluate_grid([u0, u1], v)
-        a, b = _quarters(place.a), _quarters(place.b)[::-1]
+        a, b = (evenly(_line(rim), 5)[[1, 3]] for rim in (place.a, place.b))
+        b = b[::-1]
     along = np.linalg.norm(corners - np.array([a, b]), axis=2).sum()
     against = np.linalg.norm(corners[:, ::-1] - np.array([a, b]), axis=2).sum()
     return bool(against < along)
 
 
-def _quarters(rim: Rim) -> FloatArray:
-    """Return the points at a quarter and at three quarters of a rim, by its length as polygon."""
-    from semispline.solver.topology.occ_shapes import points_of
-
+def _line(rim: Rim) -> FloatArray:
+    """Return points along a rim, as the wire walks it."""
     pieces = []
     for edge in rim.edges:
         points = points_of(edge, np.linspace(*range_of(edge), 65))
         pieces.append(points[::-1] if is_reversed(edge) else points)
-    points = np.concatenate(pieces)
-    along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
-    return points[np.searchsorted(along, along[-1] * np.array([0.25, 0.75]))]
+    return np.concatenate(pieces)
+
+
+def evenly(line: FloatArray, count: int = 65) -> FloatArray:
+    """Return so many points of a polygon, equally far apart along it."""
+    along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(line, axis=0), axis=1))])
+    at = np.linspace(0.0, along[-1], count)
+    return np.stack([np.interp(at, along, x) for x in line.T], axis=1)
 
 
 def _rim(title: str, number: int, walked: Sequence[Any], users: EdgeUsers, side: Sequence[int]) -> Rim:

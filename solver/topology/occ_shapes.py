@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -31,11 +31,12 @@ def parts(shape: Any, kind: str, outside: str | None = None) -> list[Any]:
     return found
 
 
-def copied(shape: Any) -> Any:
-    """Return a shape that shares nothing with another; its parts are in the same order."""
+def copy_of(shape: Any) -> tuple[Any, Callable[[Any], Any]]:
+    """Return a shape that shares nothing with another, its parts in the same order, and what each part became."""
     from OCP.BRepBuilderAPI import BRepBuilderAPI_Copy
 
-    return BRepBuilderAPI_Copy(shape, True, False).Shape()
+    maker = BRepBuilderAPI_Copy(shape, True, False)
+    return maker.Shape(), maker.ModifiedShape
 
 
 def cast(shape: Any) -> Any:
@@ -230,3 +231,23 @@ class EdgeUsers:
     def all(self) -> list[list[tuple[int, Any]]]:
         """Return the same for each edge of the shape."""
         return self._users
+
+
+def box_of(shape: Any) -> FloatArray:
+    """Return the least and the greatest coordinates of a shape, tolerances included, shape (2, 3)."""
+    from OCP.Bnd import Bnd_Box
+    from OCP.BRepBndLib import BRepBndLib
+
+    box = Bnd_Box()
+    BRepBndLib.Add_s(shape, box, False)
+    return np.array([box.CornerMin().Coord(), box.CornerMax().Coord()])
+
+
+def boxes_meet(a: FloatArray, b: FloatArray) -> bool:
+    """Tell whether two boxes have a point in common."""
+    return bool((a[0] <= b[1]).all() and (b[0] <= a[1]).all())
+
+
+def extent(shape: Any) -> float:
+    """Return the largest extent of a shape along the axes."""
+    return float(np.ptp(box_of(shape), axis=0).max())

@@ -1,0 +1,117 @@
+"""The faces at both ends of a face that is replaced, on which the end curves of the blend have to lie."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from semispline.solver.arrays import FloatArray
+from semispline.solver.blending import EndFace
+from semispline.solver.errors import EdgeError
+from semispline.solver.io import read_surfaces
+from semispline.solver.judge import Base
+from semispline.solver.splines import BSplineSurface, Surface, closest_point
+from semispline.solver.topology.half_edges import NONE, EdgeGraph
+from semispline.solver.topology.relations import Relations
+
+# Degrees: where an end edge is met at less the fillet goes on beyond it.
+_GOES_ON = 2.0
+
+
+@dataclass(frozen=True, eq=False)
+class Corner:
+    """Where a contact ends.
+
+    Attributes
+    ----------
+    point : ndarray, shape (3,)
+    face : int
+        The end face there.
+    end : EndFace
+    """
+
+    point: FloatArray
+    face: int
+    end: EndFace
+
+
+def end_edges(graph: EdgeGraph, face: int, contacts: tuple[Sequence[int], Sequence[int]]) -> list[int]:
+    """Return the uses of a face at the ends of its contacts; none where these are closed."""
+    uses = graph.uses
+    rows = range(*uses.of_face(face).indices(len(uses)))
+    beside = {*contacts[0], *contacts[1]}
+    return [row for row in rows if row not in beside and uses.twin[row] == NONE and not uses.seam[row]]
+
+
+def check_ends(graph: EdgeGraph, relations: Relations, face: int, ends: Sequence[int]) -> None:
+    """Refuse a face that goes on into others beyond its end edges.
+
+    Raises
+    ------
+    EdgeError
+        With the faces that belong together.
+    """
+    smooth = [row for row in ends if relations.partner[row] != NONE and relations.median[row] < _GOES_ON]
+    if not smooth:
+        return
+    beyond = [int(graph.uses.face[relations.partner[row]]) for row in smooth]
+    over = " and ".join(graph.uses.name(row) for row in smooth)
+    which = "face" if len(set(beyond)) == 1 else "faces"
+    together = ",".join(map(str, dict.fromkeys([face, *beyond])))
+    raise EdgeError(
+        f"--replace {face}: it goes on into {which} {' and '.join(map(str, dict.fromkeys(beyond)))} over {over}: they "
+        f"belong together (--replace {together}), which a solid cannot be given yet; --surfaces writes the blend alone"
+    )
+
+
+def corners(graph: EdgeGraph, relations: Relations, ends: Sequence[int]) -> list[Corner]:
+    """Return the corners at which the end edges of a face begin and end.
+
+    Raises
+    ------
+    EdgeError
+        No other face has the edge.
+    """
+    found = []
+    for row in ends:
+        partner = int(relations.partner[row])
+        if partner == NONE:
+            raise EdgeError(
+                f"{graph.uses.name(row)} of {graph.path}#{graph.uses.face[row]}: no other face lies beyond this end of "
+                "the fillet"
+            )
+        face = int(graph.uses.face[partner])
+        is_plane = graph.faces.kind[face] == "plane"
+        (loaded,) = [None] if is_plane else read_surfaces([f"{graph.path}#{face}"])
+        for sample in (0, -1):
+            point = graph.uses.points[row, sample]
+            end = EndFace.plane(graph.uses.normal[partner, 0]) if loaded is None else end_face_at(loaded.surface, point)
+            found.append(Corner(point, face, end))
+    return found
+
+
+def end_face_at(surface: Surface, point: FloatArray) -> EndFace:
+    """Return how a surface lies and bends near a point of it."""
+    u, v = (np.array([x]) for x in np.ravel(closest_point(surface, point).parameters))
+    shape = surface.to_bspline() if not isinstance(surface, BSplineSurface) else surface
+
+    def derivative(a: int, b: int) -> FloatArray:
+        return np.asarray(shape.evaluate(u, v, a, b)[0])
+
+    tangents = np.stack([derivative(1, 0), derivative(0, 1)])
+    normal = np.cross(*tangents)
+    normal /= np.linalg.norm(normal)
+    second = np.array([[derivative(2, 0), derivative(1, 1)], [derivative(1, 1), derivative(0, 2)]]) @ normal
+    # Of a tangent vector x the components along S_u and S_v are dual . x.
+    dual = np.linalg.pinv(tangents.T)
+    return EndFace(normal, dual.T @ second @ dual)
+
+
+def ends_of_base(base: Base, found: Sequence[Corner]) -> tuple[EndFace, EndFace]:
+    """Return the end faces where a base starts and where it ends."""
+    points = base.derivative(np.array(base.range_along), 0, 0)
+    places = np.array([corner.point for corner in found])
+    near = [int(np.linalg.norm(places - point, axis=1).argmin()) for point in points]
+    return found[near[0]].end, found[near[1]].end

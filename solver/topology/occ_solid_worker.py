@@ -1,0 +1,71 @@
+"""What the process of its own does that changes a solid in a file: reads, operates, gates, writes, reads again."""
+
+from __future__ import annotations
+
+import pickle
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+import numpy as np
+
+# Loaded before the limits of the process count.
+import OCP  # noqa: F401
+
+from semispline.solver.arrays import FloatArray
+from semispline.solver.errors import ComputationError, SemisplineError
+from semispline.solver.io import MILLIMETRES
+from semispline.solver.splines import BSplineSurface, transform
+from semispline.solver.topology.occ_parts import PartFile, open_parts
+from semispline.solver.topology.occ_replacing import change_of, opening, put_in
+from semispline.solver.topology.occ_shapes import copy_of
+from semispline.solver.topology.solid_gate import Change, GateReport, gate
+from semispline.solver.topology.solid_orders import Outcome, Replacement
+
+
+def work(path: str, order: str, suffix: str) -> Outcome:
+    """Return what came of replacing a face; `order` is a file with the pickled `Replacement`."""
+    # Our own process wrote this.
+    wanted = pickle.loads(Path(order).read_bytes())
+    try:
+        return _replaced(open_parts(path), wanted, suffix)
+    except (SemisplineError, MemoryError):
+        raise
+    except Exception as error:
+        # Each failure of the kernel has a class of its own.
+        said = (str(error).splitlines() or [type(error).__name__])[0]
+        raise ComputationError(f"{path}#{wanted.face}: Open CASCADE cannot put the blend in ({said})") from None
+
+
+def _replaced(file: PartFile, wanted: Replacement, suffix: str) -> Outcome:
+    part = file.part_of(wanted.face)
+    copy, image = copy_of(part.shape)
+    place = opening(copy, part.face, wanted.contacts)
+    change = change_of(place)
+    after, became = put_in(copy, place, _moved(wanted.surface, part.place.Inverted()))
+    millimetres = None if file.unit is None else MILLIMETRES[file.unit]
+    report = gate(part.shape, after, change, millimetres=millimetres)
+    touched = tuple(sorted(set(change.touched) - set(change.old)))
+    if not report.is_sound:
+        return Outcome(report, None, None, touched, part.times)
+    before = part.shape
+    content = file.with_part(part, after, lambda piece: became(image(piece))).content(suffix)
+    again = _read_back(content, suffix, wanted.face, before, change, millimetres)
+    return Outcome(report, again, content if again.is_sound else None, touched, part.times)
+
+
+def _read_back(
+    content: bytes, suffix: str, face: int, before: Any, change: Change, millimetres: float | None
+) -> GateReport:
+    with TemporaryDirectory() as folder:
+        path = Path(folder, f"written{suffix}")
+        path.write_bytes(content)
+        part = open_parts(path).part_of(face)
+        return gate(before, part.shape, change, millimetres=millimetres, read_back=True)
+
+
+def _moved(surface: BSplineSurface, trsf: Any) -> BSplineSurface:
+    if trsf.Form().name == "gp_Identity":
+        return surface
+    matrix: FloatArray = np.array([[trsf.Value(i, j) for j in range(1, 5)] for i in range(1, 4)])
+    return transform(surface, matrix[:, :3], matrix[:, 3])
