@@ -49,8 +49,10 @@ def copied_edge(edge: Any, face: Any) -> Any:
     return new
 
 
-def add_along_border(edge: Any, face: Any, border: BSplineCurve, u: float, at_ends: tuple[float | None, ...]) -> None:
-    """Give an edge its curve along the border u of a new face, by feet.
+def add_along_border(
+    edge: Any, face: Any, border: BSplineCurve, u: float, at_ends: tuple[float | None, ...]
+) -> tuple[float, float]:
+    """Give an edge its curve along the border u of a new face, by feet; return v at both its ends.
 
     Parameters
     ----------
@@ -68,6 +70,16 @@ def add_along_border(edge: Any, face: Any, border: BSplineCurve, u: float, at_en
         return np.stack([np.full_like(v, u), v], axis=1)
 
     add_pcurve(edge, _fitted(places, edge, face), face)
+    start, end = places(np.array(range_of(edge)))[:, 1].tolist()
+    return start, end
+
+
+def border_edge(old: Any, line: Any, start: float, end: float) -> Any:
+    """Return the edge in the place of an old one along a part of the border of a new face, which is a spline."""
+    if start > end:
+        first, last = line.FirstParameter(), line.LastParameter()
+        line, start, end = line.Reversed(), first + last - start, first + last - end
+    return with_range(line, start, end, CONFUSION, ends(forward(old)))
 
 
 def end_edge(old: Any, line: Any, *, backwards: bool) -> Any:
@@ -121,12 +133,18 @@ def settle(edge: Any, faces: Iterable[Any]) -> float:
     at_ends = [points[[0, -1]]]
     for face in faces:
         on_face = surface_at(face, parameters_of(edge, face, t))
-        raise_tolerance(edge, MARGIN * float(np.linalg.norm(on_face - points, axis=1).max()))
+        raise_tolerance(edge, MARGIN * distance_to(edge, face))
         at_ends.append(on_face[[0, -1]])
     for k, vertex in enumerate(ends(forward(edge))):
         away = max(float(np.linalg.norm(x[k] - point_of(vertex))) for x in at_ends)
         raise_tolerance(vertex, max(tolerance_of(edge), MARGIN * away))
     return tolerance_of(edge)
+
+
+def distance_to(edge: Any, face: Any) -> float:
+    """Return how far the curve of an edge on a face is from the one in space, at the same parameters."""
+    t = np.linspace(*range_of(edge), _MEASURED)
+    return float(np.linalg.norm(surface_at(face, parameters_of(edge, face, t)) - points_of(edge, t), axis=1).max())
 
 
 def _fitted(places: Callable[[FloatArray], FloatArray], edge: Any, face: Any) -> Any:

@@ -21,7 +21,9 @@ from semispline.solver.topology.occ_new_edges import (
     add_along_border,
     add_by_feet,
     add_pcurve,
+    border_edge,
     copied_edge,
+    distance_to,
     end_edge,
     first_parameters,
     line_on,
@@ -169,8 +171,8 @@ def put_in(shape: Any, place: Opening, surface: BSplineSurface) -> tuple[Any, Ca
     # v where the first contact starts as the wire of the old face walks it, and where it ends.
     start, end = (high, low) if against else (low, high)
     (u0, u1) = surface.domain[0]
-    of_a = _contact_edges(place.a, faces, new, surface, u0, (start, end))
-    of_b = _contact_edges(place.b, faces, new, surface, u1, (end, start))
+    of_a = _contact_edges(place.a, faces, new, geometry, surface, u0, (start, end))
+    of_b = _contact_edges(place.b, faces, new, geometry, surface, u1, (end, start))
     made = of_a + of_b
     used = [[(edge, is_reversed(old)) for old, edge, _ in side] for side in (of_a, of_b)]
     if place.after_a is not None and place.after_b is not None:
@@ -277,16 +279,22 @@ def _face(surface: BSplineSurface) -> Any:
 
 
 def _contact_edges(
-    rim: Rim, faces: Sequence[Any], new: Any, surface: BSplineSurface, u: float, v: tuple[float, float]
+    rim: Rim, faces: Sequence[Any], new: Any, geometry: Any, surface: BSplineSurface, u: float, v: tuple[float, float]
 ) -> list[tuple[Any, Any, list[Any]]]:
     """Return each old edge of a contact, the one that takes its place, and the face beyond."""
     border = iso_curve(surface, u=u)
     made = []
     for k, (old, beyond) in enumerate(zip(rim.edges, rim.faces, strict=True)):
-        edge = copied_edge(old, faces[beyond])
+        face = faces[beyond]
+        edge = copied_edge(old, face)
         known = [v[0] if k == 0 else None, v[1] if k == len(rim.edges) - 1 else None]
-        add_along_border(edge, new, border, u, tuple(known[::-1] if is_reversed(old) else known))
-        made.append((old, edge, [faces[beyond]]))
+        places = add_along_border(edge, new, border, u, tuple(known[::-1] if is_reversed(old) else known))
+        if distance_to(edge, new) > max(CONFUSION, tolerance_of(old)):
+            # The contact was moved to where a band follows the face: that is where the faces meet now.
+            edge = border_edge(old, geometry.UIso(u), *places)
+            add_pcurve(edge, line_on(edge, (u, places[0]), (u, places[1])), new)
+            add_by_feet(edge, face, first_parameters(old, face, ends(edge)[0]))
+        made.append((old, edge, [face]))
     return made
 
 
