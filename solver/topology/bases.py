@@ -45,7 +45,7 @@ class EdgeBase:
 
 
 def edge_bases(
-    ends: Sequence[ResolvedEdge], continuity: Continuity | Sequence[Continuity] = "G2"
+    ends: Sequence[ResolvedEdge], continuity: Continuity | Sequence[Continuity] = "G2", share: float = 1.0
 ) -> list[tuple[EdgeBase, ...]]:
     """Return the bases along each edge, in its own direction: one, or more where a free curve has to be cut.
 
@@ -54,6 +54,8 @@ def edge_bases(
     ends : sequence of ResolvedEdge
     continuity : str or sequence of str
         That all, or each, is to be met with.
+    share : float
+        Of its limits, that a band may use.
 
     Raises
     ------
@@ -67,7 +69,7 @@ def edge_bases(
     curves = free_curves(ends)
     orders = [continuity] * len(ends) if isinstance(continuity, str) else continuity
     return [
-        (EdgeBase(end.edge, Base(end.surface, end.edge)),) if curve is None else bases_along(curve, wanted, end.part)
+        bases_along(curve, wanted, end.part, share) if curve else (EdgeBase(end.edge, Base(end.surface, end.edge)),)
         for end, curve, wanted in zip(ends, curves, orders, strict=True)
     ]
 
@@ -88,10 +90,12 @@ def free_curves(ends: Sequence[ResolvedEdge]) -> list[TrimCurve | None]:
     return found
 
 
-def bases_along(curve: TrimCurve, continuity: Continuity = "G2", part: int | None = None) -> tuple[EdgeBase, ...]:
+def bases_along(
+    curve: TrimCurve, continuity: Continuity = "G2", part: int | None = None, share: float = 1.0
+) -> tuple[EdgeBase, ...]:
     """Return a base for each band along a free curve, or for that of one part of it; errors as `edge_bases`."""
     # What a continuity of parameters means for the face is that of the surface.
-    bands = curve.bands("G1" if continuity[1] == "0" else f"G{continuity[1]}", part)  # type: ignore[arg-type]
+    bands = curve.bands("G1" if continuity[1] == "0" else f"G{continuity[1]}", part, share)  # type: ignore[arg-type]
     numbers: Sequence[int] = range(len(bands)) if part is None else [part]
     names = [curve.word] if part is None and len(bands) == 1 else [f"{curve.word}[{k}]" for k in numbers]
     return tuple(EdgeBase(name, band.base, band, curve) for name, band in zip(names, bands, strict=True))

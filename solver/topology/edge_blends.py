@@ -75,8 +75,10 @@ def blend_bases(
     try:
         # To a band contact is as exact as to any base.
         said = replace(options, limits="exact") if through_band else options
-        bases = (a.base, b.base) if ends_on is None else map(_ended, (a.base, b.base), ends_on)
-        result = blend(*bases, said)
+        if ends_on is None:
+            result = blend(a.base, b.base, said)
+        else:
+            result = blend(_ended(a.base, ends_on[0]), _ended(b.base, ends_on[1]), said)
         contacts = [_band_contact(result, side, which, options) for which, side in (("a", a), ("b", b))]
     except ComputationError as error:
         if several:

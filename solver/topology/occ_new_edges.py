@@ -193,4 +193,4 @@ def _nearest(border: BSplineCurve, points: FloatArray, at_ends: tuple[float | No
     for k, end in zip((0, -1), at_ends, strict=True):
         if end is not None:
             v[k] = end
-    return v
+    return np.asarray(v)

@@ -20,7 +20,6 @@ from semispline.solver.topology.occ_edges import wires
 from semispline.solver.topology.occ_new_edges import (
     add_along_border,
     add_by_feet,
-    add_pcurve,
     border_edge,
     copied_edge,
     distance_to,
@@ -32,6 +31,7 @@ from semispline.solver.topology.occ_new_edges import (
 from semispline.solver.topology.occ_shapes import (
     CONFUSION,
     EdgeUsers,
+    add_pcurve,
     ends,
     forward,
     is_reversed,

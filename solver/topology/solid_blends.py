@@ -9,10 +9,10 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 from semispline.solver.blending import BlendResult
-from semispline.solver.errors import EdgeError, FileError, SolidError
+from semispline.solver.errors import BandError, EdgeError, FileError, SolidError
 from semispline.solver.io import OCC_SUFFIXES, read_apart, read_surfaces, write_bytes
 from semispline.solver.options import BlendOptions, named_options
-from semispline.solver.topology.bases import edge_bases
+from semispline.solver.topology.bases import EdgeBase, edge_bases
 from semispline.solver.topology.between import Between
 from semispline.solver.topology.edge_blends import blend_bases
 from semispline.solver.topology.end_faces import check_ends, corners, end_edges, ends_of_base
@@ -25,6 +25,8 @@ from semispline.solver.topology.solid_orders import Outcome, Replacement
 
 # Operating, measuring twice, writing and reading again take so many times as long as reading, at most.
 _TIMES = 12.0
+# Of their limits bands use so much: then they lie within 1e-7 of their length, and no tolerance grows.
+_SHARE = 1e-2
 _WRITTEN = (".step", ".stp", ".brep", ".brp")
 
 
@@ -171,7 +173,7 @@ def _blended(measured: MeasuredEdges, between: Between, pair: ReplacedPair, opti
     """Return the blend of both contacts, its end curves on the end faces."""
     graph, face = measured.graph, between.face
     relations = relate(graph)
-    sides = edge_bases([pair.a, pair.b], options.continuities)
+    sides = _bases(pair, options)
     for side, contact in zip(sides, pair.contacts, strict=True):
         if len(side) != 1:
             raise EdgeError(
@@ -185,6 +187,14 @@ def _blended(measured: MeasuredEdges, between: Between, pair: ReplacedPair, opti
     check_ends(graph, relations, face, ends)
     found = corners(graph, relations, ends)
     return blend_bases(a, b, options, ends_on=(ends_of_base(a.base, found), ends_of_base(b.base, found)))
+
+
+def _bases(pair: ReplacedPair, options: BlendOptions) -> list[tuple[EdgeBase, ...]]:
+    """Return the bases along both contacts, as close to their faces as bands come."""
+    try:
+        return edge_bases([pair.a, pair.b], options.continuities, _SHARE)
+    except BandError:
+        return edge_bases([pair.a, pair.b], options.continuities)
 
 
 def _notes(outcome: Outcome) -> tuple[str, ...]:

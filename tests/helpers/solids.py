@@ -61,7 +61,9 @@ def half_space(point, normal, size=200.0):
 
 def edge_at(x, y):
     """The upright edge at a place."""
-    return lambda point, along: abs(along[2]) > 0.5 * np.linalg.norm(along) and math.hypot(point[0] - x, point[1] - y) < 1e-6
+    return lambda point, along: (
+        abs(along[2]) > 0.5 * np.linalg.norm(along) and math.hypot(point[0] - x, point[1] - y) < 1e-6
+    )
 
 
 def circles_at(z, radius):
@@ -120,7 +122,9 @@ def round_end(radius, across=30.0):
 def rib(radius):
     """A half-round rib on a plate."""
     shape = fused(box(60, 40, 5), cut(cylinder(8, 60, at=(0, 20, 5), along=(1, 0, 0)), box(60, 40, 5)))
-    return fillet(shape, radius, lambda p, d: abs(p[2] - 5) < 1e-6 and abs(abs(p[1] - 20) - 8) < 1e-6 and abs(d[0]) > 0.5)
+    return fillet(
+        shape, radius, lambda p, d: abs(p[2] - 5) < 1e-6 and abs(abs(p[1] - 20) - 8) < 1e-6 and abs(d[0]) > 0.5
+    )
 
 
 def boss(radius, across=8.0):
