@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -14,28 +15,31 @@ from semispline.solver.topology.occ_shapes import (
     CONFUSION,
     MARGIN,
     add_pcurve,
+    breaks_of,
     ends,
     feet,
     forward,
+    merged,
     parameters_of,
     plane_curve,
     point_of,
     points_of,
     raise_tolerance,
     range_of,
+    spline_of_pieces,
     surface_at,
     tolerance_of,
     with_range,
 )
 
 # Samples of a curve in the parameters of a face: the first number, and where doubling ends.
-_FEWEST, _MOST = 33, 257
+_FEWEST, _MOST = 33, 513
 _DEGREE = 5
 # A curve that is this near, of the range, to a straight one is one.
 _STRAIGHT = 1e-11
 # Places at which a curve is compared with its edge, and those of the border from which a nearest point is sought.
 _MEASURED, _NODES = 129, 1000
-_STEPS = 30
+_STEPS, _SECANTS = 30, 6
 
 
 def copied_edge(edge: Any, face: Any) -> Any:
@@ -69,7 +73,21 @@ def add_along_border(
         v = _nearest(border, points_of(edge, t), at_ends)
         return np.stack([np.full_like(v, u), v], axis=1)
 
-    add_pcurve(edge, _fitted(places, edge, face), face)
+    def at_knots(t: FloatArray) -> FloatArray:
+        v = places(t)[:, 1]
+        inner = np.unique(border.knots)[1:-1]
+        if v[-1] < v[0]:
+            v, t = v[::-1], t[::-1]
+        found = np.interp(inner, v, t)
+        # v(t) grows or falls: a few steps of the secant between neighbours.
+        for _ in range(_SECANTS):
+            step = 1e-4 * float(np.ptp(t))
+            here = places(found)[:, 1]
+            slope = (places(np.clip(found + step, t.min(), t.max()))[:, 1] - here) / step
+            found = np.clip(found + (inner - here) / np.where(slope == 0, np.inf, slope), t.min(), t.max())
+        return np.asarray(found)
+
+    add_pcurve(edge, _fitted(places, edge, face, at_knots), face)
     start, end = places(np.array(range_of(edge)))[:, 1].tolist()
     return start, end
 
@@ -147,30 +165,50 @@ def distance_to(edge: Any, face: Any) -> float:
     return float(np.linalg.norm(surface_at(face, parameters_of(edge, face, t)) - points_of(edge, t), axis=1).max())
 
 
-def _fitted(places: Callable[[FloatArray], FloatArray], edge: Any, face: Any) -> Any:
-    """Return the curve through places on a face, with as many samples as make it follow its edge."""
+def _fitted(
+    places: Callable[[FloatArray], FloatArray],
+    edge: Any,
+    face: Any,
+    more: Callable[[FloatArray], FloatArray] | None = None,
+) -> Any:
+    """Return the curve through places on a face, with as many samples as make it follow its edge.
+
+    It is only continuous where the edge has knots, and at parameters that `more` returns.
+    """
     first, last = range_of(edge)
     checked = np.linspace(first, last, _MEASURED)
-    points = points_of(edge, checked)
     wanted = places(checked)
     line = wanted[0] + (wanted[-1] - wanted[0]) * ((checked - first) / (last - first))[:, None]
     extent = max(float(np.ptp(wanted, axis=0).max()), 1e-300)
     if np.abs(wanted - line).max() <= _STRAIGHT * extent:
         return plane_curve(np.array([first, last]), wanted[[0, -1]], 1)
-    reached = float(np.linalg.norm(surface_at(face, wanted) - points, axis=1).max())
-    best, count = None, _FEWEST
-    while count <= _MOST:
-        t = np.linspace(first, last, count)
-        curve = plane_curve(t, places(t), _DEGREE)
-        uv = np.array([curve.Value(x).Coord() for x in checked.tolist()])
-        away = float(np.linalg.norm(surface_at(face, uv) - points, axis=1).max())
-        if best is None or away < best[0]:
-            best = away, curve
-        if away <= max(CONFUSION / 4, 1.2 * reached):
+    breaks = np.concatenate([breaks_of(edge), [] if more is None else more(checked)])
+    breaks = merged(breaks, first, last)
+    best, count = None, max(_FEWEST // (len(breaks) - 1), _DEGREE + 1)
+    while count * (len(breaks) - 1) <= max(_MOST, 2 * _FEWEST) or best is None:
+        parameters = [np.linspace(low, high, count) for low, high in pairwise(breaks.tolist())]
+        found = places(np.concatenate([parameters[0], *(t[1:] for t in parameters[1:])]))
+        curve = spline_of_pieces(
+            parameters, [found[k * (count - 1) : (k + 1) * (count - 1) + 1] for k in range(len(parameters))]
+        )
+        away = _distance(curve, places, edge, face, parameters)
+        if best is None or away[0] < best[0]:
+            best = away[0], curve
+        if away[0] <= max(CONFUSION / 4, 1.2 * away[1]):
             break
         count = 2 * count - 1
-    assert best is not None
     return best[1]
+
+
+def _distance(
+    curve: Any, places: Callable[[FloatArray], FloatArray], edge: Any, face: Any, parameters: Sequence[FloatArray]
+) -> tuple[float, float]:
+    """Return how far a curve on a face is from its edge between its samples, and how far the places are."""
+    t = np.concatenate([(x[1:] + x[:-1]) / 2 for x in parameters])
+    points = points_of(edge, t)
+    uv = np.array([curve.Value(x).Coord() for x in t.tolist()])
+    own, best = (float(np.linalg.norm(surface_at(face, x) - points, axis=1).max()) for x in (uv, places(t)))
+    return own, best
 
 
 def _nearest(border: BSplineCurve, points: FloatArray, at_ends: tuple[float | None, ...]) -> FloatArray:

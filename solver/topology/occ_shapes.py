@@ -16,6 +16,9 @@ CONFUSION = 1e-7
 MARGIN = 1.05
 # Steps towards a foot, and what of the last one is left, relative to the parameters.
 _STEPS, _DONE = 30, 1e-14
+_DEGREE = 5
+# Of a range: breaks nearer to each other are one.
+_APART = 1e-6
 
 
 def parts(shape: Any, kind: str, outside: str | None = None) -> list[Any]:
@@ -163,20 +166,55 @@ def feet(face: Any, points: FloatArray, start: FloatArray) -> FloatArray:
 
 def plane_curve(t: FloatArray, uv: FloatArray, degree: int) -> Any:
     """Return the spline (u, v)(t) through points in the parameters of a surface."""
+    curve = interpolate_curve(uv, degree, t)
+    return _geometry(degree, curve.knots, curve.control_points)
+
+
+def spline_of_pieces(t: Sequence[FloatArray], uv: Sequence[FloatArray]) -> Any:
+    """Return the spline of degree 5 through points of several pieces that is only continuous from piece to piece."""
+    curves = [interpolate_curve(points, _DEGREE, at) for at, points in zip(t, uv, strict=True)]
+    knots = np.concatenate(
+        [curves[0].knots[:-1], *(x.knots[_DEGREE + 1 : -1] for x in curves[1:]), curves[-1].knots[-1:]]
+    )
+    points = np.concatenate([curves[0].control_points, *(x.control_points[1:] for x in curves[1:])])
+    return _geometry(_DEGREE, knots, points)
+
+
+def _geometry(degree: int, knots: FloatArray, control_points: FloatArray) -> Any:
     from OCP.collections import Array1_double, Array1_gp_Pnt2d, Array1_int
     from OCP.Geom2d import Geom2d_BSplineCurve
     from OCP.gp import gp_Pnt2d
 
-    curve = interpolate_curve(uv, degree, t)
-    values, counts = np.unique(curve.knots, return_counts=True)
-    points = Array1_gp_Pnt2d(1, len(curve.control_points))
-    for i, pole in enumerate(curve.control_points.tolist()):
+    values, counts = np.unique(knots, return_counts=True)
+    points = Array1_gp_Pnt2d(1, len(control_points))
+    for i, pole in enumerate(control_points.tolist()):
         points.SetValue(i + 1, gp_Pnt2d(*pole[:2]))
     places, times = Array1_double(1, len(values)), Array1_int(1, len(values))
     for i, (value, count) in enumerate(zip(values.tolist(), counts.tolist(), strict=True)):
         places.SetValue(i + 1, value)
         times.SetValue(i + 1, count)
     return Geom2d_BSplineCurve(points, places, times, degree)
+
+
+def breaks_of(edge: Any) -> FloatArray:
+    """Return the parameters between which an edge is smooth, ends included."""
+    from OCP.BRepAdaptor import BRepAdaptor_Curve
+    from OCP.collections import Array1_double
+    from OCP.GeomAbs import GeomAbs_Shape
+
+    curve = BRepAdaptor_Curve(edge)
+    count = curve.NbIntervals(GeomAbs_Shape.GeomAbs_CN)
+    found = Array1_double(1, count + 1)
+    curve.Intervals(found, GeomAbs_Shape.GeomAbs_CN)
+    return np.array([found.Value(k + 1) for k in range(count + 1)])
+
+
+def merged(values: FloatArray, first: float, last: float) -> FloatArray:
+    """Return increasing values from the first to the last, without those that nearly are others."""
+    apart = _APART * (last - first)
+    inner = np.sort(values[(values > first + apart) & (values < last - apart)])
+    kept = inner[np.concatenate([[True], np.diff(inner) > apart])] if len(inner) else inner
+    return np.concatenate([[first], kept, [last]])
 
 
 def with_range(curve: Any, first: float, last: float, tolerance: float, vertices: Sequence[Any]) -> Any:

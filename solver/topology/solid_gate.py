@@ -278,7 +278,7 @@ def _borders(both: _Both, millimetres: float | None) -> Iterator[tuple[int, Bord
         was = None if both.known[k] is None else both.olds.tolerance[both.known[k]]  # type: ignore[index]
         found = measured_border(both.after, both.news, k, both.change.new, was)
         if set(faces) & contacts:
-            most = max(cad_measures(found.length, millimetres)["gap"], was or 0.0)
+            most = cad_measures(found.length, millimetres)["gap"]
         else:
             most = (_TOLERANCE if found.is_plane else _OFF_FACE) * both.size
         if found.gap > most:
