@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from semispline.solver.cli.solids import no_solid, write_solid
 from semispline.solver.cli.wanted_bases import WantedBases
 from semispline.solver.cli.words import (
     EDGE_HELP,
@@ -55,12 +56,17 @@ def blend_command(
     edge_b: Annotated[str | None, typer.Option(metavar="EDGE", help=EDGE_HELP.format("B, or another of FACE"))] = None,
     replace_face: Annotated[
         int | None,
-        typer.Option("--replace", metavar="FACE", min=0, help="Blend the faces beside this one, as if it were away."),
+        typer.Option(
+            "--replace",
+            metavar="FACE",
+            min=0,
+            help="Take this face out of its solid and put a blend of its neighbours in.",
+        ),
     ] = None,
     cut_a: Annotated[str | None, typer.Option(metavar="D", help=_CUT_HELP.format("A"))] = None,
     cut_b: Annotated[str | None, typer.Option(metavar="D", help=_CUT_HELP.format("B"))] = None,
     surfaces: Annotated[
-        bool, typer.Option("--surfaces", help="Write the blend alone, as a surface: the default.")
+        bool, typer.Option("--surfaces", help="Write the blend alone, as a surface: the default without a solid.")
     ] = False,
     with_bases: Annotated[
         bool, typer.Option("--with-bases", help="Write the bases, cut to their edges, as surfaces beside the blend.")
@@ -76,6 +82,9 @@ def blend_command(
         raise OptionError("--surfaces: found it together with --with-bases, expected one of them")
     check_surface_output(out, 3 if with_bases else 1)
     check_outputs({"--out": out, "--report": report}, wanted.specs)
+    if not (surfaces or with_bases) and wanted.gives_solid(out):
+        write_solid(wanted, out, options, report)
+        return
     with progress("reading"):
         ends, said = wanted.resolved()
     trims = face_warnings(*((end.spec, end.edge, end.loaded) for end in ends), strict=options.strict)
@@ -96,6 +105,8 @@ def blend_command(
     if said:
         typer.echo(said)
     print_resolved(ends)
+    if replace_face is not None and not (surfaces or with_bases):
+        typer.echo(no_solid(a, out))
     for k, result in enumerate(results):
         if len(results) > 1:
             typer.echo(f"part {k + 1} of {len(results)}, in {files[k] if len(files) > 1 else out}:")

@@ -29,3 +29,6 @@ from .place import PlaceSide as PlaceSide
 from .places import find_places as find_places
 from .replacing import ReplacedPair as ReplacedPair
 from .replacing import replaced_pair as replaced_pair
+from .solid_blends import SolidBlend as SolidBlend
+from .solid_blends import can_hold_a_solid as can_hold_a_solid
+from .solid_blends import solid_with_blend as solid_with_blend

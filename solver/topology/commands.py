@@ -9,6 +9,7 @@ from math import floor, log10
 
 from semispline.solver.errors import EdgeError
 from semispline.solver.topology.between import Between
+from semispline.solver.topology.end_faces import end_edges, going_on
 from semispline.solver.topology.half_edges import EdgeGraph
 from semispline.solver.topology.place import Place
 from semispline.solver.topology.relations import Relations
@@ -31,13 +32,19 @@ def with_commands(graph: EdgeGraph, relations: Relations, place: Place, betweens
     """
     if not place.faces:
         return replace(place, commands=(_two_faces(graph.path, place),))
-    edges = (_edges_to_name(graph, relations, betweens[face]) for face in place.faces)
-    commands = (replacing(graph.path, face, names) for face, names in zip(place.faces, edges, strict=True))
+    commands = []
+    for face in place.faces:
+        between = betweens[face]
+        ends = end_edges(graph, face, (between.a.uses, between.b.uses))
+        alone = bool(going_on(graph, relations, ends))
+        commands.append(replacing(graph.path, face, _edges_to_name(graph, relations, between), alone=alone))
     return replace(place, commands=tuple(commands))
 
 
-def replacing(path: str, face: int, edges: tuple[str, str] | None = None) -> str:
+def replacing(path: str, face: int, edges: tuple[str, str] | None = None, *, alone: bool = False) -> str:
     """Return the command that blends the faces beyond a face, from one of its edges to another where they are named.
+
+    `alone` asks for the blend as a surface, instead of the solid with it.
 
     Examples
     --------
@@ -47,6 +54,7 @@ def replacing(path: str, face: int, edges: tuple[str, str] | None = None) -> str
     words = ["semispline", "blend", _safe(path), "--replace", str(face)]
     if edges is not None:
         words += ["--edge-a", edges[0], "--edge-b", edges[1]]
+    words += ["--surfaces"] * alone
     return shlex.join([*words, "-o", f"blend-{face}.step"])
 
 

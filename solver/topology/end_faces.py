@@ -45,6 +45,12 @@ def end_edges(graph: EdgeGraph, face: int, contacts: tuple[Sequence[int], Sequen
     return [row for row in rows if row not in beside and uses.twin[row] == NONE and not uses.seam[row]]
 
 
+def going_on(graph: EdgeGraph, relations: Relations, ends: Sequence[int]) -> list[int]:
+    """Return those ends of a face beyond which it goes on smoothly."""
+    partner, median = relations.partner, relations.median
+    return [row for row in ends if partner[row] != NONE and median[row] < _GOES_ON]
+
+
 def check_ends(graph: EdgeGraph, relations: Relations, face: int, ends: Sequence[int]) -> None:
     """Refuse a face that goes on into others beyond its end edges.
 
@@ -53,16 +59,16 @@ def check_ends(graph: EdgeGraph, relations: Relations, face: int, ends: Sequence
     EdgeError
         With the faces that belong together.
     """
-    smooth = [row for row in ends if relations.partner[row] != NONE and relations.median[row] < _GOES_ON]
+    smooth = going_on(graph, relations, ends)
     if not smooth:
         return
-    beyond = [int(graph.uses.face[relations.partner[row]]) for row in smooth]
+    beyond = list(dict.fromkeys(int(graph.uses.face[relations.partner[row]]) for row in smooth))
     over = " and ".join(graph.uses.name(row) for row in smooth)
-    which = "face" if len(set(beyond)) == 1 else "faces"
-    together = ",".join(map(str, dict.fromkeys([face, *beyond])))
+    which = "face" if len(beyond) == 1 else "faces"
     raise EdgeError(
-        f"--replace {face}: it goes on into {which} {' and '.join(map(str, dict.fromkeys(beyond)))} over {over}: they "
-        f"belong together (--replace {together}), which a solid cannot be given yet; --surfaces writes the blend alone"
+        f"--replace {face}: it goes on into {which} {' and '.join(map(str, beyond))} over {over}: a blend that bends less "
+        "than a round at its contacts cannot keep these edges, and the faces have to be replaced together; --surfaces "
+        "writes the blend alone"
     )
 
 

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import pickle
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
 from semispline.solver.blending import BlendResult
 from semispline.solver.errors import BandError, EdgeError, FileError, SolidError
-from semispline.solver.io import OCC_SUFFIXES, read_apart, read_surfaces, write_bytes
+from semispline.solver.io import OCC_SUFFIXES, check_outputs, read_apart, read_surfaces, write_bytes
 from semispline.solver.options import BlendOptions, named_options
 from semispline.solver.topology.bases import EdgeBase, edge_bases
 from semispline.solver.topology.between import Between
@@ -59,6 +59,15 @@ class SolidBlend:
     notes: tuple[str, ...]
     content: bytes
 
+    def record(self) -> dict[str, Any]:
+        """Return what a report holds of the solid."""
+        return {
+            "replaced": self.pair.face,
+            "touched": list(self.touched),
+            "notes": list(self.notes),
+            **{name: _gate_record(x) for name, x in (("solid", self.gate), ("read_back", self.read_back))},
+        }
+
 
 def replace_face(
     path: str | Path,
@@ -94,6 +103,8 @@ def replace_face(
     BandError, ContactError, FoldError, OptionError, ComputationError, FileError
         As `blend_edges`.
     """
+    _check_suffixes(path, out)
+    check_outputs({"out": out}, [path])
     found = solid_with_blend(path, face, Path(out).suffix.lower(), named_options(options, named), edge_a, edge_b)
     write_bytes(out, found.content)
     return found
@@ -108,7 +119,6 @@ def solid_with_blend(
     edge_b: str | None = None,
 ) -> SolidBlend:
     """Return what `replace_face` writes, in the format of a suffix; its errors."""
-    check_solid_suffixes(path, suffix)
     measured = measured_edges(path)
     graph = measured.graph
     check_face(graph, face, str(path))
@@ -131,17 +141,16 @@ def solid_with_blend(
     )
 
 
-def check_solid_suffixes(path: str | Path, suffix: str) -> None:
-    """Refuse files that hold no solid, or in which none can be written.
+def can_hold_a_solid(path: str | Path, *, written: bool = False) -> bool:
+    """Tell whether a solid can be read from a file, or written into it."""
+    return Path(path).suffix.lower() in (_WRITTEN if written else OCC_SUFFIXES)
 
-    Raises
-    ------
-    FileError
-    """
-    if Path(path).suffix.lower() not in OCC_SUFFIXES:
-        raise FileError(f"{path}: no solid comes from it, expected STEP, IGES or BREP; --surfaces writes the blend")
-    if suffix not in _WRITTEN:
-        raise FileError(f"{suffix}: no solid goes into it, expected .step or .brep; --surfaces writes the blend")
+
+def _check_suffixes(path: str | Path, out: str | Path) -> None:
+    if not can_hold_a_solid(path):
+        raise FileError(f"{path}: no solid comes from it, expected STEP, IGES or BREP; `blend_edges` makes the blend")
+    if not can_hold_a_solid(out, written=True):
+        raise FileError(f"{out}: no solid goes into it, expected .step or .brep; `write_surface` writes a blend")
 
 
 def operated(path: str | Path, order: Replacement, suffix: str) -> Outcome:
@@ -204,3 +213,9 @@ def _notes(outcome: Outcome) -> tuple[str, ...]:
     if outcome.report.open_edges:
         notes.append(f"{outcome.report.open_edges} edges belong to one face alone, as before: this is no closed solid")
     return tuple(notes)
+
+
+def _gate_record(report: GateReport) -> dict[str, Any]:
+    found = asdict(report)
+    # It is sound: there is no reason and no place.
+    return {name: value for name, value in found.items() if name not in ("reason", "place")}

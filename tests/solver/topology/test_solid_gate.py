@@ -1,6 +1,7 @@
 """The gate before a changed solid is written: each kind of wrong solid is made and stopped, and no right one is."""
 
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -18,6 +19,7 @@ from semispline.solver.topology.solid_gate import gate
 OUT = np.array([-1.0, -1.0, 0.0]) / np.sqrt(2)
 
 
+@cache
 def corner_blend(radius=5.0, height=40.0):
     """G2 from the plane y = 0 to the plane x = 0 along an upright edge."""
     a = Base(plane([radius, 0, 0], [0, 0, height], [20, 0, 0]), "v0")
@@ -30,13 +32,13 @@ def with_hole():
     return cut(box_with_fillet(5.0), cylinder(1.5, 40.0, at=(5.0, 5.0, 0.0)))
 
 
-def the_fillet(shape, at=(5.0 - 5.0 / np.sqrt(2), 5.0 - 5.0 / np.sqrt(2), 20.0)):
-    """The number of the face whose middle is at a place, and its upright edges."""
+def the_fillet(shape):
+    """The number of the round along the z-axis, and its upright edges."""
     graph = graph_of(shape)
     uses = graph.uses
     for number, kind in enumerate(graph.faces.kind):
         rows = uses.of_face(number)
-        if kind == "cylinder" and np.abs(uses.points[rows].mean(axis=(0, 1))[:2] - np.array(at)[:2]).max() < 2.0:
+        if kind == "cylinder" and np.abs(uses.points[rows].mean(axis=(0, 1))[:2] - 1.5).max() < 2.0:
             upright = [k for k in range(rows.stop - rows.start) if np.ptp(uses.points[rows][k, :, 2]) > 1.0]
             if len(upright) == 2 and rows.stop - rows.start == 4:
                 return number, tuple((k,) for k in upright)
@@ -118,15 +120,7 @@ def test_bumps_and_dents_are_stopped(make, by, said):
     assert is_valid(after)
     found = gate(shape, after, change)
     assert said in found.reason
-
-
-def test_what_crosses_is_found_where_the_volume_allows_it():
-    """The pocket through the far side again, with a limit of volume that lets it pass."""
-    shape = box_with_fillet(5.0)
-    after, change = placed(shape, bent(corner_blend(), -80 * OUT))
-    found = gate(shape, after, replace(change, volume=1e9))
-    assert "cross" in found.reason
-    assert found.place is not None
+    assert (found.place is not None) == (said == "cross")
 
 
 def test_a_fold_inside_is_stopped():
@@ -253,6 +247,7 @@ def rim(shape):
     return number, (tuple(high), tuple(k for k in around if k not in high))
 
 
+@cache
 def rim_blend():
     """From the top of a pin of radius 8, 20 high, 4 inside its rim, to its side; exact surfaces of revolution."""
     top = revolve(line([4.0, 0, 20], [0.5, 0, 20]), [0, 0, 0], [0, 0, 1])
@@ -307,7 +302,7 @@ def test_a_face_that_was_not_to_be_changed_is_looked_at():
 def test_tolerances_elsewhere_may_not_grow():
     shape = box_with_fillet(5.0)
     after, change = placed(shape, corner_blend())
-    (edge,) = [e for e in parts(parts(after, "FACE")[far_face()], "EDGE")[:1]]
+    edge = parts(parts(after, "FACE")[far_face()], "EDGE")[0]
     raise_tolerance(edge, 10 * tolerance_of(edge))
     assert "became 1e-06" in gate(shape, after, change).reason
 
