@@ -137,5 +137,6 @@ from .solver.topology.replacing import replaced_pair as replaced_pair
 from .solver.topology.solid_blends import SolidBlend as SolidBlend
 from .solver.topology.solid_blends import replace_face as replace_face
 from .solver.topology.solid_gate import GateReport as GateReport
+from .solver.topology.solid_rounds import round_edge as round_edge
 
 __version__: str

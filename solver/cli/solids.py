@@ -54,10 +54,10 @@ def _print(found: SolidBlend) -> None:
     had, has = report.volume
     kind = "solid" if report.solids[1] else "shell"
     count = report.solids[1] or report.shells[1] or 1
-    typer.echo(found.pair.said)
+    typer.echo(found.said)
     typer.echo(
         f"{f'one sound {kind}' if count == 1 else f'{count} sound {kind}s'} of {report.faces[1]} faces: "
-        f"{found.pair.face} is the blend, {', '.join(map(str, found.touched))} have new borders, all else is as it was"
+        f"{found.face} is the blend, {', '.join(map(str, found.touched))} have new borders, all else is as it was"
     )
     typer.echo(f"volume {had:.9g} -> {has:.9g}, by {has - had:.4g} of at most {report.volume_limit:.4g}")
     before = max((edge.was or 0.0 for edge in report.border), default=0.0)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -18,23 +17,6 @@ from semispline.solver.topology.relations import Relations
 
 # Degrees: where an end edge is met at less the fillet goes on beyond it.
 _GOES_ON = 2.0
-
-
-@dataclass(frozen=True, eq=False)
-class Corner:
-    """Where a contact ends.
-
-    Attributes
-    ----------
-    point : ndarray, shape (3,)
-    face : int
-        The end face there.
-    end : EndFace
-    """
-
-    point: FloatArray
-    face: int
-    end: EndFace
 
 
 def end_edges(graph: EdgeGraph, face: int, contacts: tuple[Sequence[int], Sequence[int]]) -> list[int]:
@@ -66,14 +48,14 @@ def check_ends(graph: EdgeGraph, relations: Relations, face: int, ends: Sequence
     over = " and ".join(graph.uses.name(row) for row in smooth)
     which = "face" if len(beyond) == 1 else "faces"
     raise EdgeError(
-        f"--replace {face}: it goes on into {which} {' and '.join(map(str, beyond))} over {over}: a blend that bends less "
-        "than a round at its contacts cannot keep these edges, and the faces have to be replaced together; --surfaces "
-        "writes the blend alone"
+        f"--replace {face}: it goes on into {which} {' and '.join(map(str, beyond))} over {over}: a blend that bends "
+        "less than a round at its contacts cannot keep these edges, and the faces have to be replaced together; "
+        "--surfaces writes the blend alone"
     )
 
 
-def corners(graph: EdgeGraph, relations: Relations, ends: Sequence[int]) -> list[Corner]:
-    """Return the corners at which the end edges of a face begin and end.
+def faces_at_ends(graph: EdgeGraph, relations: Relations, ends: Sequence[int]) -> list[tuple[FloatArray, int]]:
+    """Return the points at which end edges begin and end, each with a use of the edge by the face beyond.
 
     Raises
     ------
@@ -88,13 +70,37 @@ def corners(graph: EdgeGraph, relations: Relations, ends: Sequence[int]) -> list
                 f"{graph.uses.name(row)} of {graph.path}#{graph.uses.face[row]}: no other face lies beyond this end of "
                 "the fillet"
             )
-        face = int(graph.uses.face[partner])
-        is_plane = graph.faces.kind[face] == "plane"
-        (loaded,) = [None] if is_plane else read_surfaces([f"{graph.path}#{face}"])
-        for sample in (0, -1):
-            point = graph.uses.points[row, sample]
-            end = EndFace.plane(graph.uses.normal[partner, 0]) if loaded is None else end_face_at(loaded.surface, point)
-            found.append(Corner(point, face, end))
+        found += [(graph.uses.points[row, sample], partner) for sample in (0, -1)]
+    return found
+
+
+def ends_of_bases(
+    graph: EdgeGraph, bases: Sequence[Base], at: Sequence[tuple[FloatArray, int]]
+) -> list[tuple[EndFace, EndFace]]:
+    """Return, for each base, the end faces where it starts and where it ends.
+
+    Parameters
+    ----------
+    graph : EdgeGraph
+    bases : sequence of Base
+    at : sequence of (ndarray, int)
+        Points near which bases end, and a use of an edge there by the face on which the end curve has to lie.
+    """
+    faces = list(dict.fromkeys(int(graph.uses.face[row]) for _, row in at))
+    curved = [n for n in faces if graph.faces.kind[n] != "plane"]
+    loaded = read_surfaces([f"{graph.path}#{n}" for n in curved]) if curved else []
+    surfaces = {n: one.surface for n, one in zip(curved, loaded, strict=True)}
+    places = np.array([point for point, _ in at])
+    found = []
+    for base in bases:
+        own = []
+        for point in base.derivative(np.array(base.range_along), 0, 0):
+            row = at[int(np.linalg.norm(places - point, axis=1).argmin())][1]
+            face = int(graph.uses.face[row])
+            own.append(
+                end_face_at(surfaces[face], point) if face in surfaces else EndFace.plane(graph.uses.normal[row, 0])
+            )
+        found.append((own[0], own[1]))
     return found
 
 
@@ -113,11 +119,3 @@ def end_face_at(surface: Surface, point: FloatArray) -> EndFace:
     # Of a tangent vector x the components along S_u and S_v are dual . x.
     dual = np.linalg.pinv(tangents.T)
     return EndFace(normal, dual.T @ second @ dual)
-
-
-def ends_of_base(base: Base, found: Sequence[Corner]) -> tuple[EndFace, EndFace]:
-    """Return the end faces where a base starts and where it ends."""
-    points = base.derivative(np.array(base.range_along), 0, 0)
-    places = np.array([corner.point for corner in found])
-    near = [int(np.linalg.norm(places - point, axis=1).argmin()) for point in points]
-    return found[near[0]].end, found[near[1]].end

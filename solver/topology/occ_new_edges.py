@@ -16,6 +16,7 @@ from semispline.solver.topology.occ_shapes import (
     MARGIN,
     add_pcurve,
     breaks_of,
+    cast,
     ends,
     feet,
     forward,
@@ -92,27 +93,60 @@ def add_along_border(
     return start, end
 
 
-def border_edge(old: Any, line: Any, start: float, end: float) -> Any:
-    """Return the edge in the place of an old one along a part of the border of a new face, which is a spline."""
+def border_edge(line: Any, start: float, end: float, vertices: Sequence[Any]) -> Any:
+    """Return the edge between two vertices along a part of the border of a new face, which is a spline."""
     if start > end:
         first, last = line.FirstParameter(), line.LastParameter()
         line, start, end = line.Reversed(), first + last - start, first + last - end
-    return with_range(line, start, end, CONFUSION, ends(forward(old)))
+    return with_range(line, start, end, CONFUSION, vertices)
 
 
-def end_edge(old: Any, line: Any, *, backwards: bool) -> Any:
-    """Return the edge in the place of an old one along a line across a new face, which is a spline.
+def end_edge(line: Any, vertices: Sequence[Any], *, backwards: bool = False) -> Any:
+    """Return the edge between two vertices along all of a spline, which runs so or backwards."""
+    curve = line.Reversed() if backwards else line
+    return with_range(curve, curve.FirstParameter(), curve.LastParameter(), CONFUSION, vertices)
+
+
+def trimmed(edge: Any, at: Sequence[tuple[Any, Any, float]]) -> Any:
+    """Return what is left of an edge, in its own direction, with all its curves.
 
     Parameters
     ----------
-    old : TopoDS_Edge
-    line : Geom_BSplineCurve
-    backwards : bool
-        The line runs from the old edge's last vertex to its first.
+    edge : TopoDS_Edge
+    at : sequence of (TopoDS_Vertex, TopoDS_Vertex, float)
+        The end that is cut off, the one that takes its place, and the parameter there.
     """
-    curve = line.Reversed() if backwards else line
-    first, last = curve.FirstParameter(), curve.LastParameter()
-    return with_range(curve, first, last, CONFUSION, ends(forward(old)))
+    from OCP.BRep import BRep_Builder
+    from OCP.ShapeBuild import ShapeBuild_Edge
+
+    edge = forward(edge)
+    vertices, limits = list(ends(edge)), list(range_of(edge))
+    for old, new, t in at:
+        # The nearer end, where both are one vertex.
+        k = min((k for k in (0, 1) if ends(edge)[k].IsSame(old)), key=lambda k: abs(limits[k] - t))
+        vertices[k], limits[k] = new, t
+    copy = cast(ShapeBuild_Edge().CopyReplaceVertices(edge, *(forward(x) for x in vertices)))
+    BRep_Builder().Range(copy, *limits)
+    for vertex, (_, new, t) in ((x[1], x) for x in at):
+        away = float(np.linalg.norm(points_of(copy, np.array([t]))[0] - point_of(new)))
+        raise_tolerance(vertex, max(tolerance_of(copy), MARGIN * away))
+    return copy
+
+
+def foot_on(edge: Any, point: FloatArray) -> float:
+    """Return the parameter of the point of an edge that is nearest to another."""
+    low, high = range_of(edge)
+    t = np.linspace(low, high, _NODES + 1)
+    best = float(t[np.linalg.norm(points_of(edge, t) - point, axis=1).argmin()])
+    step = 1e-6 * (high - low)
+    for _ in range(_STEPS):
+        around = points_of(edge, np.clip([best - step, best, best + step], low, high))
+        slope = (around[2] - around[0]) / (min(best + step, high) - max(best - step, low))
+        moved = min(max(best + float((point - around[1]) @ slope / (slope @ slope)), low), high)
+        if abs(moved - best) <= 1e-14 * max(1.0, abs(best)):
+            break
+        best = moved
+    return best
 
 
 def line_on(edge: Any, start: tuple[float, float], end: tuple[float, float]) -> Any:

@@ -229,7 +229,9 @@ def _relabel(tool: Any, part: Part, shape: Any, image: Callable[[Any], Any]) -> 
 def _names_of_faces() -> Iterator[None]:
     """Let the translator keep the names of faces for a while."""
     from OCP.Interface import Interface_Static
+    from OCP.STEPCAFControl import STEPCAFControl_Controller
 
+    STEPCAFControl_Controller.Init_s()
     before = {key: Interface_Static.IVal_s(key) for key in _NAMES_OF_FACES}
     try:
         for key in before:

@@ -17,6 +17,7 @@ from semispline.solver.errors import EdgeError
 from semispline.solver.io import occ_surface
 from semispline.solver.splines import BSplineSurface, iso_curve
 from semispline.solver.topology.occ_edges import wires
+from semispline.solver.topology.occ_faces import closed_face, evenly, new_face, seam_edge
 from semispline.solver.topology.occ_new_edges import (
     add_along_border,
     add_by_feet,
@@ -41,7 +42,6 @@ from semispline.solver.topology.occ_shapes import (
     range_of,
     tolerance_of,
     turned,
-    with_range,
 )
 from semispline.solver.topology.solid_gate import Change
 
@@ -165,7 +165,7 @@ def put_in(shape: Any, place: Opening, surface: BSplineSurface) -> tuple[Any, Ca
 
     against = runs_against(place, surface)
     faces = parts(shape, "FACE")
-    new = _face(surface)
+    new = new_face(surface)
     geometry = occ_surface(surface)
     low, high = surface.domain[1]
     # v where the first contact starts as the wire of the old face walks it, and where it ends.
@@ -180,14 +180,14 @@ def put_in(shape: Any, place: Opening, surface: BSplineSurface) -> tuple[Any, Ca
             made.append(_end_edge(rim, faces, new, geometry, surface, v, from_a=from_a))
         after = [[(edge, is_reversed(old))] for old, edge, _ in made[-2:]]
     else:
-        seam = _seam(place, new, geometry, surface, end, start)
+        seam = seam_edge(geometry, (u0, u1), end, start, (place.a.end, place.b.start), new)
         after = [[(seam, False)], [(seam, True)]]
         settle(turned(seam, backwards=True), [new])
         settle(seam, [new])
     for _, edge, beyond in made:
         settle(edge, [new, *beyond])
     # The parameters run round the face, seen from outside, where the first contact runs against v.
-    whole = _closed_face(new, used[0] + after[0] + used[1] + after[1], inwards=not against)
+    whole = closed_face(new, used[0] + after[0] + used[1] + after[1], inwards=not against)
     reshape = BRepTools_ReShape()
     for old, edge, _ in made:
         reshape.Replace(forward(old), edge)
@@ -240,13 +240,6 @@ def _line(rim: Rim) -> FloatArray:
     return np.concatenate(pieces)
 
 
-def evenly(line: FloatArray, count: int = 65) -> FloatArray:
-    """Return so many points of a polygon, equally far apart along it."""
-    along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(line, axis=0), axis=1))])
-    at = np.linspace(0.0, along[-1], count)
-    return np.stack([np.interp(at, along, x) for x in line.T], axis=1)
-
-
 def _rim(title: str, number: int, walked: Sequence[Any], users: EdgeUsers, side: Sequence[int]) -> Rim:
     """Return a side; refuse one along which no single other face lies."""
     from OCP.BRep import BRep_Tool
@@ -269,15 +262,6 @@ def _between(last: int, first: int, count: int) -> list[int]:
     return [(last + 1 + k) % count for k in range((first - last - 1) % count)]
 
 
-def _face(surface: BSplineSurface) -> Any:
-    from OCP.BRep import BRep_Builder
-    from OCP.TopoDS import TopoDS_Face
-
-    face = TopoDS_Face()
-    BRep_Builder().MakeFace(face, occ_surface(surface), CONFUSION)
-    return face
-
-
 def _contact_edges(
     rim: Rim, faces: Sequence[Any], new: Any, geometry: Any, surface: BSplineSurface, u: float, v: tuple[float, float]
 ) -> list[tuple[Any, Any, list[Any]]]:
@@ -291,7 +275,7 @@ def _contact_edges(
         places = add_along_border(edge, new, border, u, tuple(known[::-1] if is_reversed(old) else known))
         if distance_to(edge, new) > max(CONFUSION, tolerance_of(old)):
             # The contact was moved to where a band follows the face: that is where the faces meet now.
-            edge = border_edge(old, geometry.UIso(u), *places)
+            edge = border_edge(geometry.UIso(u), *places, ends(forward(old)))
             add_pcurve(edge, line_on(edge, (u, places[0]), (u, places[1])), new)
             add_by_feet(edge, face, first_parameters(old, face, ends(edge)[0]))
         made.append((old, edge, [face]))
@@ -306,33 +290,7 @@ def _end_edge(
     u0, u1 = surface.domain[0]
     # The wire walks from contact to contact; the edge's own direction may be the other.
     backwards = is_reversed(old) == from_a
-    edge = end_edge(old, geometry.VIso(v), backwards=backwards)
+    edge = end_edge(geometry.VIso(v), ends(forward(old)), backwards=backwards)
     add_pcurve(edge, line_on(edge, (u1 if backwards else u0, v), (u0 if backwards else u1, v)), new)
     add_by_feet(edge, faces[beyond], first_parameters(old, faces[beyond], ends(edge)[0]))
     return old, edge, [faces[beyond]]
-
-
-def _seam(place: Opening, new: Any, geometry: Any, surface: BSplineSurface, end: float, start: float) -> Any:
-    """Return the seam of a face between two rims, from the first to the second: at `end` there, at `start` back."""
-    from OCP.BRep import BRep_Builder
-
-    u0, u1 = surface.domain[0]
-    edge = with_range(geometry.VIso(end), u0, u1, CONFUSION, (place.a.end, place.b.start))
-    lines = [line_on(edge, (u0, v), (u1, v)) for v in (end, start)]
-    # First comes the curve of the use that has the edge's own direction in the face's own.
-    BRep_Builder().UpdateEdge(edge, *(lines if start > end else lines[::-1]), new, tolerance_of(edge))
-    return edge
-
-
-def _closed_face(face: Any, uses: Sequence[tuple[Any, bool]], *, inwards: bool) -> Any:
-    """Return a face with one wire of edges, as they are used from outside; `inwards` if its own normal points there."""
-    from OCP.BRep import BRep_Builder
-    from OCP.TopoDS import TopoDS_Wire
-
-    builder, wire = BRep_Builder(), TopoDS_Wire()
-    builder.MakeWire(wire)
-    for edge, backwards in uses:
-        builder.Add(wire, turned(edge, backwards=backwards != inwards))
-    wire.Closed(True)
-    builder.Add(face, wire)
-    return turned(face, backwards=inwards)

@@ -42,6 +42,28 @@ def copy_of(shape: Any) -> tuple[Any, Callable[[Any], Any]]:
     return maker.Shape(), maker.ModifiedShape
 
 
+def children(shape: Any) -> list[Any]:
+    """Return what a shape is directly made of, as it uses it."""
+    from OCP.TopoDS import TopoDS_Iterator
+
+    iterator, found = TopoDS_Iterator(shape), []
+    while iterator.More():
+        found.append(cast(iterator.Value()))
+        iterator.Next()
+    return found
+
+
+def new_vertex(point: FloatArray) -> Any:
+    """Return a vertex at a point."""
+    from OCP.BRep import BRep_Builder
+    from OCP.gp import gp_Pnt
+    from OCP.TopoDS import TopoDS_Vertex
+
+    vertex = TopoDS_Vertex()
+    BRep_Builder().MakeVertex(vertex, gp_Pnt(*point.tolist()), CONFUSION)
+    return vertex
+
+
 def cast(shape: Any) -> Any:
     """Return a shape as what it is: many of the kernel's functions hand over one without its kind."""
     from OCP.TopoDS import TopoDS
@@ -266,9 +288,18 @@ class EdgeUsers:
         """Return the number of each face that uses the edge, and the edge as it does."""
         return self._users[self._numbers.FindIndex(edge) - 1]
 
-    def all(self) -> list[list[tuple[int, Any]]]:
-        """Return the same for each edge of the shape."""
-        return self._users
+    def number(self, edge: Any) -> int:
+        """Return a number that an edge has however it is turned."""
+        return int(self._numbers.FindIndex(edge)) - 1
+
+    def edge(self, number: int) -> Any:
+        """Return the edge of a number, in its own direction."""
+        return forward(cast(self._numbers.FindKey(number + 1)))
+
+    def at(self, vertex: Any) -> list[Any]:
+        """Return the edges that begin or end at a vertex, in their own directions."""
+        edges = [forward(users[0][1]) for users in self._users]
+        return [edge for edge in edges if any(vertex.IsSame(end) for end in ends(edge))]
 
 
 def box_of(shape: Any) -> FloatArray:

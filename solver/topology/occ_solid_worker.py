@@ -18,17 +18,18 @@ from semispline.solver.io import MILLIMETRES
 from semispline.solver.splines import BSplineSurface, transform
 from semispline.solver.topology.occ_parts import PartFile, open_parts
 from semispline.solver.topology.occ_replacing import change_of, opening, put_in
-from semispline.solver.topology.occ_shapes import copy_of
+from semispline.solver.topology.occ_rounding import rounded
+from semispline.solver.topology.occ_shapes import copy_of, parts
 from semispline.solver.topology.solid_gate import Change, GateReport, gate
-from semispline.solver.topology.solid_orders import Outcome, Replacement
+from semispline.solver.topology.solid_orders import Outcome, Replacement, Rounding
 
 
 def work(path: str, order: str, suffix: str) -> Outcome:
-    """Return what came of replacing a face; `order` is a file with the pickled `Replacement`."""
+    """Return what came of changing a solid; `order` is a file with the pickled `Replacement` or `Rounding`."""
     # Our own process wrote this.
     wanted = pickle.loads(Path(order).read_bytes())
     try:
-        return _replaced(open_parts(path), wanted, suffix)
+        return _changed(open_parts(path), wanted, suffix)
     except (SemisplineError, MemoryError):
         raise
     except Exception as error:
@@ -37,21 +38,29 @@ def work(path: str, order: str, suffix: str) -> Outcome:
         raise ComputationError(f"{path}#{wanted.face}: Open CASCADE cannot put the blend in ({said})") from None
 
 
-def _replaced(file: PartFile, wanted: Replacement, suffix: str) -> Outcome:
+def _changed(file: PartFile, wanted: Replacement | Rounding, suffix: str) -> Outcome:
     part = file.part_of(wanted.face)
     copy, image = copy_of(part.shape)
-    place = opening(copy, part.face, wanted.contacts)
-    change = change_of(place)
-    after, became = put_in(copy, place, _moved(wanted.surface, part.place.Inverted()))
+    surface = _moved(wanted.surface, part.place.Inverted())
+    if isinstance(wanted, Replacement):
+        place = opening(copy, part.face, wanted.contacts)
+        change = change_of(place)
+        after, became = put_in(copy, place, surface)
+    else:
+        after, became, change = rounded(copy, part.face, wanted.edge, surface, grows=wanted.grows)
     millimetres = None if file.unit is None else MILLIMETRES[file.unit]
     report = gate(part.shape, after, change, millimetres=millimetres)
     touched = tuple(sorted(set(change.touched) - set(change.old)))
+    (new,) = change.new
     if not report.is_sound:
-        return Outcome(report, None, None, touched, part.times)
+        return Outcome(report, None, None, touched, new, part.times)
     before = part.shape
-    content = file.with_part(part, after, lambda piece: became(image(piece))).content(suffix)
-    again = _read_back(content, suffix, wanted.face, before, change, millimetres)
-    return Outcome(report, again, content if again.is_sound else None, touched, part.times)
+    whole = file.with_part(part, after, lambda piece: became(image(piece)))
+    new_face = parts(after, "FACE")[new]
+    number = next(n for n, face in enumerate(parts(whole.root, "FACE")) if face.IsPartner(new_face))
+    content = whole.content(suffix)
+    again = _read_back(content, suffix, number, before, change, millimetres)
+    return Outcome(report, again, content if again.is_sound else None, touched, number, part.times)
 
 
 def _read_back(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pickle
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -15,13 +16,13 @@ from semispline.solver.options import BlendOptions, named_options
 from semispline.solver.topology.bases import EdgeBase, edge_bases
 from semispline.solver.topology.between import Between
 from semispline.solver.topology.edge_blends import blend_bases
-from semispline.solver.topology.end_faces import check_ends, corners, end_edges, ends_of_base
-from semispline.solver.topology.face_edges import check_face
+from semispline.solver.topology.end_faces import check_ends, end_edges, ends_of_bases, faces_at_ends
+from semispline.solver.topology.face_edges import ResolvedEdge, check_face
 from semispline.solver.topology.measuring import MeasuredEdges, measured_edges
 from semispline.solver.topology.relations import relate
 from semispline.solver.topology.replacing import ReplacedPair, pair_of, resolved_pair, rows_beyond
 from semispline.solver.topology.solid_gate import GateReport
-from semispline.solver.topology.solid_orders import Outcome, Replacement
+from semispline.solver.topology.solid_orders import Outcome, Replacement, Rounding
 
 # Operating, measuring twice, writing and reading again take so many times as long as reading, at most.
 _TIMES = 12.0
@@ -37,8 +38,10 @@ class SolidBlend:
     Attributes
     ----------
     blend : BlendResult
-    pair : ReplacedPair
-        What was replaced.
+    said : str
+        What was replaced or rounded.
+    face : int
+        The new face, by its number in the file that is written.
     gate : GateReport
         What was measured of the solid before it was written.
     read_back : GateReport
@@ -52,7 +55,8 @@ class SolidBlend:
     """
 
     blend: BlendResult
-    pair: ReplacedPair
+    said: str
+    face: int
     gate: GateReport
     read_back: GateReport
     touched: tuple[int, ...]
@@ -62,7 +66,7 @@ class SolidBlend:
     def record(self) -> dict[str, Any]:
         """Return what a report holds of the solid."""
         return {
-            "replaced": self.pair.face,
+            "new_face": self.face,
             "touched": list(self.touched),
             "notes": list(self.notes),
             **{name: _gate_record(x) for name, x in (("solid", self.gate), ("read_back", self.read_back))},
@@ -103,7 +107,7 @@ def replace_face(
     BandError, ContactError, FoldError, OptionError, ComputationError, FileError
         As `blend_edges`.
     """
-    _check_suffixes(path, out)
+    check_suffixes(path, out)
     check_outputs({"out": out}, [path])
     found = solid_with_blend(path, face, Path(out).suffix.lower(), named_options(options, named), edge_a, edge_b)
     write_bytes(out, found.content)
@@ -132,11 +136,12 @@ def solid_with_blend(
     assert outcome.read_back is not None
     return SolidBlend(
         blend=result,
-        pair=pair,
+        said=pair.said,
+        face=outcome.new,
         gate=outcome.report,
         read_back=outcome.read_back,
         touched=outcome.touched,
-        notes=_notes(outcome),
+        notes=notes_of(outcome),
         content=outcome.content,
     )
 
@@ -146,14 +151,20 @@ def can_hold_a_solid(path: str | Path, *, written: bool = False) -> bool:
     return Path(path).suffix.lower() in (_WRITTEN if written else OCC_SUFFIXES)
 
 
-def _check_suffixes(path: str | Path, out: str | Path) -> None:
+def check_suffixes(path: str | Path, out: str | Path) -> None:
+    """Refuse files that hold no solid, or in which none can be written.
+
+    Raises
+    ------
+    FileError
+    """
     if not can_hold_a_solid(path):
         raise FileError(f"{path}: no solid comes from it, expected STEP, IGES or BREP; `blend_edges` makes the blend")
     if not can_hold_a_solid(out, written=True):
         raise FileError(f"{out}: no solid goes into it, expected .step or .brep; `write_surface` writes a blend")
 
 
-def operated(path: str | Path, order: Replacement, suffix: str) -> Outcome:
+def operated(path: str | Path, order: Replacement | Rounding, suffix: str) -> Outcome:
     """Return what came of an order, carried out by a process of its own.
 
     Raises
@@ -169,12 +180,13 @@ def operated(path: str | Path, order: Replacement, suffix: str) -> Outcome:
             path, "semispline.solver.topology.occ_solid_worker", "Open CASCADE", [str(written), suffix], _TIMES
         )
     assert isinstance(outcome, Outcome)
+    title = f"--replace {order.face}"
+    if isinstance(order, Rounding):
+        title = f"--round {order.face}:e{order.edge}"
     for report, when in ((outcome.report, ""), (outcome.read_back, "written and read again, ")):
         if report is not None and report.reason is not None:
             where = "" if report.place is None else " near ({:.6g}, {:.6g}, {:.6g})".format(*report.place)
-            raise SolidError(
-                f"--replace {order.face}: {when}the result is not sound: {report.reason}{where}; nothing was written"
-            )
+            raise SolidError(f"{title}: {when}the result is not sound: {report.reason}{where}; nothing was written")
     return outcome
 
 
@@ -182,7 +194,7 @@ def _blended(measured: MeasuredEdges, between: Between, pair: ReplacedPair, opti
     """Return the blend of both contacts, its end curves on the end faces."""
     graph, face = measured.graph, between.face
     relations = relate(graph)
-    sides = _bases(pair, options)
+    sides = close_bases([pair.a, pair.b], options)
     for side, contact in zip(sides, pair.contacts, strict=True):
         if len(side) != 1:
             raise EdgeError(
@@ -194,19 +206,20 @@ def _blended(measured: MeasuredEdges, between: Between, pair: ReplacedPair, opti
         return blend_bases(a, b, options)
     ends = end_edges(graph, face, (between.a.uses, between.b.uses))
     check_ends(graph, relations, face, ends)
-    found = corners(graph, relations, ends)
-    return blend_bases(a, b, options, ends_on=(ends_of_base(a.base, found), ends_of_base(b.base, found)))
+    of_a, of_b = ends_of_bases(graph, (a.base, b.base), faces_at_ends(graph, relations, ends))
+    return blend_bases(a, b, options, ends_on=(of_a, of_b))
 
 
-def _bases(pair: ReplacedPair, options: BlendOptions) -> list[tuple[EdgeBase, ...]]:
+def close_bases(ends: Sequence[ResolvedEdge], options: BlendOptions) -> list[tuple[EdgeBase, ...]]:
     """Return the bases along both contacts, as close to their faces as bands come."""
     try:
-        return edge_bases([pair.a, pair.b], options.continuities, _SHARE)
+        return edge_bases(ends, options.continuities, _SHARE)
     except BandError:
-        return edge_bases([pair.a, pair.b], options.continuities)
+        return edge_bases(ends, options.continuities)
 
 
-def _notes(outcome: Outcome) -> tuple[str, ...]:
+def notes_of(outcome: Outcome) -> tuple[str, ...]:
+    """Return what else is to be said of a changed file."""
     notes = list(outcome.notes)
     if outcome.times > 1:
         notes.append(f"the part stands {outcome.times} times in the file, and is changed wherever it stands")

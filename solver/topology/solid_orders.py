@@ -28,6 +28,26 @@ class Replacement:
 
 
 @dataclass(frozen=True, eq=False)
+class Rounding:
+    """A sharp edge to be rounded, and the surface that is put there.
+
+    Attributes
+    ----------
+    face, edge : int
+        N of `PATH#N`, and k of its edge "ek".
+    surface : BSplineSurface
+        u from that face to the one beyond the edge.
+    grows : bool
+        An inner edge: the volume has to become more.
+    """
+
+    face: int
+    edge: int
+    surface: BSplineSurface
+    grows: bool
+
+
+@dataclass(frozen=True, eq=False)
 class Outcome:
     """What came of it.
 
@@ -39,7 +59,9 @@ class Outcome:
     content : bytes or None
         The file; None where the gate stopped it.
     touched : tuple of int
-        Faces whose borders were changed.
+        Faces whose borders were changed, by their numbers in the part.
+    new : int
+        The new face, by its number in the file; where nothing was written by that in the part.
     times : int
         How often the changed part stands in the file.
     notes : tuple of str
@@ -50,5 +72,6 @@ class Outcome:
     read_back: GateReport | None
     content: bytes | None
     touched: tuple[int, ...]
+    new: int
     times: int
     notes: tuple[str, ...] = ()
