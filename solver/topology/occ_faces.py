@@ -86,7 +86,7 @@ def rebuilt(face: Any, edges: Mapping[int, Any], users: EdgeUsers, more: Sequenc
     builder, own = BRep_Builder(), forward(face)
     found = forward(own.EmptyCopied())
     for wire in children(own):
-        old = children(forward(wire))
+        old = _walked(forward(wire), own)
         numbers = [users.number(edge) for edge in old]
         made = TopoDS_Wire()
         builder.MakeWire(made)
@@ -101,6 +101,19 @@ def rebuilt(face: Any, edges: Mapping[int, Any], users: EdgeUsers, more: Sequenc
         builder.Add(found, turned(made, backwards=is_reversed(wire)))
     builder.NaturalRestriction(found, False)
     return turned(found, backwards=is_reversed(face))
+
+
+def _walked(wire: Any, face: Any) -> list[Any]:
+    """Return the edges of a wire as one walks it, where that can be done, else in their order in the file."""
+    from OCP.BRepTools import BRepTools_WireExplorer
+
+    in_file = children(wire)
+    found: list[Any] = []
+    walk = BRepTools_WireExplorer(wire, face)
+    while walk.More() and len(found) <= len(in_file):
+        found.append(walk.Current())
+        walk.Next()
+    return found if len(found) == len(in_file) else in_file
 
 
 def with_face(shape: Any, beside: int, made: Mapping[int, Any], new: Any) -> tuple[Any, Callable[[Any], Any]]:

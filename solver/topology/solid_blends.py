@@ -12,7 +12,7 @@ from typing import Any
 from semispline.solver.blending import BlendResult
 from semispline.solver.errors import BandError, EdgeError, FileError, SolidError
 from semispline.solver.io import OCC_SUFFIXES, check_outputs, read_apart, read_surfaces, write_bytes
-from semispline.solver.options import BlendOptions, named_options
+from semispline.solver.options import BlendOptions, Continuity, named_options
 from semispline.solver.topology.bases import EdgeBase, edge_bases
 from semispline.solver.topology.between import Between
 from semispline.solver.topology.edge_blends import blend_bases
@@ -194,7 +194,7 @@ def _blended(measured: MeasuredEdges, between: Between, pair: ReplacedPair, opti
     """Return the blend of both contacts, its end curves on the end faces."""
     graph, face = measured.graph, between.face
     relations = relate(graph)
-    sides = close_bases([pair.a, pair.b], options)
+    sides = close_bases([pair.a, pair.b], options.continuities)
     for side, contact in zip(sides, pair.contacts, strict=True):
         if len(side) != 1:
             raise EdgeError(
@@ -210,12 +210,12 @@ def _blended(measured: MeasuredEdges, between: Between, pair: ReplacedPair, opti
     return blend_bases(a, b, options, ends_on=(of_a, of_b))
 
 
-def close_bases(ends: Sequence[ResolvedEdge], options: BlendOptions) -> list[tuple[EdgeBase, ...]]:
+def close_bases(ends: Sequence[ResolvedEdge], continuities: Sequence[Continuity]) -> list[tuple[EdgeBase, ...]]:
     """Return the bases along both contacts, as close to their faces as bands come."""
     try:
-        return edge_bases(ends, options.continuities, _SHARE)
+        return edge_bases(ends, continuities, _SHARE)
     except BandError:
-        return edge_bases(ends, options.continuities)
+        return edge_bases(ends, continuities)
 
 
 def notes_of(outcome: Outcome) -> tuple[str, ...]:

@@ -8,10 +8,13 @@ from typing import Any
 from semispline.solver.errors import EdgeError
 from semispline.solver.io import check_outputs, write_bytes
 from semispline.solver.options import BlendOptions, named_options
+from semispline.solver.topology.bases import EdgeBase
+from semispline.solver.topology.cuts import parse_cut
 from semispline.solver.topology.edge_blends import blend_bases
 from semispline.solver.topology.edge_moving import moved_edges
 from semispline.solver.topology.end_faces import ends_of_bases
 from semispline.solver.topology.face_edges import check_face, row_of
+from semispline.solver.topology.flat_contacts import flat_contact, is_flat_contact
 from semispline.solver.topology.half_edges import NONE, EdgeGraph
 from semispline.solver.topology.measuring import measured_edges
 from semispline.solver.topology.relations import Relations, relate
@@ -85,11 +88,7 @@ def solid_with_round(
         raise EdgeError(f"{title}: the faces meet at {relations.median[row]:.2g} degrees there; no sharp edge")
     beyond = int(graph.uses.face[other])
     at = _ends(graph, relations, row, other, title)
-    moved = moved_edges((f"{path}#{face}", f"{path}#{beyond}"), (edge, graph.uses.name(other)), cuts)
-    sides = close_bases(moved, options)
-    if any(len(side) != 1 for side in sides):
-        raise EdgeError(f"{title}: along its contacts no one blend runs; they have corners")
-    a, b = sides[0][0], sides[1][0]
+    a, b = _contacts(graph, (row, other), cuts, options, title)
     of_ends = ends_of_bases(graph, (a.base, b.base), at) if at else None
     result = blend_bases(a, b, options, ends_on=None if of_ends is None else (of_ends[0], of_ends[1]))
     order = Rounding(face, int(edge[1:]), result.surface.to_bspline(), not bool(relations.convex[row]))
@@ -107,6 +106,33 @@ def solid_with_round(
         notes=notes_of(outcome),
         content=outcome.content,
     )
+
+
+def _contacts(
+    graph: EdgeGraph, rows: tuple[int, int], cuts: tuple[str, str], options: BlendOptions, title: str
+) -> tuple[EdgeBase, EdgeBase]:
+    """Return the bases along both contacts: exact ones in flat faces along straight edges."""
+    uses = graph.uses
+    specs = [f"{graph.path}#{uses.face[row]}" for row in rows]
+    # It also says how far the faces reach.
+    moved = moved_edges((specs[0], specs[1]), (uses.name(rows[0]), uses.name(rows[1])), cuts)
+    found: list[EdgeBase | None] = [None, None]
+    for k, (row, word) in enumerate(zip(rows, cuts, strict=True)):
+        distance = parse_cut(word).distance
+        if distance is not None and is_flat_contact(graph, row):
+            base = flat_contact(graph, row, distance)
+            found[k] = None if base is None else EdgeBase(uses.name(row), base)
+    for k in (k for k in (0, 1) if found[k] is None):
+        (side,) = close_bases([moved[k]], [options.continuities[k]])
+        if len(side) != 1:
+            raise EdgeError(
+                f"{title}: along its contact on face {uses.face[rows[k]]} no one blend runs; it has corners"
+            )
+        found[k] = side[0]
+    a, b = found
+    assert a is not None
+    assert b is not None
+    return a, b
 
 
 def _ends(graph: EdgeGraph, relations: Relations, row: int, other: int, title: str) -> list[tuple[Any, int]]:
