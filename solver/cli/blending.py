@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from semispline.solver.cli.solids import no_solid, write_solid
+from semispline.solver.cli.solids import WantedEdge, no_solid, write_rounded, write_solid
 from semispline.solver.cli.wanted_bases import WantedBases
 from semispline.solver.cli.words import (
     EDGE_HELP,
@@ -48,7 +48,7 @@ _CUT_HELP = (
 @reports_errors
 @takes_blend_options
 def blend_command(
-    a: Annotated[str, typer.Argument(metavar="A", help=f"{SURFACE_HELP} With --replace the file alone.")],
+    a: Annotated[str, typer.Argument(metavar="A", help=f"{SURFACE_HELP} With --replace and --round the file alone.")],
     out: Annotated[str, typer.Option("-o", "--out", metavar="OUT", help="File to write; the suffix says the format.")],
     options: BlendOptions,
     b: Annotated[str | None, typer.Argument(metavar="[B]", help="The same for the other surface.")] = None,
@@ -63,6 +63,13 @@ def blend_command(
             help="Take this face out of its solid and put a blend of its neighbours in.",
         ),
     ] = None,
+    round_edge: Annotated[
+        str | None,
+        typer.Option("--round", metavar="FACE:EDGE", help="Round this sharp edge, as 12:e3: the solid comes back."),
+    ] = None,
+    distance: Annotated[
+        float | None, typer.Option(metavar="D", help="How far from the edge --round begins, along both faces.")
+    ] = None,
     cut_a: Annotated[str | None, typer.Option(metavar="D", help=_CUT_HELP.format("A"))] = None,
     cut_b: Annotated[str | None, typer.Option(metavar="D", help=_CUT_HELP.format("B"))] = None,
     surfaces: Annotated[
@@ -76,6 +83,12 @@ def blend_command(
     """Join an edge of A and an edge of B by a semi-structured surface of fairest shape, or as the options say."""
     from semispline.solver.io import check_surface_output, face_warnings
 
+    if round_edge is not None or distance is not None:
+        wanted_edge = WantedEdge(a, round_edge, distance, (b, edge_a, edge_b, replace_face, cut_a, cut_b))
+        wanted_edge.check(out)
+        check_outputs({"--out": out, "--report": report}, [a])
+        write_rounded(wanted_edge, out, options, report)
+        return
     wanted = WantedBases(a, b, edge_a, edge_b, replace_face, (cut_a, cut_b))
     wanted.check()
     if surfaces and with_bases:

@@ -5,13 +5,17 @@ Heavy imports wait inside the functions, so that `--help` answers fast.
 
 from __future__ import annotations
 
+import re
 from contextlib import ExitStack
+from dataclasses import dataclass
+from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import typer
 
 from semispline.solver.cli.words import progress
+from semispline.solver.errors import OptionError
 from semispline.solver.options import BlendOptions
 from semispline.solver.reports import print_result, reports_record
 
@@ -20,9 +24,68 @@ if TYPE_CHECKING:
     from semispline.solver.topology import SolidBlend
 
 
+# FACE:EDGE.
+_EDGE = re.compile(r"(\d+):(e\d+)")
+
+
+@dataclass(frozen=True)
+class WantedEdge:
+    """What was said of a sharp edge to be rounded; `others` belong to other ways to say what is blended."""
+
+    path: str
+    edge: str | None
+    distance: float | None
+    others: tuple[object, ...]
+
+    @property
+    def names(self) -> tuple[int, str]:
+        """The face and its edge.
+
+        Raises
+        ------
+        OptionError
+        """
+        found = _EDGE.fullmatch((self.edge or "").strip())
+        if found is None:
+            raise OptionError(f"--round: found {self.edge!r}, expected a face and its edge, as 12:e3")
+        return int(found[1]), found[2]
+
+    def check(self, out: str) -> None:
+        """Refuse what does not go together before a file is read.
+
+        Raises
+        ------
+        OptionError
+        """
+        from semispline.solver.topology import can_hold_a_solid
+
+        if self.edge is None or self.distance is None:
+            missing = "--round" if self.edge is None else "--distance"
+            raise OptionError(f"{missing}: missing, expected --round FACE:EDGE and --distance D together")
+        if any(other is not None for other in self.others):
+            raise OptionError("--round: found together with B, --replace, --edge-a, --edge-b, --cut-a or --cut-b")
+        if not (isfinite(self.distance) and self.distance > 0):
+            raise OptionError(f"--distance: found {self.distance}, expected a finite number above 0")
+        _ = self.names
+        if not can_hold_a_solid(self.path) or not can_hold_a_solid(out, written=True):
+            raise OptionError(
+                f"--round: found {self.path} and {out}, expected a STEP, IGES or BREP file and one of STEP or BREP to "
+                "write: no solid can come back otherwise"
+            )
+
+
+def write_rounded(wanted: WantedEdge, out: str, options: BlendOptions, report: str | None) -> None:
+    """Write the solid with its edge rounded, and the report: both or none."""
+    from semispline.solver.topology import solid_with_round
+
+    cut = repr(wanted.distance)
+    with progress("blending"):
+        found = solid_with_round(wanted.path, *wanted.names, (cut, cut), Path(out).suffix.lower(), options)
+    _write(found, out, report)
+
+
 def write_solid(wanted: WantedBases, out: str, options: BlendOptions, report: str | None) -> None:
     """Write the solid with the blend in it, and the report: both or none."""
-    from semispline.solver.io import atomic_path, to_text
     from semispline.solver.topology import solid_with_blend
 
     assert wanted.replaced is not None
@@ -30,6 +93,12 @@ def write_solid(wanted: WantedBases, out: str, options: BlendOptions, report: st
         found = solid_with_blend(
             wanted.a, wanted.replaced, Path(out).suffix.lower(), options, wanted.edge_a, wanted.edge_b
         )
+    _write(found, out, report)
+
+
+def _write(found: SolidBlend, out: str, report: str | None) -> None:
+    from semispline.solver.io import atomic_path, to_text
+
     with ExitStack() as stack:
         # Each lies in its temporary file before the first takes its place.
         if report is not None:

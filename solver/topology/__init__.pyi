@@ -32,3 +32,4 @@ from .replacing import replaced_pair as replaced_pair
 from .solid_blends import SolidBlend as SolidBlend
 from .solid_blends import can_hold_a_solid as can_hold_a_solid
 from .solid_blends import solid_with_blend as solid_with_blend
+from .solid_rounds import solid_with_round as solid_with_round

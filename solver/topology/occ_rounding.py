@@ -180,10 +180,15 @@ def _side(sharp: _Sharp, face: int, vertex: Any, corner: FloatArray) -> _Side:
         return _Side(new_vertex(corner), None, 0.0)
     at = foot_on(own[0], corner)
     low, high = range_of(own[0])
-    if not low + _LEFT * (high - low) < at < high - _LEFT * (high - low):
-        raise EdgeError(
-            f"{sharp.title}: the cut leaves face {face} beyond the end of its next edge; take a smaller one"
-        )
+    near = _LEFT * (high - low)
+    if not low + near < at < high - near:
+        here = low if ends(forward(own[0]))[0].IsSame(vertex) else high
+        if abs(at - here) <= near:
+            raise EdgeError(
+                f"{sharp.title}: on face {face} the contact does not meet the next edge: the face beyond its end "
+                "would have to grow"
+            )
+        raise EdgeError(f"{sharp.title}: the cut reaches past the next edge of face {face}; take a smaller one")
     return _Side(new_vertex(corner), sharp.users.number(own[0]), at)
 
 
