@@ -1,4 +1,4 @@
-"""Fillets of solids replaced: from file to file, all else as it was; what cannot be is refused, and nothing is written."""
+"""Fillets of solids replaced: from file to file, all else as it was; or refused, and nothing is written."""
 
 import json
 
@@ -13,7 +13,7 @@ from helpers.parts import compound, graph_of, moved, rounded_box, written
 from helpers.solids import MODELS, box_with_fillet, round_end, slanted, volume
 from helpers.xcaf import labels_of, write_assembly, write_coloured
 from semispline import EdgeError, FileError, SolidError, read_surface, replace_face
-from semispline.derivations.cli import app
+from semispline.solver.cli import app
 from semispline.solver.topology.fillets import find_fillets
 from semispline.solver.topology.occ_parts import open_parts
 from semispline.solver.topology.occ_shapes import parts
@@ -42,7 +42,7 @@ def test_fillets_of_models_are_replaced(name, tmp_path):
     numbers = fillets_of(shape)
     assert numbers
     if name in REFUSED:
-        with pytest.raises(SolidError, match="lies .* off face"):
+        with pytest.raises(SolidError, match=r"lies .* off face"):
             replace_face(path, numbers[0], out)
         assert not out.exists()
         return
@@ -136,7 +136,7 @@ def touches(face, other):
 def test_what_goes_on_is_refused_with_its_neighbours(tmp_path):
     shape = rounded_box()
     path = written(shape, tmp_path / "part.brep")
-    with pytest.raises(EdgeError, match="it goes on into faces .* and .* over e"):
+    with pytest.raises(EdgeError, match=r"it goes on into faces? \d+.* over e\d"):
         replace_face(path, fillets_of(shape)[0], tmp_path / "out.step")
     assert not (tmp_path / "out.step").exists()
 

@@ -9,7 +9,7 @@ from typer.testing import CliRunner
 from helpers.parts import graph_of, written
 from helpers.solids import box, box_with_fillet, cut, cylinder, half_space, volume
 from semispline import EdgeError, SolidError, round_edge
-from semispline.derivations.cli import app
+from semispline.solver.cli import app
 from semispline.solver.topology.occ_parts import open_parts
 from semispline.solver.topology.occ_shapes import parts
 from semispline.solver.topology.relations import relate
