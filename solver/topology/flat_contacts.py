@@ -43,7 +43,8 @@ def flat_contact(graph: EdgeGraph, row: int, distance: float) -> Base | None:
     start, end = found
     if (end - start) @ along <= 0:
         return None
-    return Base(plane(start, end - start, inward * 0.5 * float(np.linalg.norm(end - start))), "v0")
+    # As wide as the distance: then the shape across depends on nothing else.
+    return Base(plane(start, end - start, inward * distance), "v0")
 
 
 def _is_straight(points: FloatArray) -> bool:

@@ -32,6 +32,8 @@ _PINCHED = 1e-9
 # Files are written with 17 digits, and their readers measure tolerances anew.
 _AS_BEFORE, _READ_BACK = 1 + 1e-9, 2.0
 _SAME_AREA = 1e-9
+# Of the volume under each face.
+_VOLUME_ERROR = 1e-6
 
 
 @dataclass(frozen=True)
@@ -388,7 +390,8 @@ def volume_of(shape: Any) -> float:
     from OCP.GProp import GProp_GProps
 
     properties = GProp_GProps()
-    BRepGProp.VolumeProperties_s(shape, properties)
+    # Without a bound of the error it takes a fixed number of places in each face, whatever knots that has.
+    BRepGProp.VolumeProperties_s(shape, properties, _VOLUME_ERROR)
     return float(properties.Mass())
 
 

@@ -18,7 +18,7 @@ from helpers.parts import edges_of_shape, fillet
 
 def volume(shape):
     found = GProp_GProps()
-    BRepGProp.VolumeProperties_s(shape, found)
+    BRepGProp.VolumeProperties_s(shape, found, 1e-9)
     return found.Mass()
 
 
