@@ -38,10 +38,30 @@ class EndFace:
     normal: FloatArray
     bending: FloatArray
 
+    @property
+    def is_flat(self) -> bool:
+        """Whether it is a plane."""
+        return not self.bending.any()
+
     @classmethod
     def plane(cls, normal: FloatArray) -> EndFace:
         """Return a plane with a normal of any length."""
         return cls(np.asarray(normal / np.linalg.norm(normal)), np.zeros((3, 3)))
+
+
+@dataclass(frozen=True, eq=False)
+class HeldEnd:
+    """A plane in which rows end.
+
+    Attributes
+    ----------
+    end : {0, 1}
+        Of v.
+    normal : ndarray, shape (3,)
+    """
+
+    end: int
+    normal: FloatArray
 
 
 def steered(derivatives: FloatArray, by: FloatArray, face: EndFace) -> FloatArray:

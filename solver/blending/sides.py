@@ -8,6 +8,7 @@ import numpy as np
 
 from semispline.solver.arrays import FloatArray
 from semispline.solver.blending.closing import reseamed
+from semispline.solver.blending.end_faces import HeldEnd
 from semispline.solver.blending.layout import check_knots_apart
 from semispline.solver.errors import EdgeError
 from semispline.solver.generated import contact_numpy, rows_numpy, shape_numpy
@@ -52,6 +53,8 @@ class Side:
         Largest coordinate of the rows as they were given, in today's units: their rounding goes with it.
     keeps_lines : bool
         Lines at which rows are only continuous are left as they are: the other side has the same.
+    held : tuple of HeldEnd
+        Planes in which all rows of the blend are to end.
     """
 
     continuity: Continuity
@@ -61,6 +64,7 @@ class Side:
     rows: FloatArray
     largest: float
     keeps_lines: bool = False
+    held: tuple[HeldEnd, ...] = ()
 
     @property
     def is_rational(self) -> bool:
