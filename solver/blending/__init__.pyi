@@ -3,6 +3,8 @@ from .chain_contact import ChainContact as ChainContact
 from .chain_joints import EndFaces as EndFaces
 from .chains import Chain as Chain
 from .chains import chain as chain
+from .end_curves import end_on_face as end_on_face
+from .end_curves import face_at as face_at
 from .end_faces import EndFace as EndFace
 from .linear_alpha import LinearInV as LinearInV
 from .measured_energy import thin_plate_energy as thin_plate_energy

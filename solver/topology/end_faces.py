@@ -2,21 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
 from semispline.solver.arrays import FloatArray
-from semispline.solver.blending import EndFace
+from semispline.solver.blending import BlendResult, EndFace, end_on_face, face_at
 from semispline.solver.errors import EdgeError
 from semispline.solver.io import read_surfaces
 from semispline.solver.judge import Base
-from semispline.solver.splines import BSplineSurface, Surface, closest_point
+from semispline.solver.options import BlendOptions
+from semispline.solver.splines import BSplineSurface, Surface, bounding_box
+from semispline.solver.topology.bases import EdgeBase
+from semispline.solver.topology.edge_blends import blend_bases
 from semispline.solver.topology.half_edges import NONE, EdgeGraph
 from semispline.solver.topology.relations import Relations
 
 # Degrees: where an end edge is met at less the fillet goes on beyond it.
 _GOES_ON = 2.0
+# Of the size of the blend: nearer to a curved face an end curve is not sought.
+_WITHIN = 1e-6
 
 
 def end_edges(graph: EdgeGraph, face: int, contacts: tuple[Sequence[int], Sequence[int]]) -> list[int]:
@@ -74,48 +80,78 @@ def faces_at_ends(graph: EdgeGraph, relations: Relations, ends: Sequence[int]) -
     return found
 
 
-def ends_of_bases(
-    graph: EdgeGraph, bases: Sequence[Base], at: Sequence[tuple[FloatArray, int]]
-) -> list[tuple[EndFace, EndFace]]:
-    """Return, for each base, the end faces where it starts and where it ends.
+@dataclass(frozen=True, eq=False)
+class FaceAtEnd:
+    """The face on which an end curve has to lie.
+
+    Attributes
+    ----------
+    near : EndFace
+        To second order.
+    surface : BSplineSurface or None
+        Where it is curved.
+    """
+
+    near: EndFace
+    surface: BSplineSurface | None
+
+
+def ends_of_base(
+    graph: EdgeGraph, base: Base, at: Sequence[tuple[FloatArray, int]], surfaces: Mapping[int, BSplineSurface]
+) -> tuple[FaceAtEnd, FaceAtEnd]:
+    """Return the end faces where a base starts and where it ends.
 
     Parameters
     ----------
     graph : EdgeGraph
-    bases : sequence of Base
+    base : Base
     at : sequence of (ndarray, int)
         Points near which bases end, and a use of an edge there by the face on which the end curve has to lie.
+    surfaces : mapping
+        As `curved_surfaces` returns them.
     """
-    faces = list(dict.fromkeys(int(graph.uses.face[row]) for _, row in at))
-    curved = [n for n in faces if graph.faces.kind[n] != "plane"]
-    loaded = read_surfaces([f"{graph.path}#{n}" for n in curved]) if curved else []
-    surfaces = {n: one.surface for n, one in zip(curved, loaded, strict=True)}
     places = np.array([point for point, _ in at])
     found = []
-    for base in bases:
-        own = []
-        for point in base.derivative(np.array(base.range_along), 0, 0):
-            row = at[int(np.linalg.norm(places - point, axis=1).argmin())][1]
-            face = int(graph.uses.face[row])
-            own.append(
-                end_face_at(surfaces[face], point) if face in surfaces else EndFace.plane(graph.uses.normal[row, 0])
-            )
-        found.append((own[0], own[1]))
-    return found
+    for point in base.derivative(np.array(base.range_along), 0, 0):
+        row = at[int(np.linalg.norm(places - point, axis=1).argmin())][1]
+        surface = surfaces.get(int(graph.uses.face[row]))
+        near = EndFace.plane(graph.uses.normal[row, 0]) if surface is None else face_at(surface, point)
+        found.append(FaceAtEnd(near, surface))
+    return found[0], found[1]
 
 
-def end_face_at(surface: Surface, point: FloatArray) -> EndFace:
-    """Return how a surface lies and bends near a point of it."""
-    u, v = (np.array([x]) for x in np.ravel(closest_point(surface, point).parameters))
-    shape = surface.to_bspline() if not isinstance(surface, BSplineSurface) else surface
+def curved_surfaces(graph: EdgeGraph, at: Sequence[tuple[FloatArray, int]]) -> dict[int, BSplineSurface]:
+    """Return the surfaces of those end faces that are no planes, by their numbers."""
+    faces = dict.fromkeys(int(graph.uses.face[row]) for _, row in at)
+    curved = [n for n in faces if graph.faces.kind[n] != "plane"]
+    loaded = read_surfaces([f"{graph.path}#{n}" for n in curved]) if curved else []
+    return {n: as_spline(one.surface) for n, one in zip(curved, loaded, strict=True)}
 
-    def derivative(a: int, b: int) -> FloatArray:
-        return np.asarray(shape.evaluate(u, v, a, b)[0])
 
-    tangents = np.stack([derivative(1, 0), derivative(0, 1)])
-    normal = np.cross(*tangents)
-    normal /= np.linalg.norm(normal)
-    second = np.array([[derivative(2, 0), derivative(1, 1)], [derivative(1, 1), derivative(0, 2)]]) @ normal
-    # Of a tangent vector x the components along S_u and S_v are dual . x.
-    dual = np.linalg.pinv(tangents.T)
-    return EndFace(normal, dual.T @ second @ dual)
+def as_spline(surface: Surface) -> BSplineSurface:
+    """Return a surface as an ordinary B-spline."""
+    return surface if isinstance(surface, BSplineSurface) else surface.to_bspline()
+
+
+def blend_onto(
+    graph: EdgeGraph, a: EdgeBase, b: EdgeBase, options: BlendOptions, at: Sequence[tuple[FloatArray, int]]
+) -> tuple[BlendResult, BSplineSurface]:
+    """Return a blend, and its surface with both end curves on the end faces.
+
+    Raises
+    ------
+    EdgeError
+        An end curve stays off its face.
+    BandError, ContactError, FoldError, OptionError, ComputationError
+        As `blend_edges`.
+    """
+    surfaces = curved_surfaces(graph, at)
+    of_a, of_b = (ends_of_base(graph, side.base, at, surfaces) for side in (a, b))
+    result = blend_bases(a, b, options, ends_on=((of_a[0].near, of_a[1].near), (of_b[0].near, of_b[1].near)))
+    surface = result.surface.to_bspline()
+    orders = int(result.options.continuities[0][1]), int(result.options.continuities[1][1])
+    for end, beyond in enumerate(of_a):
+        if beyond.surface is not None:
+            within = _WITHIN * float(np.ptp(bounding_box(surface), axis=0).max())
+            surface = end_on_face(surface, end, beyond.surface, orders, within).surface
+    return result, surface

@@ -13,10 +13,11 @@ from semispline.solver.blending import BlendResult
 from semispline.solver.errors import BandError, EdgeError, FileError, SolidError
 from semispline.solver.io import OCC_SUFFIXES, check_outputs, read_apart, read_surfaces, write_bytes
 from semispline.solver.options import BlendOptions, Continuity, named_options
+from semispline.solver.splines import BSplineSurface
 from semispline.solver.topology.bases import EdgeBase, edge_bases
 from semispline.solver.topology.between import Between
 from semispline.solver.topology.edge_blends import blend_bases
-from semispline.solver.topology.end_faces import check_ends, end_edges, ends_of_bases, faces_at_ends
+from semispline.solver.topology.end_faces import blend_onto, check_ends, end_edges, faces_at_ends
 from semispline.solver.topology.face_edges import ResolvedEdge, check_face
 from semispline.solver.topology.measuring import MeasuredEdges, measured_edges
 from semispline.solver.topology.relations import relate
@@ -129,9 +130,9 @@ def solid_with_blend(
     between = pair_of(graph, relate(graph), face, edge_a, edge_b)
     specs = [f"{path}#{graph.uses.face[row]}" for row in rows_beyond(graph, between)]
     pair = resolved_pair(measured, between, read_surfaces(specs))
-    result = _blended(measured, between, pair, options)
+    result, surface = _blended(measured, between, pair, options)
     names = [tuple(int(graph.uses.number[row]) for row in side.uses) for side in (between.a, between.b)]
-    outcome = operated(path, Replacement(face, (names[0], names[1]), result.surface.to_bspline()), suffix)
+    outcome = operated(path, Replacement(face, (names[0], names[1]), surface), suffix)
     assert outcome.content is not None
     assert outcome.read_back is not None
     return SolidBlend(
@@ -190,7 +191,9 @@ def operated(path: str | Path, order: Replacement | Rounding, suffix: str) -> Ou
     return outcome
 
 
-def _blended(measured: MeasuredEdges, between: Between, pair: ReplacedPair, options: BlendOptions) -> BlendResult:
+def _blended(
+    measured: MeasuredEdges, between: Between, pair: ReplacedPair, options: BlendOptions
+) -> tuple[BlendResult, BSplineSurface]:
     """Return the blend of both contacts, its end curves on the end faces."""
     graph, face = measured.graph, between.face
     relations = relate(graph)
@@ -203,11 +206,11 @@ def _blended(measured: MeasuredEdges, between: Between, pair: ReplacedPair, opti
             )
     a, b = sides[0][0], sides[1][0]
     if between.a.closed or between.b.closed:
-        return blend_bases(a, b, options)
+        result = blend_bases(a, b, options)
+        return result, result.surface.to_bspline()
     ends = end_edges(graph, face, (between.a.uses, between.b.uses))
     check_ends(graph, relations, face, ends)
-    of_a, of_b = ends_of_bases(graph, (a.base, b.base), faces_at_ends(graph, relations, ends))
-    return blend_bases(a, b, options, ends_on=(of_a, of_b))
+    return blend_onto(graph, a, b, options, faces_at_ends(graph, relations, ends))
 
 
 def close_bases(ends: Sequence[ResolvedEdge], continuities: Sequence[Continuity]) -> list[tuple[EdgeBase, ...]]:

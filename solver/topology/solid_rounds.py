@@ -12,7 +12,7 @@ from semispline.solver.topology.bases import EdgeBase
 from semispline.solver.topology.cuts import parse_cut
 from semispline.solver.topology.edge_blends import blend_bases
 from semispline.solver.topology.edge_moving import moved_edges
-from semispline.solver.topology.end_faces import ends_of_bases
+from semispline.solver.topology.end_faces import blend_onto
 from semispline.solver.topology.face_edges import check_face, row_of
 from semispline.solver.topology.flat_contacts import flat_contact, is_flat_contact
 from semispline.solver.topology.half_edges import NONE, EdgeGraph
@@ -89,9 +89,12 @@ def solid_with_round(
     beyond = int(graph.uses.face[other])
     at = _ends(graph, relations, row, other, title)
     a, b = _contacts(graph, (row, other), cuts, options, title)
-    of_ends = ends_of_bases(graph, (a.base, b.base), at) if at else None
-    result = blend_bases(a, b, options, ends_on=None if of_ends is None else (of_ends[0], of_ends[1]))
-    order = Rounding(face, int(edge[1:]), result.surface.to_bspline(), not bool(relations.convex[row]))
+    if at:
+        result, surface = blend_onto(graph, a, b, options, at)
+    else:
+        result = blend_bases(a, b, options)
+        surface = result.surface.to_bspline()
+    order = Rounding(face, int(edge[1:]), surface, not bool(relations.convex[row]))
     outcome = operated(path, order, suffix)
     assert outcome.content is not None
     assert outcome.read_back is not None
