@@ -18,6 +18,7 @@ from .solver.errors import InputError as InputError
 from .solver.errors import KnotError as KnotError
 from .solver.errors import OptionError as OptionError
 from .solver.errors import SemisplineError as SemisplineError
+from .solver.errors import SolidError as SolidError
 from .solver.io.surface_files import list_surfaces as list_surfaces
 from .solver.io.surface_files import read_surface as read_surface
 from .solver.io.surface_files import write_surface as write_surface
@@ -137,5 +138,9 @@ from .solver.topology.places import find_places as find_places
 from .solver.topology.replacing import ReplacedPair as ReplacedPair
 from .solver.topology.replacing import replaced_pair as replaced_pair
 from .solver.topology.resolving import resolve_edge as resolve_edge
+from .solver.topology.solid_blends import SolidBlend as SolidBlend
+from .solver.topology.solid_blends import replace_face as replace_face
+from .solver.topology.solid_gate import GateReport as GateReport
+from .solver.topology.solid_rounds import round_edge as round_edge
 
 __version__: str

@@ -49,3 +49,7 @@ class FoldError(ComputationError):
 
 class BandError(ComputationError):
     """A free curve of a face along which no band meets its limits."""
+
+
+class SolidError(ComputationError):
+    """A solid that was changed and is not sound; nothing is written of it."""

@@ -3,8 +3,12 @@ from .chain_contact import ChainContact as ChainContact
 from .chain_contact import stretches_along as stretches_along
 from .chain_faces import Split as Split
 from .chain_faces import faces_of_blend as faces_of_blend
+from .chain_joints import EndFaces as EndFaces
 from .chains import Chain as Chain
 from .chains import chain as chain
+from .end_curves import end_on_face as end_on_face
+from .end_curves import face_at as face_at
+from .end_faces import EndFace as EndFace
 from .linear_alpha import LinearInV as LinearInV
 from .measured_energy import thin_plate_energy as thin_plate_energy
 from .nlp import ConstrainedProblem as ConstrainedProblem

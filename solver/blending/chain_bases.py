@@ -11,6 +11,7 @@ from semispline.solver.blending.chain_joints import Joint
 from semispline.solver.blending.chain_rims import facing_rims
 from semispline.solver.blending.chain_runs import facing_chains
 from semispline.solver.blending.chains import Chain, Strip, order_of_contact
+from semispline.solver.blending.end_faces import HeldEnd
 from semispline.solver.blending.result import BlendResult
 from semispline.solver.errors import OptionError
 from semispline.solver.judge import Base, Correspondence
@@ -41,6 +42,12 @@ class StatedBases:
     strips: tuple[Strip | None, ...] = (None, None)
     matched: Correspondence | None = None
     lines_answer: bool = False
+
+    @property
+    def held(self) -> tuple[HeldEnd, ...]:
+        """The planes in which chain a ends, seen along a."""
+        faces = (None, None) if self.chains[0] is None else self.chains[0].ends_on
+        return tuple(HeldEnd(k, face.normal) for k, face in enumerate(faces) if face is not None and face.is_flat)
 
     @property
     def joints(self) -> tuple[Joint, ...]:

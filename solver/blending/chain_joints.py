@@ -11,11 +11,13 @@ Source: `semispline.derivations.chains`.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import TypeAlias
 
 import numpy as np
 
 from semispline.solver.arrays import FloatArray
 from semispline.solver.blending.chain_pieces import Piece, cartesian_slope, with_equal_ends, with_faster_end
+from semispline.solver.blending.end_faces import EndFace, steered
 from semispline.solver.blending.reparametrisation import Reparametrisation, bernstein, composed, slopes_along
 from semispline.solver.errors import EdgeError
 
@@ -32,6 +34,7 @@ _ROUNDING = 1e-13
 # Speeds of a closed chain that come back to the first one, and weights that are flat, to this.
 _SAME = 1e-9
 _LAMBDA, _W, _Q = range(3)
+EndFaces: TypeAlias = tuple[EndFace | None, EndFace | None]
 
 
 @dataclass(frozen=True, eq=False)
@@ -163,7 +166,9 @@ class JoinedPieces:
     continuity: tuple[int, ...]
 
 
-def joined_pieces(pieces: list[Piece], *, closed: bool, tolerance: float = 0.0) -> JoinedPieces:
+def joined_pieces(
+    pieces: list[Piece], *, closed: bool, tolerance: float = 0.0, ends_on: EndFaces = (None, None)
+) -> JoinedPieces:
     """Return what makes the pieces one strip.
 
     Parameters
@@ -172,11 +177,14 @@ def joined_pieces(pieces: list[Piece], *, closed: bool, tolerance: float = 0.0) 
     closed : bool
     tolerance : float
         Within which the faces meet, model units: so far derivatives across may differ that cannot be made to agree.
+    ends_on : pair of EndFace or None
+        On which faces the lines across the ends of an open chain are to lie.
 
     Raises
     ------
     EdgeError
-        At a joint the faces do not meet along one curve that leaves the contact, or lie on different sides.
+        A contact that runs along an end face; or at a joint the faces do not meet along one curve that leaves the
+        contact, or lie on different sides.
     """
     turns = [_turn(pieces[k - 1], pieces[k]) if k or closed else None for k in range(len(pieces))]
     smooth = [turn is not None and turn <= CORNER for turn in turns]
@@ -187,6 +195,7 @@ def joined_pieces(pieces: list[Piece], *, closed: bool, tolerance: float = 0.0) 
     spans = _spans(pieces)
     found, apart = _with_values(pieces, ends, closed=closed, tolerance=tolerance)
     _flatten_weights(ends, spans, found, smooth, closed=closed)
+    _steer(ends, found, ends_on)
     joints: list[Joint | None] = [None] * len(pieces)
     straight = [piece.is_straight for piece in pieces]
     for k, turn in enumerate(turns):
@@ -352,6 +361,21 @@ def _flatten_weights(
     for k, end in zip(*np.nonzero(flat), strict=True):
         own = found[k]
         own.slopes[end, _LAMBDA, 0] = -slopes[k, end] * spans[k] * own.values[end, _LAMBDA, 0]
+
+
+def _steer(ends: list[FloatArray], found: list[Coefficients], ends_on: EndFaces) -> None:
+    """Bend the ends of a chain onto their faces: q linear along a chain of one piece, else fading out on the last."""
+    for end, face in enumerate(ends_on):
+        if face is not None:
+            own = found[-end]
+            own.values[end] = steered(ends[-end][:, :, end], own.values[end], face)
+    first, last = found[0], found[-1]
+    if first is last:
+        change = first.values[1, _Q] - first.values[0, _Q]
+        first.slopes[:, _Q] = change
+    else:
+        first.slopes[0, _Q] = -2 * first.values[0, _Q]
+        last.slopes[1, _Q] = 2 * last.values[1, _Q]
 
 
 def _with_slopes(

@@ -8,7 +8,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from semispline.solver.arrays import FloatArray
-from semispline.solver.blending.chain_joints import Coefficients, JoinedPieces, Joint, joined_pieces, only_continuous
+from semispline.solver.blending.chain_joints import (
+    Coefficients,
+    EndFaces,
+    JoinedPieces,
+    Joint,
+    joined_pieces,
+    only_continuous,
+)
 from semispline.solver.blending.chain_pieces import Piece, normalised_jets, read_pieces
 from semispline.solver.blending.conics import recognised_conic
 from semispline.solver.blending.reparametrisation import (
@@ -52,6 +59,8 @@ class Chain:
         What each is called in what is said of it.
     tolerance : float
         How far apart ends that are one point may lie, model units.
+    ends_on : pair of EndFace or None
+        On which faces the lines across its two ends are to lie.
     """
 
     edges: tuple[Base, ...]
@@ -59,6 +68,7 @@ class Chain:
     closed: bool
     names: tuple[str, ...]
     tolerance: float
+    ends_on: EndFaces = (None, None)
 
     def strip(self, order: int, lengths: Sequence[float] | None = None) -> Strip:
         """Return the base that stands for the chain in a contact of the given order.
@@ -75,7 +85,7 @@ class Chain:
             Faces do not meet along one curve where edges meet.
         """
         pieces = self._pieces(order)
-        joined = joined_pieces(pieces, closed=self.closed, tolerance=self.tolerance)
+        joined = joined_pieces(pieces, closed=self.closed, tolerance=self.tolerance, ends_on=self.ends_on)
         if lengths is not None:
             joined = _with_lengths(joined, lengths)
         return self._strip(

@@ -111,6 +111,15 @@ class FreeSystem:
         least = max(float(np.sum(points * gradient)), np.finfo(float).tiny)
         return abs(float(np.sum(step[self.free] * gradient[self.free]))) / least
 
+    def response(self, forces: FloatArray) -> FloatArray:
+        """Return how the free points, shape (size, K), answer forces of that shape."""
+        return self._with_free(np.zeros((self.offsets[-1], forces.shape[1])), self._answer(forces))[self.free]
+
+    def gradient_of(self, points: FloatArray) -> tuple[FloatArray, float]:
+        """Return the gradient by the free points and the energy of p, shape (N, 3), but for factors of 2."""
+        gradient = self.form.gradient(points)
+        return gradient[self.free], float(np.sum(points * gradient))
+
     def solved_at_once(self, points: FloatArray) -> FloatArray:
         """Fill the free rows of p, shape (N, d), by one solve without refinement, as exported code does."""
         return points if self.size == 0 else self._with_free(points, self.factor.solve(self._right(points)))
@@ -174,8 +183,10 @@ class FreeSystem:
 
     def _correction(self, gradient: FloatArray) -> FloatArray:
         """Return the change of the sorted y that a gradient, shape (N, d), asks for."""
-        gradient = gradient[self.free]
-        return np.asarray(self.factor.solve((gradient if self.z is None else self.z.T @ gradient)[self.order]))
+        return self._answer(gradient[self.free])
+
+    def _answer(self, forces: FloatArray) -> FloatArray:
+        return np.asarray(self.factor.solve((forces if self.z is None else self.z.T @ forces)[self.order]))
 
     def _with_free(self, points: FloatArray, x: FloatArray) -> FloatArray:
         free = np.empty(x.shape)

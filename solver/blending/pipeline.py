@@ -147,7 +147,9 @@ class _Solved:
 def _solved(stated: StatedBases, flip: Flip) -> _Solved:
     """Solve for the blend: the few numbers that are not linear, then everything that is."""
     said = stated.options
-    placed = place_sides(stated.a, stated.b, said, flip, stated.matched, lines_answer=stated.lines_answer)
+    placed = place_sides(
+        stated.a, stated.b, said, flip, stated.matched, lines_answer=stated.lines_answer, held=stated.held
+    )
     layout, candidates = find_layout(*placed.scaled, said)
     found = bulged(layout.found, layout.options.bulges)
     surface = _surface(layout.problem, found, placed.sides, placed.frame)

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from semispline.solver.arrays import FloatArray
+from semispline.solver.blending.end_faces import HeldEnd
 from semispline.solver.blending.matched_maps import length_map, point_map, run_by
 from semispline.solver.blending.matching import matched_edges
 from semispline.solver.blending.representative import smooth_sides
@@ -47,12 +48,14 @@ def place_sides(
     matched: Correspondence | None = None,
     *,
     lines_answer: bool = False,
+    held: tuple[HeldEnd, ...] = (),
 ) -> PlacedSides:
     """Bring both contacts to one parameter v and to coordinates of size 1; as `matched`, where that is known."""
     at_a, at_b = options.continuities
     sides = make_side(a, at_a, "base a"), make_side(b, at_b, "base b")
     if lines_answer:
         sides = replace(sides[0], keeps_lines=True), replace(sides[1], keeps_lines=True)
+    sides = replace(sides[0], held=held), sides[1]
     matched = matched or matched_edges(a, b, flip)
     # Far from the origin each operation would round by the distance: there is but one rounding, of the result.
     origin = local_origin(a.surface, b.surface)

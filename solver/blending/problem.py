@@ -17,6 +17,7 @@ from semispline.solver.blending.exits import Exits, measure_exits
 from semispline.solver.blending.facing import measure_facing
 from semispline.solver.blending.free_system import FreeSystem
 from semispline.solver.blending.gram import EnergyForm
+from semispline.solver.blending.held_ends import HeldSystem
 from semispline.solver.blending.layout import blend_u_basis, middle_bases
 from semispline.solver.blending.linear_alpha import LinearEnds, LinearInV, linear_rows, monomials_of_ends, raised_basis
 from semispline.solver.blending.rational_energy import RationalForm, RationalSystem, free_weights
@@ -180,12 +181,13 @@ class BlendProblem:
         return min(self.seam_order, basis.size // 2 - 1)
 
     @cached_property
-    def free_system(self) -> FreeSystem | RationalSystem:
+    def free_system(self) -> FreeSystem | RationalSystem | HeldSystem:
         """What has to be solved for the free rows."""
         plain = self.plain_system
-        if not self.is_rational or plain.size == 0:
+        if plain.size == 0:
             return plain
-        return RationalSystem(self.rational_form, plain, self._seam_orders)
+        system = RationalSystem(self.rational_form, plain, self._seam_orders) if self.is_rational else plain
+        return HeldSystem(system, self.form.offsets, self.free_rows, self.a.held) if self.a.held else system
 
     @cached_property
     def plain_system(self) -> FreeSystem:

@@ -271,14 +271,20 @@ class RationalSystem:
 
     def excess(self, points: FloatArray) -> float | None:
         """Bound how much more energy p, shape (N, 4), has than the least for its weights and rows, as a fraction."""
-        numerators = points[:, :3]
-        step = self._step(numerators)
-        gradient = self.form.gradient(numerators, self.plain.rows)
-        energy = float(self.form.products(numerators[None])[0, 0])
+        gradient, energy = self.gradient_of(points)
+        step = self.response(gradient)
         return abs(float(np.sum(step * gradient))) / max(energy, np.finfo(float).tiny)
 
-    def _step(self, numerators: FloatArray) -> FloatArray:
-        gradient = self.form.gradient(numerators, self.plain.rows)
+    def gradient_of(self, points: FloatArray) -> tuple[FloatArray, float]:
+        """Return the gradient by the free numerators and the energy of p, shape (N, 4), but for factors of 2."""
+        numerators = points[:, :3]
+        return self.form.gradient(numerators, self.plain.rows), float(self.form.products(numerators[None])[0, 0])
+
+    def response(self, forces: FloatArray) -> FloatArray:
+        """Return how the free numerators, shape (size, K), answer forces of that shape."""
         if self.z is None:
-            return np.asarray(self.factor.solve(gradient))
-        return np.asarray(self.z @ self.factor.solve(np.asarray(self.z.T @ gradient)))
+            return np.asarray(self.factor.solve(forces))
+        return np.asarray(self.z @ self.factor.solve(np.asarray(self.z.T @ forces)))
+
+    def _step(self, numerators: FloatArray) -> FloatArray:
+        return self.response(self.form.gradient(numerators, self.plain.rows))

@@ -9,6 +9,7 @@ import numpy as np
 from semispline.solver.arrays import FloatArray
 from semispline.solver.blending.closing import reseamed
 from semispline.solver.blending.cures import Cure
+from semispline.solver.blending.end_faces import HeldEnd
 from semispline.solver.blending.layout import check_knots_apart
 from semispline.solver.errors import EdgeError
 from semispline.solver.generated import contact_numpy, rows_numpy, shape_numpy
@@ -55,6 +56,8 @@ class Side:
         Lines at which rows are only continuous are left as they are: the other side has the same, or they are cured.
     cure : Cure or None
         What was done to them, if it was done before.
+    held : tuple of HeldEnd
+        Planes in which all rows of the blend are to end.
     """
 
     continuity: Continuity
@@ -65,6 +68,7 @@ class Side:
     largest: float
     keeps_lines: bool = False
     cure: Cure | None = None
+    held: tuple[HeldEnd, ...] = ()
 
     @property
     def is_rational(self) -> bool:

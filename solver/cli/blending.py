@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Annotated, Any, cast, get_args
 
 import typer
 
+from semispline.solver.cli.solids import WantedEdge, no_solid, write_rounded, write_solid
 from semispline.solver.cli.wanted_bases import WantedBases
 from semispline.solver.cli.words import (
     EDGE_HELP,
@@ -49,7 +50,7 @@ _CUT_HELP = (
 @reports_errors
 @takes_blend_options
 def blend_command(
-    a: Annotated[str, typer.Argument(metavar="A", help=f"{SURFACE_HELP} With --replace the file alone.")],
+    a: Annotated[str, typer.Argument(metavar="A", help=f"{SURFACE_HELP} With --replace and --round the file alone.")],
     out: Annotated[str, typer.Option("-o", "--out", metavar="OUT", help="File to write; the suffix says the format.")],
     options: BlendOptions,
     b: Annotated[str | None, typer.Argument(metavar="[B]", help="The same for the other surface.")] = None,
@@ -57,12 +58,24 @@ def blend_command(
     edge_b: Annotated[str | None, typer.Option(metavar="EDGE", help=EDGE_HELP.format("B, or another of FACE"))] = None,
     replace_face: Annotated[
         int | None,
-        typer.Option("--replace", metavar="FACE", min=0, help="Blend the faces beside this one, as if it were away."),
+        typer.Option(
+            "--replace",
+            metavar="FACE",
+            min=0,
+            help="Take this face out of its solid and put a blend of its neighbours in.",
+        ),
+    ] = None,
+    round_edge: Annotated[
+        str | None,
+        typer.Option("--round", metavar="FACE:EDGE", help="Round this sharp edge, as 12:e3: the solid comes back."),
+    ] = None,
+    distance: Annotated[
+        float | None, typer.Option(metavar="D", help="How far from the edge --round begins, along both faces.")
     ] = None,
     cut_a: Annotated[str | None, typer.Option(metavar="D", help=_CUT_HELP.format("A"))] = None,
     cut_b: Annotated[str | None, typer.Option(metavar="D", help=_CUT_HELP.format("B"))] = None,
     surfaces: Annotated[
-        bool, typer.Option("--surfaces", help="Write the blend alone, as a surface: the default.")
+        bool, typer.Option("--surfaces", help="Write the blend alone, as a surface: the default without a solid.")
     ] = False,
     with_bases: Annotated[
         bool, typer.Option("--with-bases", help="Write the bases, cut to their edges, as surfaces beside the blend.")
@@ -79,6 +92,12 @@ def blend_command(
     """Join an edge of A and an edge of B by a semi-structured surface of fairest shape, or as the options say."""
     from semispline.solver.io import check_surface_output, face_warnings
 
+    if round_edge is not None or distance is not None:
+        wanted_edge = WantedEdge(a, round_edge, distance, (b, edge_a, edge_b, replace_face, cut_a, cut_b))
+        wanted_edge.check(out)
+        check_outputs({"--out": out, "--report": report}, [a])
+        write_rounded(wanted_edge, out, options, report)
+        return
     wanted = WantedBases(a, b, edge_a, edge_b, replace_face, (cut_a, cut_b))
     wanted.check()
     if surfaces and with_bases:
@@ -86,6 +105,9 @@ def blend_command(
     at = split_name(split)
     check_surface_output(out, 3 if with_bases else 1)
     check_outputs({"--out": out, "--report": report}, wanted.specs)
+    if not (surfaces or with_bases) and wanted.gives_solid(out):
+        write_solid(wanted, out, options, report)
+        return
     with progress("reading"):
         ends, said = wanted.resolved()
     trims = face_warnings(*edges_of(ends), strict=options.strict)
@@ -111,6 +133,8 @@ def blend_command(
     if said:
         typer.echo(said)
     print_resolved(ends)
+    if replace_face is not None and not (surfaces or with_bases):
+        typer.echo(no_solid(a, out))
     for k, result in enumerate(results):
         if len(results) > 1:
             typer.echo(f"part {k + 1} of {len(results)}, in {files[k] if len(files) > 1 else out}:")

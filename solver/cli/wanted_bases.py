@@ -37,6 +37,12 @@ class WantedBases:
         """What a report holds of it, beside the edges."""
         return {} if self.replaced is None else {"replaced": self.replaced}
 
+    def gives_solid(self, out: str) -> bool:
+        """Tell whether a solid comes back: one can be read and written, and a face of it is replaced."""
+        from semispline.solver.topology import can_hold_a_solid
+
+        return self.replaced is not None and can_hold_a_solid(self.a) and can_hold_a_solid(out, written=True)
+
     def check(self) -> None:
         """Refuse what does not go together before a file is read.
 

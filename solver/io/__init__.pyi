@@ -4,6 +4,7 @@ from .disk import check_output as check_output
 from .disk import check_outputs as check_outputs
 from .disk import require_file as require_file
 from .disk import shown as shown
+from .disk import write_bytes as write_bytes
 from .disk import write_files as write_files
 from .disk import write_text as write_text
 from .disk import write_texts as write_texts
@@ -25,11 +26,18 @@ from .meshes import pyvista_module as pyvista_module
 from .meshes import sampled as sampled
 from .meshes import triangle_mesh as triangle_mesh
 from .meshes import with_normals as with_normals
+from .occ import OccFace as OccFace
 from .occ import read_occ as read_occ
+from .occ import read_occ_shape as read_occ_shape
+from .occ import step_unit as step_unit
 from .occ_kernel import require_kernel as require_kernel
+from .occ_kernel import silenced as silenced
+from .occ_kernel import system_unit as system_unit
 from .occ_parameters import ParameterKind as ParameterKind
 from .occ_parameters import converted_parameters as converted_parameters
+from .occ_writing import brep_bytes as brep_bytes
 from .occ_writing import occ_surface as occ_surface
+from .occ_writing import step_text as step_text
 from .rhino import RhinoFace as RhinoFace
 from .rhino import curve_evaluator as curve_evaluator
 from .rhino import open_3dm as open_3dm

@@ -25,8 +25,10 @@ def limits(path: str | Path) -> tuple[float, float]:
     return round(_SECONDS + size / _BYTES_PER_SECOND), round(_MEGABYTES + size * _BYTES_PER_BYTE / 2**20)
 
 
-def read_apart(path: str | Path, module: str, kernel: str, more: Iterable[str] = ()) -> Any:
+def read_apart(path: str | Path, module: str, kernel: str, more: Iterable[str] = (), times: float = 1.0) -> Any:
     """Return what `work(path, *more)` of a module returns, called in a process of its own.
+
+    Where it does more than read, its limit of time is so many `times` that of reading.
 
     Raises
     ------
@@ -37,6 +39,7 @@ def read_apart(path: str | Path, module: str, kernel: str, more: Iterable[str] =
     """
     require_file(path)
     seconds, megabytes = limits(path)
+    seconds *= times
     try:
         return call(module, [str(path), *more], seconds, megabytes)
     except WorkerError as error:

@@ -185,25 +185,29 @@ def read_occ(path: str | Path) -> Model:
     FileError
         Missing, not readable by Open CASCADE, or the extra `cad` is not installed.
     """
+    shape, unit = read_occ_shape(path)
+    found = shape is not None and not shape.IsNull()
+    faces, others = (list(_faces(shape)), _others(shape)) if found else ([], {})
+    return Model(str(path), unit, [OccFace(face, f"{path}#{number}") for number, face in enumerate(faces)], others)
+
+
+def read_occ_shape(path: str | Path) -> tuple[Any, str | None]:
+    """Return the shape in a STEP, IGES or BREP file, read in this process, and its unit; errors as `read_occ`."""
     require_file(path)
     require_kernel(path)
     suffix = Path(path).suffix.lower()
     read = _read_step if suffix in (".step", ".stp") else _read_iges if suffix in (".iges", ".igs") else _read_brep
     try:
         with silenced(1, 2):
-            shape, unit = read(str(path))
-            found = shape is not None and not shape.IsNull()
-            faces, others = (list(_faces(shape)), _others(shape)) if found else ([], {})
+            return read(str(path))
     except (SemisplineError, MemoryError):
         raise
     except Exception as error:
         # The kernel raises a class of its own for each of its failures.
         raise FileError(f"{path}: Open CASCADE cannot read it ({first_line(error)})") from None
-    return Model(str(path), unit, [OccFace(face, f"{path}#{number}") for number, face in enumerate(faces)], others)
 
 
 def _read_step(path: str) -> tuple[Any, str | None]:
-    from OCP.collections import Sequence_TCollection_AsciiString
     from OCP.IFSelect import IFSelect_ReturnStatus
     from OCP.STEPControl import STEPControl_Reader
 
@@ -211,14 +215,21 @@ def _read_step(path: str) -> tuple[Any, str | None]:
         reader = STEPControl_Reader()
         if reader.ReadFile(path) != IFSelect_ReturnStatus.IFSelect_RetDone:
             raise FileError(f"{path}: not a STEP file that Open CASCADE can read")
-        lengths, angles, solid = (Sequence_TCollection_AsciiString() for _ in range(3))
-        reader.FileUnits(lengths, angles, solid)
-        names = [lengths.Value(i + 1).ToCString().lower() for i in range(lengths.Length())]
-        # Products in different units, or in a unit without a name here, are converted to millimetres.
-        unit = _STEP_UNITS.get(names[0], "mm") if len(set(names)) == 1 else "mm"
+        unit = step_unit(reader)
         reader.SetSystemLengthUnit(MILLIMETRES[unit])
         reader.TransferRoots()
         return reader.OneShape(), unit
+
+
+def step_unit(reader: Any) -> str:
+    """Return the unit of length that a STEP file which was read is taken in."""
+    from OCP.collections import Sequence_TCollection_AsciiString
+
+    lengths, angles, solid = (Sequence_TCollection_AsciiString() for _ in range(3))
+    reader.FileUnits(lengths, angles, solid)
+    names = [lengths.Value(i + 1).ToCString().lower() for i in range(lengths.Length())]
+    # Products in different units, or in a unit without a name here, are converted to millimetres.
+    return _STEP_UNITS.get(names[0], "mm") if len(set(names)) == 1 else "mm"
 
 
 def _read_iges(path: str) -> tuple[Any, str | None]:

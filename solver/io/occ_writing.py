@@ -96,17 +96,23 @@ def _face(surface: BSplineSurface) -> Any:
 
 def _step_bytes(faces: Sequence[Any], unit: str) -> bytes:
     from OCP.STEPControl import STEPControl_StepModelType, STEPControl_Writer
-    from OCP.StepData import StepData_StepWriter
-    from OCP.STEPEdit import STEPEdit
 
     with system_unit(unit):
         writer = STEPControl_Writer()
         for face in faces:
             writer.Transfer(face, STEPControl_StepModelType.STEPControl_AsIs)
-        text = StepData_StepWriter(writer.Model())
-        text.FloatWriter().SetFormat(_REAL)
-        text.SendModel(STEPEdit.Protocol_s())
-        return _printed(text)
+        return step_text(writer.Model())
+
+
+def step_text(model: Any) -> bytes:
+    """Return a translated STEP model as text, with 17 digits."""
+    from OCP.StepData import StepData_StepWriter
+    from OCP.STEPEdit import STEPEdit
+
+    text = StepData_StepWriter(model)
+    text.FloatWriter().SetFormat(_REAL)
+    text.SendModel(STEPEdit.Protocol_s())
+    return _printed(text)
 
 
 def _iges_bytes(faces: Sequence[Any], unit: str) -> bytes:
@@ -134,7 +140,6 @@ def _iges_bytes(faces: Sequence[Any], unit: str) -> bytes:
 
 def _brep_bytes(faces: Sequence[Any], unit: str) -> bytes:
     from OCP.BRep import BRep_Builder
-    from OCP.BRepTools import BRepTools
     from OCP.TopoDS import TopoDS_Compound
 
     shape = faces[0]
@@ -143,6 +148,13 @@ def _brep_bytes(faces: Sequence[Any], unit: str) -> bytes:
         builder.MakeCompound(shape)
         for face in faces:
             builder.Add(shape, face)
+    return brep_bytes(shape)
+
+
+def brep_bytes(shape: Any) -> bytes:
+    """Return a shape as the content of a BREP file."""
+    from OCP.BRepTools import BRepTools
+
     stream = io.BytesIO()
     BRepTools.Write_s(shape, stream)
     return stream.getvalue()

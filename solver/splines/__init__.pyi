@@ -7,7 +7,9 @@ from .bezier import trim_bezier as trim_bezier
 from .closest import ClosestPoint as ClosestPoint
 from .closest import closest_point as closest_point
 from .compatible import compatible_curves as compatible_curves
+from .construction import interpolate_curve as interpolate_curve
 from .construction import interpolate_grid as interpolate_grid
+from .construction import plane as plane
 from .curves import elevate_curve as elevate_curve
 from .curves import restrict_curve as restrict_curve
 from .curves import set_curve_continuity as set_curve_continuity

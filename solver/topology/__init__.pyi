@@ -37,3 +37,7 @@ from .resolving import Resolved as Resolved
 from .resolving import check_edge_word as check_edge_word
 from .resolving import resolve_edge as resolve_edge
 from .resolving import resolve_edges as resolve_edges
+from .solid_blends import SolidBlend as SolidBlend
+from .solid_blends import can_hold_a_solid as can_hold_a_solid
+from .solid_blends import solid_with_blend as solid_with_blend
+from .solid_rounds import solid_with_round as solid_with_round

@@ -71,12 +71,15 @@ class BandFit:
         return max(names, key=lambda name: self.measures.worst(name)[0] / limit_of(name, self.limits))
 
 
-def band_limits(length: float, tolerance: float, millimetres: float | None) -> BandLimits:
-    """Return the limits of checkers of CAD systems for an edge; `off` may be as loose as the edge's tolerance."""
+def band_limits(length: float, tolerance: float, millimetres: float | None, share: float = 1.0) -> BandLimits:
+    """Return the limits of checkers of CAD systems for an edge, or a share of those of lengths.
+
+    `off` may be as loose as the edge's tolerance, where all of them are used.
+    """
     cad = cad_measures(length, millimetres)
     return BandLimits(
-        gap=cad["gap"],
-        off=max(cad["gap"], tolerance),
+        gap=share * cad["gap"],
+        off=max(cad["gap"], tolerance) if share == 1 else share * cad["gap"],
         angle_degrees=cad["angle_degrees"],
         curvature=cad["curvature_jump_relative"],
         rate=cad["rate_jump_relative"],

@@ -119,6 +119,7 @@ def band_along(
     continuity: Literal["G1", "G2", "G3", "G4"] = "G2",
     part: int | None = None,
     name: str = "the curve",
+    share: float = 1.0,
 ) -> tuple[Band, ...]:
     """Return bands along a free curve of a face: one, or one for each piece where it has to be cut.
 
@@ -148,6 +149,8 @@ def band_along(
         Only the band of this piece, counted from 0.
     name : str
         How messages call the curve.
+    share : float
+        Of what it may be off by: a band for a solid lies closer, so that no tolerance has to grow.
 
     Raises
     ------
@@ -183,9 +186,9 @@ def band_along(
     for k in range(len(cut)) if part is None else [part]:
         piece = cut[k]
         title = name if len(cut) == 1 else f"part {k} of {name}"
-        fit = _fit(piece, order, tolerance, millimetres)
+        fit = _fit(piece, order, tolerance, millimetres, share)
         if piece.left_out and not (fit.is_good and np.diff(np.unique(fit.knots)).min() > _NARROW * piece.length):
-            again = _fit(pieces(on_face, sign, _AWAY[1])[0][k], order, tolerance, millimetres)
+            again = _fit(pieces(on_face, sign, _AWAY[1])[0][k], order, tolerance, millimetres, share)
             fit = again if again.is_good or not fit.is_good else fit
         if not fit.is_good:
             raise BandError(refusal(fit, title, origin, tolerance))
@@ -209,10 +212,10 @@ def _check_words(keep: str, tolerance: float, millimetres: float | None, continu
         raise OptionError(f"millimetres: found {millimetres}, expected a finite number above 0")
 
 
-def _fit(piece: CurvePiece, order: int, tolerance: float, millimetres: float | None) -> BandFit:
+def _fit(piece: CurvePiece, order: int, tolerance: float, millimetres: float | None, share: float) -> BandFit:
     """Return the fit along a piece, made smooth where it has to be."""
     curve = piece.curve
-    limits = band_limits(piece.length, tolerance, millimetres)
+    limits = band_limits(piece.length, tolerance, millimetres, share)
     _, turns = turns_at_breaks(curve)
     is_polyline = curve.degree == 1 and len(curve.breaks) > 3 and turns.max(initial=0.0) > _KINK
     if not is_polyline:

@@ -27,7 +27,9 @@ _TIED = 1e-6
 
 
 def edge_bases(
-    ends: Sequence[ResolvedEdge | ResolvedChain], continuity: Continuity | Sequence[Continuity] = "G2"
+    ends: Sequence[ResolvedEdge | ResolvedChain],
+    continuity: Continuity | Sequence[Continuity] = "G2",
+    share: float = 1.0,
 ) -> list[tuple[EdgeBase, ...]]:
     """Return the bases along each edge, in its own direction: one, or more where a free curve has to be cut.
 
@@ -38,6 +40,8 @@ def edge_bases(
     ends : sequence of ResolvedEdge or ResolvedChain
     continuity : str or sequence of str
         That all, or each, is to be met with.
+    share : float
+        Of its limits, that a band may use.
 
     Raises
     ------
@@ -53,7 +57,8 @@ def edge_bases(
     curves = iter(_curves([edge for end in ends for edge in members(end)], asked))
     orders = [continuity] * len(ends) if isinstance(continuity, str) else continuity
     return [
-        _bases_of(end, [next(curves) for _ in members(end)], wanted) for end, wanted in zip(ends, orders, strict=True)
+        _bases_of(end, [next(curves) for _ in members(end)], wanted, share)
+        for end, wanted in zip(ends, orders, strict=True)
     ]
 
 
@@ -65,10 +70,10 @@ def _wanted_curves(end: ResolvedEdge | ResolvedChain) -> list[bool]:
 
 
 def _bases_of(
-    end: ResolvedEdge | ResolvedChain, curves: Sequence[TrimCurve | None], wanted: Continuity
+    end: ResolvedEdge | ResolvedChain, curves: Sequence[TrimCurve | None], wanted: Continuity, share: float
 ) -> tuple[EdgeBase, ...]:
     if isinstance(end, ResolvedEdge):
-        return _bases_of_edge(end, curves[0], wanted)
+        return _bases_of_edge(end, curves[0], wanted, share)
     strips = strips_on_planes(end, curves)
     runs: list[Sequence[EdgeBase]] = []
     kept: list[tuple[ResolvedEdge, str, TrimCurve | None]] = []
@@ -76,30 +81,34 @@ def _bases_of(
         if strip is None:
             kept.append((edge, name, curve if edge.is_free else None))
             continue
-        runs += _runs(kept, wanted)
+        runs += _runs(kept, wanted, share)
         kept = []
         runs.append([EdgeBase(name, strip.base, strip, curve)])
-    runs += _runs(kept, wanted)
+    runs += _runs(kept, wanted, share)
     return (joined(in_order(runs), end.edge, end.tolerance),)
 
 
-def _runs(edges: Sequence[tuple[ResolvedEdge, str, TrimCurve | None]], wanted: Continuity) -> list[list[EdgeBase]]:
+def _runs(
+    edges: Sequence[tuple[ResolvedEdge, str, TrimCurve | None]], wanted: Continuity, share: float
+) -> list[list[EdgeBase]]:
     """Return the bases along each of some edges that follow each other; those on one line of a surface are one."""
     if not edges:
         return []
     own = {edge: curve for edge, _, curve in edges}
     return [
-        [replace(part, name=_named(part, name)) for part in _bases_of_edge(edge, own.get(edge), wanted)]
+        [replace(part, name=_named(part, name)) for part in _bases_of_edge(edge, own.get(edge), wanted, share)]
         for edge, name in merged_edges([edge for edge, _, _ in edges], [name for _, name, _ in edges])
     ]
 
 
-def _bases_of_edge(end: ResolvedEdge, curve: TrimCurve | None, wanted: Continuity) -> tuple[EdgeBase, ...]:
+def _bases_of_edge(
+    end: ResolvedEdge, curve: TrimCurve | None, wanted: Continuity, share: float
+) -> tuple[EdgeBase, ...]:
     if curve is None:
         unit = end.loaded.unit
         millimetres = None if unit is None else MILLIMETRES[unit]
         return (EdgeBase(end.edge, Base(end.surface, end.edge), millimetres=millimetres),)
-    return bases_along(curve, wanted, end.part)
+    return bases_along(curve, wanted, end.part, share)
 
 
 def _named(part: EdgeBase, name: str) -> str:
@@ -133,10 +142,12 @@ def _number(edge: ResolvedEdge) -> int:
     return int((split_part(edge.edge)[0] if edge.entry is None else edge.entry.name)[1:])
 
 
-def bases_along(curve: TrimCurve, continuity: Continuity = "G2", part: int | None = None) -> tuple[EdgeBase, ...]:
+def bases_along(
+    curve: TrimCurve, continuity: Continuity = "G2", part: int | None = None, share: float = 1.0
+) -> tuple[EdgeBase, ...]:
     """Return a base for each band along a free curve, or for that of one part of it; errors as `edge_bases`."""
     # What a continuity of parameters means for the face is that of the surface.
-    bands = curve.bands("G1" if continuity[1] == "0" else f"G{continuity[1]}", part)  # type: ignore[arg-type]
+    bands = curve.bands("G1" if continuity[1] == "0" else f"G{continuity[1]}", part, share)  # type: ignore[arg-type]
     numbers: Sequence[int] = range(len(bands)) if part is None else [part]
     names = [curve.word] if part is None and len(bands) == 1 else [f"{curve.word}[{k}]" for k in numbers]
     return tuple(

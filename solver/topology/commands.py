@@ -10,6 +10,7 @@ from math import floor, log10
 from semispline.solver.errors import EdgeError
 from semispline.solver.topology.between import Between
 from semispline.solver.topology.contact_words import beyond, contact_word, has_exact_bases, linked
+from semispline.solver.topology.end_faces import end_edges, going_on
 from semispline.solver.topology.half_edges import EdgeGraph
 from semispline.solver.topology.place import Place, PlaceSide
 from semispline.solver.topology.relations import Relations
@@ -35,8 +36,12 @@ def with_commands(graph: EdgeGraph, relations: Relations, place: Place, betweens
         return replace(place, commands=(_between_chains(graph.path, place, words),))
     if not place.faces:
         return replace(place, commands=tuple(two_faces(graph.path, place)))
-    edges = (_edges_to_name(graph, relations, betweens[face]) for face in place.faces)
-    commands = (replacing(graph.path, face, names) for face, names in zip(place.faces, edges, strict=True))
+    commands = []
+    for face in place.faces:
+        between = betweens[face]
+        ends = end_edges(graph, face, (between.a.uses, between.b.uses))
+        alone = bool(going_on(graph, relations, ends))
+        commands.append(replacing(graph.path, face, _edges_to_name(graph, relations, between), alone=alone))
     return replace(place, commands=tuple(commands))
 
 
@@ -83,8 +88,10 @@ def _between_chains(path: str, place: Place, words: tuple[str, str]) -> str:
     return shlex.join(["semispline", "blend", file, file, "--edge-a", words[0], "--edge-b", words[1], "-o", out])
 
 
-def replacing(path: str, face: int, edges: tuple[str, str] | None = None) -> str:
+def replacing(path: str, face: int, edges: tuple[str, str] | None = None, *, alone: bool = False) -> str:
     """Return the command that blends the faces beyond a face, from one of its edges to another where they are named.
+
+    `alone` asks for the blend as a surface, instead of the solid with it.
 
     Examples
     --------
@@ -94,6 +101,7 @@ def replacing(path: str, face: int, edges: tuple[str, str] | None = None) -> str
     words = ["semispline", "blend", _safe(path), "--replace", str(face)]
     if edges is not None:
         words += ["--edge-a", edges[0], "--edge-b", edges[1]]
+    words += ["--surfaces"] * alone
     return shlex.join([*words, "-o", f"blend-{face}.step"])
 
 

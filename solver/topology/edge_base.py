@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+
+from semispline.solver.arrays import FloatArray
 from semispline.solver.blending import Chain
 from semispline.solver.judge import Base
 from semispline.solver.topology.bands import Band
@@ -40,6 +43,14 @@ class EdgeBase:
     def bases(self) -> tuple[Base, ...]:
         """The base, or those of the chain."""
         return self.base.edges if isinstance(self.base, Chain) else (self.base,)
+
+    @property
+    def end_points(self) -> tuple[FloatArray, FloatArray]:
+        """The points where the base starts and where it ends."""
+        bases = self.bases
+        turned = self.base.turned if isinstance(self.base, Chain) else (False,)
+        first, last = bases[0].range_along[turned[0]], bases[-1].range_along[not turned[-1]]
+        return bases[0].derivative(np.array([first]), 0, 0)[0], bases[-1].derivative(np.array([last]), 0, 0)[0]
 
     @property
     def parts(self) -> tuple[EdgeBase, ...]:

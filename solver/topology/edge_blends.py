@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any, Literal
 
-from semispline.solver.blending import BandContact, BlendResult, ChainContact, blend
+from semispline.solver.blending import BandContact, BlendResult, Chain, ChainContact, EndFaces, blend, chain
 from semispline.solver.errors import ComputationError, ContactError, EdgeError
 from semispline.solver.judge import (
     Base,
@@ -69,13 +69,25 @@ def blend_edges(
     return tuple(blend_bases(one, other, said, several=len(pairs) > 1) for one, other in pairs)
 
 
-def blend_bases(a: EdgeBase, b: EdgeBase, options: BlendOptions, *, several: bool = False) -> BlendResult:
+def blend_bases(
+    a: EdgeBase,
+    b: EdgeBase,
+    options: BlendOptions,
+    *,
+    several: bool = False,
+    ends_on: tuple[EndFaces, EndFaces] | None = None,
+) -> BlendResult:
     """Blend two bases, and measure on the true face what a band stands for; errors as `blend_edges`.
 
-    Messages name the parts where there are several.
+    Messages name the parts where there are several. `ends_on` are the faces where a starts and ends, and those of b,
+    on which the end curves of the blend are to lie.
     """
     try:
-        result = blend(a.base, b.base, _for_bands(options, [*a.parts, *b.parts], chained=bool(a.members or b.members)))
+        said = _for_bands(options, [*a.parts, *b.parts], chained=bool(a.members or b.members))
+        if ends_on is None:
+            result = blend(a.base, b.base, said)
+        else:
+            result = blend(_ended(a.base, ends_on[0]), _ended(b.base, ends_on[1]), said)
         band_a, band_b = (
             None if side.band is None else _band_contact(result, side, side.band, edge, options)
             for side, edge in ((a, "u0"), (b, "u1"))
@@ -147,6 +159,10 @@ def _in_unit(contact: Contact, side: EdgeBase, which: str) -> Contact:
     if not contact.gap <= gap:
         raise ContactError(f"contact {which}: gap is {contact.gap:.3g}, expected at most {gap:.3g} within cad limits")
     return replace(contact, allowed=contact.allowed | {"gap": gap})
+
+
+def _ended(base: Base | Chain, ends_on: EndFaces) -> Chain:
+    return replace(base if isinstance(base, Chain) else chain([base]), ends_on=ends_on)
 
 
 def _said(options: BlendOptions, contacts: Sequence[BandContact | None]) -> Literal["exact", "cad"]:

@@ -73,7 +73,7 @@ class TrimCurve:
         assert curve is not None
         return FreeEdge(self.surface, curve, curve is self.edge, self.keep)
 
-    def bands(self, continuity: Continuity = "G2", part: int | None = None) -> tuple[Band, ...]:
+    def bands(self, continuity: Continuity = "G2", part: int | None = None, share: float = 1.0) -> tuple[Band, ...]:
         """Return the bands of the face along the edge, or along one part of it, as `band_along`."""
         return band_along(
             self.surface,
@@ -85,6 +85,7 @@ class TrimCurve:
             continuity=continuity,
             part=part,
             name=self.name,
+            share=share,
         )
 
     def in_unit(self, unit: str | None) -> TrimCurve:

@@ -1,0 +1,242 @@
+"""Files with solids, kept open: a part of one is taken out, changed, and the whole written with all else as it was.
+
+A STEP file is read as a document, so that names, colours and layers stay. In an assembly the part is changed that the
+face belongs to, wherever it stands. Runs in the process that read the file.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from semispline.solver.errors import FileError
+from semispline.solver.io import (
+    MILLIMETRES,
+    brep_bytes,
+    read_occ_shape,
+    silenced,
+    step_text,
+    step_unit,
+    system_unit,
+)
+from semispline.solver.topology.occ_shapes import parts
+
+_STEP = (".step", ".stp")
+_BREP = (".brep", ".brp")
+# With them faces keep their names.
+_NAMES_OF_FACES = ("read.stepcaf.subshapes.name", "write.stepcaf.subshapes.name")
+
+
+@dataclass(frozen=True, eq=False)
+class Part:
+    """A shape of a file that stands in it once or more.
+
+    Attributes
+    ----------
+    shape : TopoDS_Shape
+    label : TDF_Label or None
+        Of a document.
+    face : int
+        The number in the part of the face that was asked for.
+    place : gp_Trsf
+        From the part to where that face is.
+    times : int
+        How often the part stands in the file.
+    """
+
+    shape: Any
+    label: Any
+    face: int
+    place: Any
+    times: int
+
+
+@dataclass(frozen=True, eq=False)
+class PartFile:
+    """An open file.
+
+    Attributes
+    ----------
+    path : str
+    root : TopoDS_Shape
+        Whose faces are numbered as `semispline list` does.
+    unit : str or None
+    document : TDocStd_Document or None
+        Of a STEP file.
+    """
+
+    path: str
+    root: Any
+    unit: str | None
+    document: Any = None
+
+    def part_of(self, number: int) -> Part:
+        """Return the part that a face belongs to.
+
+        Raises
+        ------
+        FileError
+            There is no such face.
+        """
+        from OCP.gp import gp_Trsf
+
+        faces = parts(self.root, "FACE")
+        if not 0 <= number < len(faces):
+            raise FileError(f"{self.path}#{number}: no such surface; the file holds {len(faces)}")
+        face = faces[number]
+        if self.document is not None:
+            for label, shape in self._simple():
+                for k, own in enumerate(parts(shape, "FACE")):
+                    if own.IsPartner(face):
+                        place = face.Location().Transformation() * own.Location().Transformation().Inverted()
+                        times = sum(own.IsPartner(other) for other in faces)
+                        return Part(shape, label, k, place, times)
+        return Part(self.root, None, number, gp_Trsf(), 1)
+
+    def with_part(self, part: Part, shape: Any, image: Callable[[Any], Any]) -> PartFile:
+        """Return the file with a part changed; a document is changed itself.
+
+        Parameters
+        ----------
+        part : Part
+        shape : TopoDS_Shape
+            What takes its place.
+        image : callable
+            What became of a face or another piece of the part; None of what is gone. A face that was put in the place
+            of another keeps its name, colour and layer.
+        """
+        from OCP.XCAFDoc import XCAFDoc_DocumentTool
+
+        if part.label is None:
+            return PartFile(self.path, shape, self.unit, self.document)
+        tool = XCAFDoc_DocumentTool.ShapeTool_s(self.document.Main())
+        _relabel(tool, part, shape, image)
+        tool.UpdateAssemblies()
+        return PartFile(self.path, _root(tool), self.unit, self.document)
+
+    def content(self, suffix: str) -> bytes:
+        """Return the file as bytes, in its own unit; numbers have 17 digits.
+
+        Raises
+        ------
+        FileError
+            A format that no solid can be written in, or Open CASCADE cannot write it.
+        """
+        if suffix in _BREP:
+            return bytes(brep_bytes(self.root))
+        if suffix not in _STEP:
+            raise FileError(f"{suffix}: found another format, expected .step or .brep for a solid")
+        from OCP.STEPCAFControl import STEPCAFControl_Writer
+        from OCP.STEPControl import STEPControl_StepModelType, STEPControl_Writer
+
+        with silenced(1, 2), system_unit(self.unit or "mm"), _names_of_faces():
+            kind = STEPControl_StepModelType.STEPControl_AsIs
+            if self.document is None:
+                writer = STEPControl_Writer()
+                writer.Transfer(self.root, kind)
+                return bytes(step_text(writer.Model()))
+            with_names = STEPCAFControl_Writer()
+            with_names.SetNameMode(True)
+            with_names.SetColorMode(True)
+            with_names.SetLayerMode(True)
+            with_names.Transfer(self.document, kind)
+            return bytes(step_text(with_names.ChangeWriter().Model()))
+
+    def _simple(self) -> list[tuple[Any, Any]]:
+        from OCP.collections import Sequence_TDF_Label
+        from OCP.XCAFDoc import XCAFDoc_DocumentTool, XCAFDoc_ShapeTool
+
+        labels = Sequence_TDF_Label()
+        XCAFDoc_DocumentTool.ShapeTool_s(self.document.Main()).GetShapes(labels)
+        found = []
+        for label in (labels.Value(k + 1) for k in range(labels.Length())):
+            if XCAFDoc_ShapeTool.IsSimpleShape_s(label) and not XCAFDoc_ShapeTool.IsSubShape_s(label):
+                found.append((label, XCAFDoc_ShapeTool.GetShape_s(label)))
+        return found
+
+
+def open_parts(path: str | Path) -> PartFile:
+    """Read a STEP, IGES or BREP file to change a part of it.
+
+    Raises
+    ------
+    FileError
+        As `read_occ`.
+    """
+    if Path(path).suffix.lower() not in _STEP:
+        return PartFile(str(path), *read_occ_shape(path))
+    from OCP.IFSelect import IFSelect_ReturnStatus
+    from OCP.STEPCAFControl import STEPCAFControl_Reader
+    from OCP.TCollection import TCollection_ExtendedString
+    from OCP.TDocStd import TDocStd_Document
+    from OCP.XCAFApp import XCAFApp_Application
+    from OCP.XCAFDoc import XCAFDoc_DocumentTool
+
+    with silenced(1, 2), system_unit("mm"), _names_of_faces():
+        document = TDocStd_Document(TCollection_ExtendedString("BinXCAF"))
+        XCAFApp_Application.GetApplication_s().InitDocument(document)
+        reader = STEPCAFControl_Reader()
+        reader.SetNameMode(True)
+        reader.SetColorMode(True)
+        reader.SetLayerMode(True)
+        if reader.ReadFile(str(path)) != IFSelect_ReturnStatus.IFSelect_RetDone:
+            raise FileError(f"{path}: not a STEP file that Open CASCADE can read")
+        unit = step_unit(reader.ChangeReader())
+        XCAFDoc_DocumentTool.SetLengthUnit_s(document, MILLIMETRES[unit] / 1000)
+        reader.Transfer(document)
+        root = _root(XCAFDoc_DocumentTool.ShapeTool_s(document.Main()))
+    return PartFile(str(path), root, unit, document)
+
+
+def _root(tool: Any) -> Any:
+    """Return all that a document shows, in its order."""
+    from OCP.BRep import BRep_Builder
+    from OCP.collections import Sequence_TDF_Label
+    from OCP.TopoDS import TopoDS_Compound
+    from OCP.XCAFDoc import XCAFDoc_ShapeTool
+
+    labels = Sequence_TDF_Label()
+    tool.GetFreeShapes(labels)
+    shapes = [XCAFDoc_ShapeTool.GetShape_s(labels.Value(k + 1)) for k in range(labels.Length())]
+    if len(shapes) == 1:
+        return shapes[0]
+    compound, builder = TopoDS_Compound(), BRep_Builder()
+    builder.MakeCompound(compound)
+    for shape in shapes:
+        builder.Add(compound, shape)
+    return compound
+
+
+def _relabel(tool: Any, part: Part, shape: Any, image: Callable[[Any], Any]) -> None:
+    """Give the label of a part its new shape, and those of its pieces what these became."""
+    from OCP.collections import Sequence_TDF_Label
+    from OCP.XCAFDoc import XCAFDoc_ShapeTool
+
+    pieces = Sequence_TDF_Label()
+    XCAFDoc_ShapeTool.GetSubShapes_s(part.label, pieces)
+    labels = [pieces.Value(k + 1) for k in range(pieces.Length())]
+    images = [image(XCAFDoc_ShapeTool.GetShape_s(label)) for label in labels]
+    tool.SetShape(part.label, shape)
+    for label, became in zip(labels, images, strict=True):
+        if became is not None:
+            tool.SetShape(label, became)
+
+
+@contextmanager
+def _names_of_faces() -> Iterator[None]:
+    """Let the translator keep the names of faces for a while."""
+    from OCP.Interface import Interface_Static
+    from OCP.STEPCAFControl import STEPCAFControl_Controller
+
+    STEPCAFControl_Controller.Init_s()
+    before = {key: Interface_Static.IVal_s(key) for key in _NAMES_OF_FACES}
+    try:
+        for key in before:
+            Interface_Static.SetIVal_s(key, 1)
+        yield
+    finally:
+        for key, value in before.items():
+            Interface_Static.SetIVal_s(key, value)
