@@ -104,6 +104,14 @@ class Chain:
         joined = joined if spans is None else replace(joined, spans=spans)
         return self._strip(joined, *_assembled(joined))
 
+    def is_steered(self, order: int) -> bool:
+        """Tell whether its lines across have to be bent at its ends, to lie on the faces there; errors as `strip`."""
+        if self.closed or self.ends_on == (None, None):
+            return False
+        joined = joined_pieces(self._pieces(order), closed=False, tolerance=self.tolerance, ends_on=self.ends_on)
+        first, last = joined.coefficients[0].values[0], joined.coefficients[-1].values[1]
+        return bool(first[2].any() or last[2].any())
+
     @property
     def _origin(self) -> FloatArray:
         return local_origin(*(base.surface for base in self.edges))

@@ -176,7 +176,7 @@ def _faded(
         from_end = (v - start if end == 0 else stop - v) / reach
         if from_end.mean() < 1:
             step = bernstein(_STEP_DEGREE, np.clip(from_end, 0.0, 1.0)) @ _STEP
-            rows = _with_change(rows, change, scales, step, None if is_even else last)
+            rows = _with_change(rows, change, scales, step, last, is_even=is_even)
         pieces.append(bezier_points(rows))
     smooth = [_smoothness(along, place) for place in places[1:-1]]
     net, basis = joined_spans(pieces, places, smooth)
@@ -193,7 +193,13 @@ def _is_even(spans: FloatArray, beside: int, contact: int) -> bool:
 
 
 def _with_change(
-    rows: FloatArray, change: FloatArray, scales: Sequence[float], step: FloatArray, weights: FloatArray | None
+    rows: FloatArray,
+    change: FloatArray,
+    scales: Sequence[float],
+    step: FloatArray,
+    weights: FloatArray,
+    *,
+    is_even: bool,
 ) -> FloatArray:
     """Return rows at places along v, shape (K, N, 4), with what the step takes of the change.
 
@@ -203,13 +209,17 @@ def _with_change(
     scales : sequence of float
         By which the rows beside the contacts are stretched, less 1.
     step : ndarray, shape (N,)
-    weights : ndarray, shape (K,), or None
-        Of the rows at the end, where those beside each other differ by more than a factor along v.
+    weights : ndarray, shape (K,)
+        Of the rows at the end.
+    is_even : bool
+        Those of rows beside each other differ by a factor alone.
     """
     moved = rows.copy()
-    moved[2:-2, :, :3] += change[2:-2, None, :3] * step[:, None]
+    # Points in space move by what the step alone says.
+    shares = rows[2:-2, :, 3:] / weights[2:-2, None, None]
+    moved[2:-2, :, :3] += shares * change[2:-2, None, :3] * step[:, None]
     for (beside, contact), scale in zip(_ROWS, scales, strict=True):
-        if weights is None:
+        if is_even:
             # Of a whole polynomial of v the mean tells the factor as well as any place.
             ratio = rows[beside, :, 3:].mean() / rows[contact, :, 3:].mean()
             stretch = rows[beside, :, :3] - ratio * rows[contact, :, :3]

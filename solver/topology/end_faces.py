@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from semispline.solver.arrays import FloatArray
-from semispline.solver.blending import BlendResult, EndFace, end_on_face, face_at
+from semispline.solver.blending import BlendResult, Chain, EndFace, end_on_face, face_at
 from semispline.solver.errors import EdgeError
 from semispline.solver.io import read_surfaces
 from semispline.solver.options import BlendOptions
@@ -23,6 +23,8 @@ from semispline.solver.topology.relations import Relations
 _GOES_ON = 2.0
 # Of the size of the blend: nearer to a curved face an end curve is not sought.
 _WITHIN = 1e-6
+# A line that leaves a plane by less, of its speed, lies in it.
+_AS_IT_IS = 1e-7
 
 
 def end_edges(graph: EdgeGraph, face: int, contacts: tuple[Sequence[int], Sequence[int]]) -> list[int]:
@@ -89,13 +91,13 @@ class FaceAtEnd:
 
     Attributes
     ----------
-    near : EndFace
-        To second order.
+    near : EndFace or None
+        To second order; None where the lines across the base lie on it as they are.
     surface : BSplineSurface or None
         Where it is curved.
     """
 
-    near: EndFace
+    near: EndFace | None
     surface: BSplineSurface | None
 
 
@@ -125,13 +127,24 @@ def ends_of_base(
     for point in side.end_points:
         nearest = int(np.linalg.norm(places - point, axis=1).argmin())
         if nearest >= len(at):
-            found.append(FaceAtEnd(corners[nearest - len(at)][1], None))
+            found.append(FaceAtEnd(_needed(side, len(found), corners[nearest - len(at)][1]), None))
             continue
         row = at[nearest][1]
         surface = surfaces.get(int(graph.uses.face[row]))
         near = EndFace.plane(graph.uses.normal[row, 0]) if surface is None else face_at(surface, point)
         found.append(FaceAtEnd(near, surface))
     return found[0], found[1]
+
+
+def _needed(side: EdgeBase, end: int, near: EndFace) -> EndFace | None:
+    """Return a plane at an end of a base; None where the line across lies in it as it is."""
+    base = side.bases[-end]
+    turned = side.base.turned[-end] if isinstance(side.base, Chain) else False
+    at = np.array([base.range_along[end != turned]])
+    first, second = (base.derivative(at, across, 0)[0] for across in (1, 2))
+    size = float(np.linalg.norm(first))
+    off = max(abs(float(near.normal @ x)) for x in (first, second))
+    return None if off <= _AS_IT_IS * size else near
 
 
 def curved_surfaces(graph: EdgeGraph, at: Sequence[tuple[FloatArray, int]]) -> dict[int, BSplineSurface]:

@@ -79,9 +79,7 @@ class ReplacedRun:
     said: str
 
 
-def replaced_run(
-    path: str, faces: Sequence[int], edge_a: str | None = None, edge_b: str | None = None
-) -> ReplacedRun:
+def replaced_run(path: str, faces: Sequence[int], edge_a: str | None = None, edge_b: str | None = None) -> ReplacedRun:
     """Return what is to be blended when faces of a file are replaced together; parameters and errors as `replaced_pair`.
 
     `edge_a` and `edge_b` are edges of the first face.

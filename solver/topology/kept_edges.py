@@ -203,9 +203,7 @@ def _met_again(result: BlendResult, side: EdgeBase, surface: BSplineSurface, whi
         part, (low, high) = bases[face.edge], face.range
         stretch = f"[{low!r},{high!r}]"
         (base,) = part.bases
-        faces.append(
-            replace(face, contact=contact(base, face.contact, stretch), band=band(part, face.band, stretch))
-        )
+        faces.append(replace(face, contact=contact(base, face.contact, stretch), band=band(part, face.band, stretch)))
     worst = max(faces, key=lambda face: face.contact.curvature_jump_relative).contact
     return {f"chain_{which}": replace(chain, faces=tuple(faces)), f"contact_{which}": worst}
 

@@ -44,9 +44,7 @@ def _changed(file: PartFile, wanted: Replacement | Rounding, suffix: str) -> Out
     copy, image = copy_of(part.shape)
     back = part.place.Inverted()
     if isinstance(wanted, Replacement):
-        news = [
-            replace(x, face=file.part_of(x.face).face, surface=_moved(x.surface, back)) for x in wanted.faces
-        ]
+        news = [replace(x, face=file.part_of(x.face).face, surface=_moved(x.surface, back)) for x in wanted.faces]
         places = [opening(copy, x.face, x.contacts) for x in news]
         change = change_of(places)
         after, became = put_in(copy, places, news)
