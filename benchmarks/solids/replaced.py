@@ -35,7 +35,7 @@ def _measures(found: SolidBlend) -> dict[str, Any]:
     had, has = report.volume
     return {
         "kept": len(found.kept),
-        "length_kept": sum(end.length for end in found.kept),
+        "length_kept": max((end.length for end in found.kept), default=0.0),
         "crease": max((end.crease_degrees for end in found.kept), default=0.0),
         "share": abs(has - had) / report.volume_limit,
         "tolerance": report.largest_tolerance,

@@ -88,9 +88,11 @@ class Chain:
         joined = joined_pieces(pieces, closed=self.closed, tolerance=self.tolerance, ends_on=self.ends_on)
         if lengths is not None:
             joined = _with_lengths(joined, lengths)
-        return self._strip(
-            joined, *(_as_conic(pieces, joined, closed=self.closed, tolerance=self.tolerance) or _assembled(joined))
-        )
+        # A circle run through anew would leave the faces at its ends.
+        conic = None
+        if not _is_steered(joined):
+            conic = _as_conic(pieces, joined, closed=self.closed, tolerance=self.tolerance)
+        return self._strip(joined, *(conic or _assembled(joined)))
 
     def rim_pieces(self, order: int) -> JoinedPieces:
         """Return the pieces with nothing but their values made to agree; errors as `strip`."""
@@ -108,9 +110,9 @@ class Chain:
         """Tell whether its lines across have to be bent at its ends, to lie on the faces there; errors as `strip`."""
         if self.closed or self.ends_on == (None, None):
             return False
-        joined = joined_pieces(self._pieces(order), closed=False, tolerance=self.tolerance, ends_on=self.ends_on)
-        first, last = joined.coefficients[0].values[0], joined.coefficients[-1].values[1]
-        return bool(first[2].any() or last[2].any())
+        return _is_steered(
+            joined_pieces(self._pieces(order), closed=False, tolerance=self.tolerance, ends_on=self.ends_on)
+        )
 
     @property
     def _origin(self) -> FloatArray:
@@ -260,6 +262,13 @@ def chain(edges: Sequence[Base], *, tolerance: float | None = None, names: Seque
     first = ends[0][1] if turned[0] else ends[0][0]
     assert place is not None
     return Chain(bases, tuple(turned), bool(np.linalg.norm(place - first) <= within), called, within)
+
+
+def _is_steered(joined: JoinedPieces) -> bool:
+    """Tell whether q is anything at a free end: lines across then follow the faces there."""
+    ends = (joined.coefficients[0].values[0], joined.coefficients[-1].values[1])
+    is_open = joined.joints[0] is None
+    return is_open and any(bool(values[2].any()) for values in ends)
 
 
 def _with_lengths(joined: JoinedPieces, lengths: Sequence[float]) -> JoinedPieces:

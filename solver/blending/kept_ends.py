@@ -11,11 +11,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
 from semispline.solver.arrays import FloatArray
-from semispline.solver.blending.reparametrisation import bezier_points, bernstein, chebyshev_places
+from semispline.solver.blending.reparametrisation import bernstein, bezier_points, chebyshev_places
 from semispline.solver.blending.spans import bezier_pieces, joined_spans
 from semispline.solver.errors import EdgeError
 from semispline.solver.splines import (
@@ -133,7 +134,7 @@ def _moved(surface: BSplineSurface, end: int, points: FloatArray, tangents: Floa
 
 
 def _scale(surface: BSplineSurface, last: FloatArray, which: int, tangent: FloatArray) -> float:
-    """Return by how much the row beside a contact is to be stretched, less 1, so that the end begins as a curve does."""
+    """Return by how much the row beside a contact is to be stretched, less 1, for the end to begin as a curve does."""
     p, knots = surface.degree_u, surface.knots_u
     contact, beside, width = (0, 1, knots[p + 1] - knots[1]) if which == 0 else (-1, -2, knots[-2] - knots[-p - 2])
     step = last[beside, :3] / last[beside, 3] - last[contact, :3] / last[contact, 3]
@@ -168,7 +169,7 @@ def _faded(
         raise EdgeError(f"end curve: degree {degree} along, expected at most {_MOST_DEGREE}; the edge cannot be kept")
     t = chebyshev_places(degree + 1)
     pieces = []
-    for low, high in zip(places[:-1], places[1:], strict=True):
+    for low, high in pairwise(places.tolist()):
         k = min(max(int(np.searchsorted(breaks, (low + high) / 2)) - 1, 0), len(spans) - 1)
         v = low + (high - low) * t
         local = (v - breaks[k]) / (breaks[k + 1] - breaks[k])

@@ -61,7 +61,7 @@ def with_commands(
 
 
 def _of_run(graph: EdgeGraph, relations: Relations, place: Place, chains: Sequence[Sequence[int]]) -> str | None:
-    """Return the command that replaces a chain of fillets, or the one that a fillet belongs to; None where none does."""
+    """Return the command that replaces a chain, or the one that a fillet belongs to; None where none does."""
     (faces,) = [list(chain) for chain in chains if set(place.faces) <= set(chain)][:1] or [list(place.faces)]
     try:
         run = face_run(graph, relations, faces)

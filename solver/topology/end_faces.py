@@ -123,7 +123,7 @@ def ends_of_base(
     """
     corners = [(x, near) for edge in kept for x, near in zip(edge.ends, edge.corners, strict=True)]
     places = np.array([point for point, _ in [*at, *corners]])
-    found = []
+    found: list[FaceAtEnd] = []
     for point in side.end_points:
         nearest = int(np.linalg.norm(places - point, axis=1).argmin())
         if nearest >= len(at):

@@ -18,7 +18,6 @@ from semispline.solver.topology.relations import Relations, relate
 from semispline.solver.topology.replacing import STRAIGHT, opposite_sides, pair_of, resolved_pair, rows_beyond
 from semispline.solver.topology.resolving import Resolved
 
-
 # How the sides of a face are walked along the run.
 _WALKS: tuple[Callable[[Between], Sequence[int]], ...] = (lambda m: m.a.uses, lambda m: m.b.uses[::-1])
 
@@ -80,9 +79,9 @@ class ReplacedRun:
 
 
 def replaced_run(path: str, faces: Sequence[int], edge_a: str | None = None, edge_b: str | None = None) -> ReplacedRun:
-    """Return what is to be blended when faces of a file are replaced together; parameters and errors as `replaced_pair`.
+    """Return what is to be blended when faces of a file are replaced together.
 
-    `edge_a` and `edge_b` are edges of the first face.
+    Parameters and errors are those of `replaced_pair`; `edge_a` and `edge_b` are edges of the first face.
     """
     measured = measured_edges(path)
     graph = measured.graph

@@ -15,7 +15,7 @@ from semispline.solver.judge import Base, Contact, measure_contact, measure_face
 from semispline.solver.splines import BSplineCurve, BSplineSurface, bounding_box, closest_point, iso_curve, surface_jet
 from semispline.solver.topology.edge_base import EdgeBase
 from semispline.solver.topology.half_edges import EdgeGraph
-from semispline.solver.topology.relations import Relations
+from semispline.solver.topology.relations import INNER, Relations
 from semispline.solver.topology.trim_curves import read_trim_curves
 
 # Places along the edge, and steps of Newton's method towards each.
@@ -224,19 +224,24 @@ def _reach(surface: BSplineSurface, end: int, width: float) -> tuple[float, floa
 
 
 def _crease(surface: BSplineSurface, end: int, edge: KeptEdge) -> float:
-    """Return the angle between a blend and the face beyond its end, the largest at samples, degrees."""
+    """Return the angle between a blend and the face beyond its end, the largest at inner samples, degrees.
+
+    At an end the face beyond may have a pole.
+    """
     v = surface.domain[1][end]
     line = iso_curve(surface, v=v)
-    at = np.array([float(closest_point(line, place).parameters[0]) for place in edge.places])
+    at = np.array([float(closest_point(line, place).parameters[0]) for place in edge.places[INNER]])
     jets = surface_jet(surface, at, np.full_like(at, v), 1)
     normals = np.cross(jets[1, 0], jets[0, 1])
-    sine = np.linalg.norm(np.cross(normals, edge.normals), axis=-1)
-    return float(np.degrees(np.arctan2(sine, np.abs((normals * edge.normals).sum(axis=-1)))).max())
+    sine = np.linalg.norm(np.cross(normals, edge.normals[INNER]), axis=-1)
+    return float(np.degrees(np.arctan2(sine, np.abs((normals * edge.normals[INNER]).sum(axis=-1)))).max())
 
 
 def _by_length(curve: BSplineCurve) -> tuple[FloatArray, FloatArray]:
     """Return points of a curve at equal steps of its length, and its tangents at both ends, as long as it is."""
-    nodes = np.unique(np.concatenate([np.linspace(*curve.knots[[0, -1]], _PIECES + 1), curve.knots]))
+    nodes = np.unique(
+        np.concatenate([np.linspace(float(curve.knots[0]), float(curve.knots[-1]), _PIECES + 1), curve.knots])
+    )
     x, weights = np.polynomial.legendre.leggauss(_GAUSS)
 
     def lengths(low: FloatArray, high: FloatArray) -> FloatArray:

@@ -71,7 +71,6 @@ def add_along_border(
     at_ends : (float or None, float or None)
         Which v its ends have, where that is known.
     """
-
     return _add_along(edge, face, border, at_ends, lambda v: np.stack([np.full_like(v, u), v], axis=1))
 
 

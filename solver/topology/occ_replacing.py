@@ -39,7 +39,6 @@ from semispline.solver.topology.occ_shapes import (
     forward,
     is_reversed,
     parts,
-    point_of,
     points_of,
     range_of,
     tolerance_of,
@@ -227,7 +226,7 @@ def _border(
         return used[0] + [(seam, False)] + used[1] + [(seam, True)], inwards
     after = []
     for rim, at_a, at_b, from_a in ((place.after_a, a[1], b[1], True), (place.after_b, a[0], b[0], False)):
-        (old,), (beyond,) = rim.edges, rim.faces
+        (old,) = rim.edges
         ends_at = ((u0, at_a), (u1, at_b))
         found = next((x for x in made if x.old.IsSame(old)), None)
         if found is None:
@@ -359,7 +358,7 @@ def _add_across(
     *,
     is_backwards: bool,
 ) -> None:
-    """Give an edge at an end its curve on a new face: the straight one, but for old edges along which u runs unevenly."""
+    """Give an edge at an end its curve on a new face: straight and even, but for old edges in how fast it is."""
     start, end = ends_at[::-1] if is_backwards else ends_at
     if made.is_kept:
         add_across_border(made.edge, new, iso_curve(surface, v=start[1]), start[1], (start[0], end[0]))
