@@ -115,11 +115,12 @@ class Chain:
         )
 
     @property
-    def _origin(self) -> FloatArray:
+    def origin(self) -> FloatArray:
+        """The point that is subtracted from all others while its strip is made."""
         return local_origin(*(base.surface for base in self.edges))
 
     def _pieces(self, order: int) -> list[Piece]:
-        return read_pieces(self.edges, self.turned, max(order, 1), self._origin)
+        return read_pieces(self.edges, self.turned, max(order, 1), self.origin)
 
     def _strip(self, joined: JoinedPieces, jets: FloatArray, along: Basis) -> Strip:
         first = self.edges[0]
@@ -128,9 +129,9 @@ class Chain:
         points, weights = euclidean(rows)
         degree = len(jets) - 1
         knots = np.repeat([0.0, width], degree + 1)
-        surface = BSplineSurface(degree, along.degree, knots, along.knots, points + self._origin, weights)
+        surface = BSplineSurface(degree, along.degree, knots, along.knots, points + self.origin, weights)
         cuts = np.concatenate([[0.0], np.cumsum(joined.spans)])
-        joints = tuple(joint if joint is None else joint.moved_by(self._origin) for joint in joined.joints)
+        joints = tuple(joint if joint is None else joint.moved_by(self.origin) for joint in joined.joints)
         return Strip(surface, self.edges, self.turned, joined.spans, tuple(cuts.tolist()), joints)
 
 
