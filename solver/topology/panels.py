@@ -120,9 +120,7 @@ def _of_ring(
     return surface, np.asarray(low + closed), k
 
 
-def _unwound(
-    surface: BSplineSurface, places: FloatArray, *, runs_up: bool
-) -> tuple[BSplineSurface, FloatArray, int]:
+def _unwound(surface: BSplineSurface, places: FloatArray, *, runs_up: bool) -> tuple[BSplineSurface, FloatArray, int]:
     """Return a closed blend three times over, where the corners, in increasing order, lie on it, and the first one.
 
     A piece that runs across the seam is then one of it.

@@ -6,19 +6,21 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from OCP.BRepCheck import BRepCheck_Analyzer
-from OCP.gp import gp_Ax1, gp_Dir, gp_Pnt, gp_Trsf, gp_Vec
+from OCP.Geom2d import Geom2d_Line
+from OCP.gp import gp_Ax1, gp_Dir, gp_Dir2d, gp_Pnt, gp_Pnt2d, gp_Trsf, gp_Vec
 from typer.testing import CliRunner
 
 from helpers.parts import fillet, graph_of, moved, rounded_box, written
-from helpers.solids import box, cut, half_space, volume
+from helpers.solids import box, cut, cylinder, half_space, pin, volume
 from semispline import Base, EdgeError, SolidError, read_surface, replace_face
 from semispline.solver.cli import app
 from semispline.solver.judge import measure_face_contact
 from semispline.solver.topology import find_places, solid_blends
 from semispline.solver.topology.face_runs import face_run, runs_on
 from semispline.solver.topology.fillets import chains, find_fillets
+from semispline.solver.topology.gate_edges import loose_area
 from semispline.solver.topology.occ_parts import open_parts
-from semispline.solver.topology.occ_shapes import parts
+from semispline.solver.topology.occ_shapes import add_pcurve, forward, parts, points_of, range_of
 from semispline.solver.topology.relations import relate
 
 pytestmark = pytest.mark.usefixtures("read_here")
@@ -73,23 +75,19 @@ def test_a_closed_rim_of_eight_fillets_is_replaced_together(upright, top, tmp_pa
     assert 0 < found.gate.volume[1] - found.gate.volume[0] < most
 
 
-def test_straight_parts_of_a_ring_have_one_section(tmp_path):
-    """Extruded between planes, whatever their lengths: each takes away the same for a unit of length."""
-    changes = []
-    for sizes in ((40.0, 30.0, 20.0), (50.0, 30.0, 20.0)):
-        shape = fillet(box(*sizes), 3.0, lambda _, along: abs(along[2]) > 0.5)
+def test_straight_parts_of_a_ring_are_extruded(tmp_path):
+    """With the same shape parameters each unit of length takes away the same, whatever the lengths are."""
+    changes, shape_of_all = [], {}
+    for length in (40.0, 50.0, 60.0):
+        shape = fillet(box(length, 30.0, 20.0), 3.0, lambda _, along: abs(along[2]) > 0.5)
         shape = fillet(shape, 1.5, lambda point, _: point[2] > 19.99)
-        # With a shape that does not depend on the length.
-        found = replace_face(
-            written(shape, tmp_path / "part.brep"), ring_of(shape), tmp_path / "out.brep", p2=0.0, alpha=1.0
-        )
+        path = written(shape, tmp_path / "part.brep")
+        found = replace_face(path, ring_of(shape), tmp_path / "out.brep", p2="zero", **shape_of_all)
+        shape_of_all = shape_of_all or {"alpha": (found.blend.alpha2**0.5, found.blend.beta2**0.5)}
         changes.append(found.gate.volume[1] - found.gate.volume[0])
-    plain = fillet(box(20, 30, 20), 1.5, lambda p, d: abs(d[1]) > 0.5 and p[2] > 19 and p[0] < 1)
-    (number,) = found_in(plain)[2]
-    one = replace_face(written(plain, tmp_path / "one.brep"), number, tmp_path / "one.step", p2=0.0, alpha=1.0)
-    section = (one.gate.volume[1] - one.gate.volume[0]) / 30
-    # Volumes are integrated to 1e-6 under each face by the kernel, and differ by less of what they change.
-    assert changes[1] - changes[0] == pytest.approx(20 * section, rel=1e-5)
+    # The kernel integrates volumes to 1e-6 of what lies under each face; what is compared is 1e-4 of that.
+    assert changes[2] - changes[1] == pytest.approx(changes[1] - changes[0], rel=1e-3)
+    assert changes[1] - changes[0] > 0.02
 
 
 def test_an_open_chain_ends_on_the_walls_at_its_ends(tmp_path):
@@ -112,9 +110,8 @@ def test_an_open_chain_ends_on_the_walls_at_its_ends(tmp_path):
 def test_an_open_chain_ends_on_slanted_walls_too(tmp_path):
     """Rows of rims whose joints answer each other are taken as they are, but not where they have to be bent."""
     shape = fillet(box(40, 30, 20), 6.0, lambda p, d: abs(d[2]) > 0.5 and p[0] < 1 and p[1] < 1)
-    shape = cut(shape, half_space([36, 15, 10], [1, 0.3, 0]))
-    shape = fillet(shape, 2.0, lambda p, d: p[2] > 19.99 and p[0] < 38 and p[1] < 15 and abs(d[2]) < 1e-6 and not (
-        p[0] > 30 and p[1] > 5))  # fmt: skip
+    shape = cut(shape, half_space([34, 0, 10], [1, 0.3, 0]))
+    shape = fillet(shape, 2.0, lambda p, _: p[2] > 19.99 and min(p[0], p[1]) < 3)
     _, _, _, groups = found_in(shape)
     found = replace_face(written(shape, tmp_path / "part.brep"), groups[0], tmp_path / "out.step")
     assert is_valid(tmp_path / "out.step")
@@ -126,8 +123,19 @@ def test_a_second_replacement_of_a_ring_changes_nothing(tmp_path):
     ring = ring_of(shape)
     first = replace_face(written(shape, tmp_path / "part.brep"), ring, tmp_path / "one.step")
     again = replace_face(tmp_path / "one.step", first.faces, tmp_path / "two.step")
-    # What is searched for the fairest shape begins from the same bases, read from another file.
-    assert again.gate.volume[1] == pytest.approx(first.gate.volume[1], rel=1e-9)
+    # The fairest shape is sought to some 1e-6 of its measure, and that is flat there: the shape to the root of it.
+    change = first.gate.volume[1] - first.gate.volume[0]
+    assert again.gate.volume[1] == pytest.approx(first.gate.volume[1], abs=1e-3 * change)
+
+
+def test_faces_of_a_ring_whose_sides_do_not_answer_each_other_meet_across(tmp_path):
+    """With a free row both sides are smooth chains of their own: corners lie at different v, on the seam too."""
+    shape = rounded_box()
+    path = written(shape, tmp_path / "part.brep")
+    found = replace_face(path, ring_of(shape), tmp_path / "out.step", middle_curves=1)
+    assert is_valid(tmp_path / "out.step")
+    assert found.gate.largest_tolerance <= 1.1e-7
+    assert found.gate.volume[1] > found.gate.volume[0]
 
 
 def test_place_turn_and_scale_change_nothing(tmp_path):
@@ -206,12 +214,39 @@ def _jump(own, face):
     return found.curvature_jump_relative if found.gap <= 1e-6 else np.inf
 
 
+def test_rows_along_an_arc_in_pieces_end_on_the_wall_that_cuts_it(tmp_path):
+    """Read as a conic, and run through by a circle of its own, the contact would leave the end faces in silence."""
+    shape = cut(pin(1.0), half_space([0, 0.83, 0], [0, -1, 0]))
+    (number,) = found_in(shape)[2]
+    found = replace_face(written(shape, tmp_path / "part.brep"), number, tmp_path / "out.step")
+    assert is_valid(tmp_path / "out.step")
+    assert found.gate.largest_tolerance <= 1.1e-7
+    assert max(edge.gap for edge in found.gate.border if edge.is_plane) <= 1e-8
+
+
+def test_borders_that_a_file_holds_apart_may_move_by_that(tmp_path):
+    shape = cylinder(8.0, 20.0)
+    wall = next(face for face in parts(shape, "FACE") if len(parts(face, "EDGE")) == 4)
+    # What lies between the curves is rounding of lengths.
+    assert loose_area(wall) <= 1e-9
+    rim = next(
+        edge for edge in parts(wall, "EDGE") if np.ptp(points_of(edge, np.linspace(*range_of(edge), 9))[:, 2]) < 1
+    )
+    first, last = range_of(rim)
+    line = Geom2d_Line(gp_Pnt2d(0.0, 0.01 + points_of(rim, np.array([first]))[0, 2]), gp_Dir2d(1.0, 0.0))
+    add_pcurve(forward(rim), line, wall)
+    # Of chords, of which there are 64 round the rim.
+    assert loose_area(wall) == pytest.approx(0.01 * 2 * np.pi * 8, rel=1e-3)
+
+
 def test_ends_of_a_chain_are_kept_and_its_joints_are_not(tmp_path):
     shape = rounded_box()
     graph, relations, _, (ring,) = found_in(shape)
     pair = face_run(graph, relations, ring).faces[:2]
     path = written(shape, tmp_path / "part.brep")
-    with pytest.raises(EdgeError, match=r"--replace \d+,\d+: it goes on into faces \d+ and \d+ over \d+:e\d and \d+:e\d"):
+    with pytest.raises(
+        EdgeError, match=r"--replace \d+,\d+: it goes on into faces \d+ and \d+ over \d+:e\d and \d+:e\d"
+    ):
         replace_face(path, pair, tmp_path / "out.step")
     found = replace_face(path, pair, tmp_path / "out.step", keep_ends=True)
     assert is_valid(tmp_path / "out.step")
@@ -229,17 +264,10 @@ def test_what_is_no_run_is_refused(tmp_path):
         replace_face(path, [order[0], order[4]], out)
     with pytest.raises(EdgeError, match="is there twice"):
         replace_face(path, [order[0], order[0]], out)
-    upright = next(face for face in accepted if face not in ring)
-    with pytest.raises(EdgeError, match=r"face \d+ lies between no two sides at whose ends"):
-        replace_face(path, [order[1], upright] if _touch(graph, order[1], upright) else [order[0], upright], out)
+    uprights = [face for face in accepted if face not in ring]
+    with pytest.raises(EdgeError, match="do not go on into each other over ends of both"):
+        replace_face(path, uprights[:2], out)
     assert not out.exists()
-
-
-def _touch(graph, one, other):
-    return any(
-        graph.uses.other[row] >= 0 and graph.uses.face[graph.uses.other[row]] == other
-        for row in range(*graph.uses.of_face(one).indices(len(graph.uses)))
-    )
 
 
 def test_the_gate_stops_a_ring_whose_neighbours_do_not_meet(tmp_path, monkeypatch):
