@@ -31,7 +31,7 @@ def test_the_end_lies_on_the_curve_and_the_rest_is_what_it_was(end, weights):
         "across": np.array([[1.0, 1.0], [1.0, 1.2], [1, 1], [1, 1], [1.1, 1.0], [1, 1]]),
     }[weights]
     surface = quintic(weights=given)
-    curve = ARC + [0.0, 0.0, 10.0 * end]
+    curve = ARC + np.array([0.0, 0.0, 10.0 * end])
     found = end_on_curve(surface, end, curve, TANGENTS, 0.25, 1e-9)
     assert found.distance <= 1e-9
     u = np.linspace(0.0, 1.0, len(curve))
@@ -67,7 +67,7 @@ def test_the_step_begins_and_ends_without_slope_and_bend():
 
 def test_a_curve_beside_the_blend_is_refused():
     with pytest.raises(EdgeError, match="beside the old end edge"):
-        end_on_curve(quintic(), 0, ARC, TANGENTS + [0.0, 0.0, 0.2], 0.25, 1e-9)
+        end_on_curve(quintic(), 0, ARC, TANGENTS + np.array([0.0, 0.0, 0.2]), 0.25, 1e-9)
 
 
 def test_a_curve_that_the_rows_cannot_follow_is_refused():
