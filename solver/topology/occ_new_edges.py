@@ -71,12 +71,16 @@ def add_along_border(
     """
 
     def places(t: FloatArray) -> FloatArray:
-        v = _nearest(border, points_of(edge, t), at_ends)
+        v = _nearest(border, points_of(edge, t))
+        for limit, end in zip(range_of(edge), at_ends, strict=True):
+            v = v if end is None else np.where(t == limit, end, v)
         return np.stack([np.full_like(v, u), v], axis=1)
 
     def at_knots(t: FloatArray) -> FloatArray:
         v = places(t)[:, 1]
         inner = np.unique(border.knots)[1:-1]
+        if len(inner) == 0:
+            return inner
         if v[-1] < v[0]:
             v, t = v[::-1], t[::-1]
         found = np.interp(inner, v, t)
@@ -245,7 +249,7 @@ def _distance(
     return own, best
 
 
-def _nearest(border: BSplineCurve, points: FloatArray, at_ends: tuple[float | None, ...]) -> FloatArray:
+def _nearest(border: BSplineCurve, points: FloatArray) -> FloatArray:
     """Return where on a curve the points nearest to others are, which run along it."""
     low, high = float(border.knots[0]), float(border.knots[-1])
     nodes = np.linspace(low, high, _NODES + 1)
@@ -262,7 +266,4 @@ def _nearest(border: BSplineCurve, points: FloatArray, at_ends: tuple[float | No
         if np.abs(moved - v).max() <= 1e-15 * (high - low):
             break
         v = moved
-    for k, end in zip((0, -1), at_ends, strict=True):
-        if end is not None:
-            v[k] = end
     return np.asarray(v)

@@ -171,8 +171,8 @@ def put_in(shape: Any, place: Opening, surface: BSplineSurface) -> tuple[Any, Ca
     # v where the first contact starts as the wire of the old face walks it, and where it ends.
     start, end = (high, low) if against else (low, high)
     (u0, u1) = surface.domain[0]
-    of_a = _contact_edges(place.a, faces, new, geometry, surface, u0, (start, end))
-    of_b = _contact_edges(place.b, faces, new, geometry, surface, u1, (end, start))
+    of_a = contact_edges(place.a, faces, new, geometry, surface, u0, (start, end))
+    of_b = contact_edges(place.b, faces, new, geometry, surface, u1, (end, start))
     made = of_a + of_b
     used = [[(edge, is_reversed(old)) for old, edge, _ in side] for side in (of_a, of_b)]
     if place.after_a is not None and place.after_b is not None:
@@ -202,7 +202,7 @@ def change_of(place: Opening) -> Change:
 
     properties = GProp_GProps()
     BRepGProp.SurfaceProperties_s(place.face, properties)
-    lines = [_line(rim) for rim in (place.a, place.b)]
+    lines = [rim_line(rim) for rim in (place.a, place.b)]
     length = float(np.mean([np.linalg.norm(np.diff(line, axis=0), axis=1).sum() for line in lines]))
     gap = float(np.linalg.norm(evenly(lines[0]) - evenly(lines[1])[::-1], axis=1).mean())
     return Change(
@@ -224,14 +224,14 @@ def runs_against(place: Opening, surface: BSplineSurface) -> bool:
         # Both ends are one point: which way it goes is seen a quarter later.
         v = v0 + (v1 - v0) * np.array([0.25, 0.75])
         corners = surface.evaluate_grid([u0, u1], v)
-        a, b = (evenly(_line(rim), 5)[[1, 3]] for rim in (place.a, place.b))
+        a, b = (evenly(rim_line(rim), 5)[[1, 3]] for rim in (place.a, place.b))
         b = b[::-1]
     along = np.linalg.norm(corners - np.array([a, b]), axis=2).sum()
     against = np.linalg.norm(corners[:, ::-1] - np.array([a, b]), axis=2).sum()
     return bool(against < along)
 
 
-def _line(rim: Rim) -> FloatArray:
+def rim_line(rim: Rim) -> FloatArray:
     """Return points along a rim, as the wire walks it."""
     pieces = []
     for edge in rim.edges:
@@ -262,7 +262,7 @@ def _between(last: int, first: int, count: int) -> list[int]:
     return [(last + 1 + k) % count for k in range((first - last - 1) % count)]
 
 
-def _contact_edges(
+def contact_edges(
     rim: Rim, faces: Sequence[Any], new: Any, geometry: Any, surface: BSplineSurface, u: float, v: tuple[float, float]
 ) -> list[tuple[Any, Any, list[Any]]]:
     """Return each old edge of a contact, the one that takes its place, and the face beyond."""

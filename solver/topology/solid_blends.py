@@ -16,6 +16,7 @@ from semispline.solver.options import BlendOptions, Continuity, named_options
 from semispline.solver.splines import BSplineSurface
 from semispline.solver.topology.bases import edge_bases
 from semispline.solver.topology.between import Between
+from semispline.solver.topology.chain_edges import ResolvedChain
 from semispline.solver.topology.edge_base import EdgeBase
 from semispline.solver.topology.edge_blends import blend_bases
 from semispline.solver.topology.end_faces import blend_onto, check_ends, end_edges, faces_at_ends
@@ -24,7 +25,7 @@ from semispline.solver.topology.measuring import MeasuredEdges, measured_edges
 from semispline.solver.topology.relations import relate
 from semispline.solver.topology.replacing import ReplacedPair, pair_of, resolved_pair, rows_beyond
 from semispline.solver.topology.solid_gate import GateReport
-from semispline.solver.topology.solid_orders import Outcome, Replacement, Rounding
+from semispline.solver.topology.solid_orders import Joining, Outcome, Replacement, Rounding
 
 # Operating, measuring twice, writing and reading again take so many times as long as reading, at most.
 _TIMES = 12.0
@@ -54,6 +55,8 @@ class SolidBlend:
         What else is to be said.
     content : bytes
         The file.
+    more : tuple of int
+        Further new faces.
     """
 
     blend: BlendResult
@@ -64,11 +67,13 @@ class SolidBlend:
     touched: tuple[int, ...]
     notes: tuple[str, ...]
     content: bytes
+    more: tuple[int, ...] = ()
 
     def record(self) -> dict[str, Any]:
         """Return what a report holds of the solid."""
         return {
             "new_face": self.face,
+            **({"more_new_faces": list(self.more)} if self.more else {}),
             "touched": list(self.touched),
             "notes": list(self.notes),
             **{name: _gate_record(x) for name, x in (("solid", self.gate), ("read_back", self.read_back))},
@@ -166,7 +171,7 @@ def check_suffixes(path: str | Path, out: str | Path) -> None:
         raise FileError(f"{out}: no solid goes into it, expected .step or .brep; `write_surface` writes a blend")
 
 
-def operated(path: str | Path, order: Replacement | Rounding, suffix: str) -> Outcome:
+def operated(path: str | Path, order: Replacement | Rounding | Joining, suffix: str) -> Outcome:
     """Return what came of an order, carried out by a process of its own.
 
     Raises
@@ -185,6 +190,8 @@ def operated(path: str | Path, order: Replacement | Rounding, suffix: str) -> Ou
     title = f"--replace {order.face}"
     if isinstance(order, Rounding):
         title = f"--round {order.face}:e{order.edge}"
+    if isinstance(order, Joining):
+        title = f"--from {path}#{order.face} --to {order.other_path or path}#{order.other}"
     for report, when in ((outcome.report, ""), (outcome.read_back, "written and read again, ")):
         if report is not None and report.reason is not None:
             where = "" if report.place is None else " near ({:.6g}, {:.6g}, {:.6g})".format(*report.place)
@@ -214,7 +221,7 @@ def _blended(
     return blend_onto(graph, a, b, options, faces_at_ends(graph, relations, ends))
 
 
-def close_bases(ends: Sequence[ResolvedEdge], continuities: Sequence[Continuity]) -> list[tuple[EdgeBase, ...]]:
+def close_bases(ends: Sequence[ResolvedEdge | ResolvedChain], continuities: Sequence[Continuity]) -> list[tuple[EdgeBase, ...]]:
     """Return the bases along both contacts, as close to their faces as bands come."""
     try:
         return edge_bases(ends, continuities, _SHARE)

@@ -6,7 +6,7 @@ only one of its points: that one accepts open shells, inner faces, any tolerance
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
@@ -45,7 +45,7 @@ class Change:
     old : tuple of int
         Faces that were taken out, by their numbers before.
     new : tuple of int
-        Faces that were put in, by their numbers after; all others follow each other as before.
+        Faces that were put in, by their numbers after.
     touched : tuple of int
         Faces whose borders were changed, by their numbers before.
     volume : float
@@ -54,6 +54,12 @@ class Change:
         Faces beyond the contacts, by their numbers before.
     grows : bool or None
         Whether the volume has to become more, or less; None where either is right.
+    joined : int
+        How many solids, and shells, were joined to others.
+    expected : float
+        By what the volume grows, as far as it is known beforehand; `volume` is about the rest.
+    kept : dict or None
+        The number after of each face that was not taken out, by that before; None where they follow each other.
     """
 
     old: tuple[int, ...]
@@ -62,6 +68,9 @@ class Change:
     volume: float
     contacts: tuple[int, ...]
     grows: bool | None = None
+    joined: int = 0
+    expected: float = 0.0
+    kept: Mapping[int, int] | None = None
 
 
 @dataclass(frozen=True)
@@ -78,8 +87,8 @@ class GateReport:
         Before and after.
     volume : (float, float)
         Before and after.
-    volume_limit : float
-        By how much it may change.
+    volume_expected, volume_limit : float
+        By how much it changes where that is known beforehand, and by how much more or less it may.
     border : tuple of Border
         The edges of the new faces, with their tolerances and gaps.
     turn_degrees : float or None
@@ -94,6 +103,7 @@ class GateReport:
     shells: tuple[int, int] = (0, 0)
     faces: tuple[int, int] = (0, 0)
     volume: tuple[float, float] = (0.0, 0.0)
+    volume_expected: float = 0.0
     volume_limit: float = 0.0
     border: tuple[Border, ...] = field(default=())
     turn_degrees: float | None = None
@@ -176,6 +186,8 @@ class _Both:
     @cached_property
     def kept(self) -> dict[int, int]:
         """The number after of each face that was not taken out, by that before."""
+        if self.change.kept is not None:
+            return dict(self.change.kept)
         rest = [n for n in range(len(self.faces[1])) if n not in self.change.new]
         return dict(zip((n for n in range(len(self.faces[0])) if n not in self.change.old), rest, strict=True))
 
@@ -186,7 +198,7 @@ def _counts(before: Any, after: Any, change: Change, report: GateReport) -> Gate
     report = replace(report, **counts)  # type: ignore[arg-type]
     more = len(change.new) - len(change.old)
     for name, (had, has) in counts.items():
-        expected = had + (more if name == "faces" else 0)
+        expected = had + (more if name == "faces" else -change.joined)
         if has != expected:
             raise _NotSoundError(f"{has} {name} came out, expected {expected}")
     return report
@@ -201,8 +213,8 @@ def _uses(both: _Both, report: GateReport) -> GateReport:
             count = len(news.uses[k])
             said = "would stay open" if count == 1 else f"is used {count} times, not twice, one against the other"
             raise _NotSoundError(f"the edge {news.names[k]} {said}", _triple(news.middles[k]))
-    shells = zip(parts(both.before, "SHELL"), parts(both.after, "SHELL"), strict=True)
-    if any(before.Closed() and not after.Closed() for before, after in shells):
+    had, has = (sum(not shell.Closed() for shell in parts(shape, "SHELL")) for shape in (both.before, both.after))
+    if has > had:
         # The flag alone says little, but who reads it takes the shell for open.
         raise _NotSoundError("a shell is no longer marked as closed")
     return replace(report, open_edges=sum(len(uses) == 1 for uses in news.uses))
@@ -228,11 +240,12 @@ def _volumes(both: _Both, report: GateReport) -> GateReport:
     change = both.change
     had, has = volume_of(both.before), volume_of(both.after)
     limit = _OF_VOLUME * change.volume
-    report = replace(report, volume=(had, has), volume_limit=limit)
+    report = replace(report, volume=(had, has), volume_expected=change.expected, volume_limit=limit)
     if parts(both.before, "SOLID") and had * has <= 0:
         raise _NotSoundError(f"the solid is turned inside out: its volume was {had:.6g} and became {has:.6g}")
-    if not abs(has - had) <= limit:
-        raise _NotSoundError(f"the volume changes by {has - had:.4g}, expected at most {limit:.4g}")
+    if not abs(has - had - np.sign(had) * change.expected) <= limit:
+        about = f"{change.expected:.4g}, give or take {limit:.4g}" if change.expected else f"at most {limit:.4g}"
+        raise _NotSoundError(f"the volume changes by {has - had:.4g}, expected {about}")
     if change.grows is not None and (has - had > 0) != (change.grows == (had > 0)):
         which = "inner corner adds" if change.grows else "edge takes away"
         raise _NotSoundError(f"the volume changes by {has - had:.4g}, but rounding this {which} some")

@@ -48,6 +48,28 @@ class Rounding:
 
 
 @dataclass(frozen=True, eq=False)
+class Joining:
+    """Two faces to be taken out, and the surfaces that join their outlines.
+
+    Attributes
+    ----------
+    face : int
+        Of the first file.
+    other_path : str or None
+        The second file; None where it is the same.
+    other : int
+        The face there.
+    surfaces : tuple of BSplineSurface
+        As `joined` of `occ_joining` has them, in the unit of the first file that names one.
+    """
+
+    face: int
+    other_path: str | None
+    other: int
+    surfaces: tuple[BSplineSurface, ...]
+
+
+@dataclass(frozen=True, eq=False)
 class Outcome:
     """What came of it.
 
@@ -62,6 +84,8 @@ class Outcome:
         Faces whose borders were changed, by their numbers in the part.
     new : int
         The new face, by its number in the file; where nothing was written by that in the part.
+    more : tuple of int
+        Further new faces.
     times : int
         How often the changed part stands in the file.
     notes : tuple of str
@@ -75,3 +99,4 @@ class Outcome:
     new: int
     times: int
     notes: tuple[str, ...] = ()
+    more: tuple[int, ...] = ()

@@ -74,7 +74,7 @@ def labels_of(path):
     """Unit, name and colour of each part, number and name and colour of each of its faces, names of layers."""
     file = open_parts(path)
     found = []
-    for label, shape in file._simple():
+    for label, shape in file.simple_shapes():
         found.append((name_of(label), red_of(label)))
         pieces = Sequence_TDF_Label()
         XCAFDoc_ShapeTool.GetSubShapes_s(label, pieces)
