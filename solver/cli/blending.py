@@ -111,9 +111,7 @@ def blend_command(
     from semispline.solver.io import check_surface_output, face_warnings
 
     if from_face is not None or to_face is not None:
-        join = WantedJoin(
-            from_face, to_face, (a, b, edge_a, edge_b, replace_face, round_edge, distance, cut_a, cut_b)
-        )
+        join = WantedJoin(from_face, to_face, (a, b, edge_a, edge_b, replace_face, round_edge, distance, cut_a, cut_b))
         join.check(out)
         check_outputs({"--out": out, "--report": report}, join.specs)
         write_joined(join, out, options, split_name(split), report)

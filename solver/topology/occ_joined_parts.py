@@ -127,6 +127,7 @@ def _whole(a: _Side, b: _Side, solid: Any, change: Change, unit: str | None) -> 
     of_cap = next((words_of(document, x) for x, piece in pieces_of(a.part.label) if image(piece) is _CAP), None)
     new = [parts(solid, "FACE")[n] for n in change.new]
     of_b = [] if is_one or b.part.label is None else _said_of(b, image)
+    name = None if is_one or b.part.label is None else words_of(b.file.document, b.part.label).name
     if b.file is a.file and not is_one:
         _take_out(tool, b)
     move_labels(tool, a.part, shape, lambda piece: new[0] if (found := image(piece)) is _CAP else found)
@@ -135,13 +136,12 @@ def _whole(a: _Side, b: _Side, solid: Any, change: Change, unit: str | None) -> 
         if not label.IsNull():
             set_words(document, label, words)
     tool.UpdateAssemblies()
-    name = None if is_one or b.part.label is None else words_of(b.file.document, b.part.label).name
     notes = () if name is None else (f"the part {name!r} of {b.file.path} is a piece of the first one now",)
     return replace(file, root=root_of(tool)), notes
 
 
 def _image(a: _Side, b: _Side, solid: Any, change: Change) -> Callable[[Any], Any]:
-    """Return what says what became of a piece of a part: a face, `_CAP` of the first one taken out, None of the other."""
+    """Return what tells what became of a piece of a part: `_CAP` of the first face taken out, None of the other."""
     assert change.kept is not None
     after, kept, caps = parts(solid, "FACE"), change.kept, change.old
     known: list[tuple[Any, Any]] = []

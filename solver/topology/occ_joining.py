@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -79,9 +80,7 @@ class _Divided:
     pieces: dict[int, list[Any]]
 
 
-def joined(
-    shape: Any, numbers: tuple[int, int], surfaces: Sequence[BSplineSurface]
-) -> tuple[Any, Change]:
+def joined(shape: Any, numbers: tuple[int, int], surfaces: Sequence[BSplineSurface]) -> tuple[Any, Change]:
     """Return the solid, and what is meant to have happened.
 
     Parameters
@@ -104,8 +103,8 @@ def joined(
     against = [_runs_against(cap, surfaces, end) for cap, end in zip(caps, (0, -1), strict=True)]
     if against[0] == against[1]:
         raise EdgeError(
-            f"faces {numbers[0]} and {numbers[1]}: seen from outside the blend runs round both outlines the same way, "
-            "so that it would have its inside outside; turn one of the parts round"
+            "seen from outside the blend runs round both outlines the same way, so that it would turn its inside out: "
+            "the faces do not look towards each other; turn one of the parts"
         )
     divided = [
         _divided(cap, users, surfaces, end, faces, backwards=way)
@@ -246,7 +245,7 @@ def _cut(edge: Any, at: Sequence[tuple[float, Any]], face: Any) -> list[Any]:
     curve, on_face = BRep_Tool.Curve_s(edge, low, high), BRep_Tool.CurveOnSurface_s(edge, face, low, high)
     limits = [(low, first), *at, (high, last)]
     made = []
-    for (start, a), (end, b) in zip(limits[:-1], limits[1:], strict=True):
+    for (start, a), (end, b) in pairwise(limits):
         piece = with_range(curve, start, end, tolerance_of(edge), (a, b))
         add_pcurve(piece, on_face, face)
         made.append(piece)

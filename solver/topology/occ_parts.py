@@ -150,6 +150,7 @@ class PartFile:
             return bytes(step_text(with_names.ChangeWriter().Model()))
 
     def simple_shapes(self) -> list[tuple[Any, Any]]:
+        """Return the label and the shape of each part of a document that is no assembly."""
         from OCP.collections import Sequence_TDF_Label
         from OCP.XCAFDoc import XCAFDoc_DocumentTool, XCAFDoc_ShapeTool
 

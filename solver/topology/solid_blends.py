@@ -221,7 +221,9 @@ def _blended(
     return blend_onto(graph, a, b, options, faces_at_ends(graph, relations, ends))
 
 
-def close_bases(ends: Sequence[ResolvedEdge | ResolvedChain], continuities: Sequence[Continuity]) -> list[tuple[EdgeBase, ...]]:
+def close_bases(
+    ends: Sequence[ResolvedEdge | ResolvedChain], continuities: Sequence[Continuity]
+) -> list[tuple[EdgeBase, ...]]:
     """Return the bases along both contacts, as close to their faces as bands come."""
     try:
         return edge_bases(ends, continuities, _SHARE)

@@ -9,7 +9,6 @@ from semispline.solver.blending import BlendResult, Split, faces_of_blend
 from semispline.solver.errors import EdgeError, FileError
 from semispline.solver.io import check_outputs, split_spec, write_bytes
 from semispline.solver.options import BlendOptions, named_options
-from semispline.solver.splines import BSplineSurface
 from semispline.solver.topology.caps import outline_of
 from semispline.solver.topology.edge_blends import blend_bases
 from semispline.solver.topology.end_faces import as_spline
@@ -64,9 +63,7 @@ def join_faces(
     return found
 
 
-def joined_solid(
-    specs: tuple[str, str], suffix: str, options: BlendOptions, split: Split = "corners"
-) -> SolidBlend:
+def joined_solid(specs: tuple[str, str], suffix: str, options: BlendOptions, split: Split = "corners") -> SolidBlend:
     """Return what `join_faces` writes, in the format of a suffix; its errors."""
     (path, face), (other, beyond) = (_named(spec, name) for spec, name in zip(specs, NAMES, strict=True))
     is_same = Path(path).resolve() == Path(other).resolve()
