@@ -9,10 +9,24 @@ from OCP.BRep import BRep_Builder
 from OCP.BRepCheck import BRepCheck_Analyzer
 from OCP.TopoDS import TopoDS_Shell, TopoDS_Solid
 
-from helpers.parts import compound, graph_of
-from helpers.solids import box_with_fillet, cut, cylinder, pin, volume
-from semispline import Base, BSplineCurve, blend, elevate_degree, insert_knots, plane, reverse_v, revolve, transform
+from helpers.parts import compound, fillet, graph_of
+from helpers.solids import box, box_with_fillet, cut, cylinder, pin, volume
+from semispline import (
+    Base,
+    BSplineCurve,
+    BSplineSurface,
+    blend,
+    elevate_degree,
+    extrude,
+    insert_knots,
+    plane,
+    reverse_v,
+    revolve,
+    swap_directions,
+    transform,
+)
 from semispline.solver.topology.occ_replacing import change_of, opening, put_in
+from semispline.solver.topology.occ_rounding import rounded
 from semispline.solver.topology.occ_shapes import copy_of, parts, raise_tolerance, tolerance_of
 from semispline.solver.topology.solid_gate import gate
 
@@ -316,3 +330,67 @@ def test_the_input_is_not_changed():
     assert before == (
         [tolerance_of(x) for kind in ("FACE", "EDGE", "VERTEX") for x in parts(shape, kind)], volume(shape)
     )  # fmt: skip
+
+
+@cache
+def box_with_twelve(radius):
+    return fillet(box(20, 30, 40), radius, lambda *_: True)
+
+
+def along_a_fillet(radius, dip):
+    """From ball to ball along the upright round of a box with twelve, the old end edges kept, bent in by so much."""
+    r, h = radius, 40.0 - 2 * radius
+    arc = BSplineCurve(2, [0, 0, 0, 1, 1, 1], [[r, 0, r], [0, 0, r], [0, r, r]], [1, np.sqrt(0.5), 1])
+    upright = extrude(arc, [0, 0, h])
+    surface = upright if upright.degree_u == 1 else swap_directions(upright)
+    surface = elevate_degree(surface, 5 - surface.degree_u, 3)
+    points = surface.control_points.copy()
+    points[2:4, 1:-1] -= dip * OUT
+    return replace(surface, control_points=points)
+
+
+@pytest.mark.parametrize("dip", [0.0, 20.0])
+def test_the_wrong_pair_with_its_ends_kept_is_stopped_among_twelve_fillets(dip):
+    """Valid, and no tolerance grows: the volume alone tells; the round put back in its own place is right."""
+    shape = box_with_twelve(2.0)
+    number, upright = the_fillet(shape)
+    graph = graph_of(shape)
+    rows = graph.uses.of_face(number)
+    low, high = sorted((k for k in range(4) if (k,) not in upright), key=lambda k: graph.uses.points[rows][k, 0, 2])
+    after, change = put(shape, along_a_fillet(2.0, dip), number, ((low,), (high,)))
+    assert is_valid(after)
+    assert max(tolerance_of(edge) for edge in parts(after, "EDGE")) <= 1.1e-7
+    found = gate(shape, after, change)
+    assert found.is_sound if dip == 0 else "the volume changes" in found.reason
+
+
+def round_of(cuts, reach, inwards=1.0):
+    """From the plane y = 0 to the plane x = 0 about the upright edge, quintic, with rows of one length."""
+    a, b = np.array([cuts[0], 0, 0.0]), np.array([0, cuts[1], 0.0])
+    to_a, to_b = np.array([-1.0, 0, 0]), np.array([0, -1.0, 0])
+    rows = [a, a + 0.2 * reach * to_a, a + 0.4 * reach * to_a, b + 0.4 * reach * to_b, b + 0.2 * reach * to_b, b]
+    points = np.array([[row, row + [0, 0, 40.0]] for row in rows])
+    return BSplineSurface(5, 1, [0] * 6 + [1] * 6, [0, 0, 1, 1], points)
+
+
+@pytest.mark.parametrize(
+    ("cuts", "reach", "said"),
+    [((1.0, 8.0), 8.0, "rounding this edge takes away some"), ((3.0, 6.0), 4.0, None), ((1.0, 8.0), 2.5, None)],
+)
+def test_a_sharp_edge_that_bulges_out_is_stopped(cuts, reach, said):
+    """Rows that are too long leave the box where the cut is short; the kernel calls it valid."""
+    shape = box(20, 30, 40)
+    graph = graph_of(shape)
+    edges = [
+        (int(graph.uses.face[row]), int(graph.uses.number[row]))
+        for row in range(len(graph.uses))
+        if np.abs(graph.uses.points[row, :, :2]).max() < 1e-9 and abs(graph.uses.normal[row, 0, 1]) > 0.5
+    ]
+    ((face, k),) = edges
+    after, _, change = rounded(copy_of(shape)[0], face, k, round_of(cuts, reach), grows=False)
+    assert is_valid(after)
+    found = gate(shape, after, change)
+    assert found.reason is None if said is None else said in found.reason
+    # What an inner edge is to do is the other way round.
+    other = gate(shape, after, replace(change, grows=True))
+    assert other.is_sound if said else "inner corner adds some" in other.reason
