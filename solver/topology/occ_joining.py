@@ -121,7 +121,7 @@ def joined(shape: Any, numbers: tuple[int, int], surfaces: Sequence[BSplineSurfa
     }
     rims = {face for cap in caps for face in cap.rim.faces}
     became = {
-        number: _rebuilt(face, edges, users) if number in rims else face
+        number: rebuilt_with(face, edges, users) if number in rims else face
         for number, face in enumerate(faces)
         if number not in numbers
     }
@@ -297,7 +297,7 @@ def _sides(
     return found
 
 
-def _rebuilt(face: Any, edges: Mapping[int, list[Any]], users: EdgeUsers) -> Any:
+def rebuilt_with(face: Any, edges: Mapping[int, list[Any]], users: EdgeUsers) -> Any:
     """Return a face with others in the places of some edges, which are given by their numbers."""
     from OCP.BRep import BRep_Builder
     from OCP.TopoDS import TopoDS_Wire

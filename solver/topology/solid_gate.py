@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from semispline.solver.arrays import FloatArray
 from semispline.solver.errors import SemisplineError
 from semispline.solver.io import OccFace
 from semispline.solver.judge import cad_measures, measure_regularity, measure_turn
@@ -238,7 +239,8 @@ def _validity(both: _Both, report: GateReport) -> GateReport:
 
 def _volumes(both: _Both, report: GateReport) -> GateReport:
     change = both.change
-    had, has = volume_of(both.before), volume_of(both.after)
+    about = box_of(both.before).mean(axis=0)
+    had, has = volume_of(both.before, about), volume_of(both.after, about)
     limit = _OF_VOLUME * change.volume
     report = replace(report, volume=(had, has), volume_expected=change.expected, volume_limit=limit)
     if parts(both.before, "SOLID") and had * has <= 0:
@@ -397,21 +399,26 @@ def crossings(faces: list[Any]) -> list[list[tuple[Any, Point]]]:
     return found
 
 
-def volume_of(shape: Any) -> float:
-    """Return the volume that the faces of a shape enclose; of an open one what differences can be told by."""
-    from OCP.BRepGProp import BRepGProp
-    from OCP.GProp import GProp_GProps
+def volume_of(shape: Any, about: FloatArray) -> float:
+    """Return the volume that the faces of a shape enclose; of an open one what lies between them and a point."""
+    from OCP.BRepGProp import BRepGProp_Domain, BRepGProp_Face, BRepGProp_Vinert
+    from OCP.gp import gp_Pnt
 
-    properties = GProp_GProps()
-    # Without a bound of the error it takes a fixed number of places in each face, whatever knots that has.
-    BRepGProp.VolumeProperties_s(shape, properties, _VOLUME_ERROR)
-    return float(properties.Mass())
+    point, found = gp_Pnt(*about.tolist()), 0.0
+    for face in parts(shape, "FACE"):
+        # For a whole shape the kernel takes a point of its own, and another one after a vertex has moved.
+        one = BRepGProp_Vinert()
+        one.SetLocation(point)
+        # Without a bound of the error it takes a fixed number of places in each face, whatever knots that has.
+        one.Perform(BRepGProp_Face(face), BRepGProp_Domain(face), _VOLUME_ERROR)
+        found += float(one.Mass())
+    return found
 
 
 def _near_new(both: _Both) -> list[int]:
-    """Return the numbers of the new faces and of those whose boxes meet theirs, or those of what was taken out."""
-    olds, news = both.faces
-    around = [box_of(news[n]) for n in both.change.new] + [box_of(olds[n]) for n in both.change.old]
+    """Return the numbers of the new faces and of those whose boxes meet theirs."""
+    news = both.faces[1]
+    around = [box_of(news[n]) for n in both.change.new]
     return [
         number for number, face in enumerate(news)
         if number in both.change.new or any(boxes_meet(box_of(face), box) for box in around)

@@ -5,10 +5,9 @@ from functools import cache
 
 import numpy as np
 import pytest
-from OCP.BRep import BRep_Builder
 from OCP.BRepCheck import BRepCheck_Analyzer
-from OCP.TopoDS import TopoDS_Shell, TopoDS_Solid
 
+from helpers.gated import corner_blend, placed, put, solid_of, the_fillet
 from helpers.parts import compound, fillet, graph_of
 from helpers.solids import box, box_with_fillet, cut, cylinder, pin, volume
 from semispline import (
@@ -19,13 +18,11 @@ from semispline import (
     elevate_degree,
     extrude,
     insert_knots,
-    plane,
     reverse_v,
     revolve,
     swap_directions,
     transform,
 )
-from semispline.solver.topology.occ_replacing import change_of, opening, put_in
 from semispline.solver.topology.occ_rounding import rounded
 from semispline.solver.topology.occ_shapes import copy_of, parts, raise_tolerance, tolerance_of
 from semispline.solver.topology.solid_gate import gate
@@ -33,47 +30,9 @@ from semispline.solver.topology.solid_gate import gate
 OUT = np.array([-1.0, -1.0, 0.0]) / np.sqrt(2)
 
 
-@cache
-def corner_blend(radius=5.0, height=40.0):
-    """G2 from the plane y = 0 to the plane x = 0 along an upright edge."""
-    a = Base(plane([radius, 0, 0], [0, 0, height], [20, 0, 0]), "v0")
-    b = Base(plane([0, radius, 0], [0, 0, height], [0, 20, 0]), "v0")
-    return blend(a, b, middle_curves=0).surface.to_bspline()
-
-
 def with_hole():
     """A hole beside the fillet, through the whole height."""
     return cut(box_with_fillet(5.0), cylinder(1.5, 40.0, at=(5.0, 5.0, 0.0)))
-
-
-def the_fillet(shape):
-    """The number of the round along the z-axis, and its upright edges."""
-    graph = graph_of(shape)
-    uses = graph.uses
-    for number, kind in enumerate(graph.faces.kind):
-        rows = uses.of_face(number)
-        if kind == "cylinder" and np.abs(uses.points[rows].mean(axis=(0, 1))[:2] - 1.5).max() < 2.0:
-            upright = [k for k in range(rows.stop - rows.start) if np.ptp(uses.points[rows][k, :, 2]) > 1.0]
-            if len(upright) == 2 and rows.stop - rows.start == 4:
-                return number, tuple((k,) for k in upright)
-    raise AssertionError
-
-
-def put(shape, surface, number, contacts):
-    copy, _ = copy_of(shape)
-    place = opening(copy, number, contacts)
-    # u runs from the first contact: from the plane y = 0.
-    after, _ = put_in(copy, place, surface)
-    return after, change_of(place)
-
-
-def placed(shape, surface, radius=5.0):
-    """The shape with a surface in the place of its fillet, and what is meant to have happened."""
-    number, (one, two) = the_fillet(shape)
-    graph = graph_of(shape)
-    row = graph.uses.of_face(number).start + one[0]
-    contacts = (one, two) if abs(graph.uses.points[row, 0, 1]) < 1e-6 else (two, one)
-    return put(shape, surface, number, contacts)
 
 
 def bent(surface, by, columns=slice(3, 6), rows=slice(2, 4)):
@@ -155,17 +114,6 @@ def test_a_face_turned_round_is_stopped():
     wrong = solid_of([face.Reversed() if n in change.new else face for n, face in enumerate(faces)])
     found = gate(shape, wrong, change)
     assert "not twice, one against the other" in found.reason
-
-
-def solid_of(faces):
-    builder, shell, solid = BRep_Builder(), TopoDS_Shell(), TopoDS_Solid()
-    builder.MakeShell(shell)
-    for face in faces:
-        builder.Add(shell, face)
-    shell.Closed(True)
-    builder.MakeSolid(solid)
-    builder.Add(solid, shell)
-    return compound([solid])
 
 
 def test_a_solid_turned_inside_out_is_stopped():
@@ -343,7 +291,7 @@ def along_a_fillet(radius, dip):
     arc = BSplineCurve(2, [0, 0, 0, 1, 1, 1], [[r, 0, r], [0, 0, r], [0, r, r]], [1, np.sqrt(0.5), 1])
     upright = extrude(arc, [0, 0, h])
     surface = upright if upright.degree_u == 1 else swap_directions(upright)
-    surface = elevate_degree(surface, 5 - surface.degree_u, 3)
+    surface = elevate_degree(surface, 5, 3)
     points = surface.control_points.copy()
     points[2:4, 1:-1] -= dip * OUT
     return replace(surface, control_points=points)
@@ -369,7 +317,7 @@ def round_of(cuts, reach, inwards=1.0):
     a, b = np.array([cuts[0], 0, 0.0]), np.array([0, cuts[1], 0.0])
     to_a, to_b = np.array([-1.0, 0, 0]), np.array([0, -1.0, 0])
     rows = [a, a + 0.2 * reach * to_a, a + 0.4 * reach * to_a, b + 0.4 * reach * to_b, b + 0.2 * reach * to_b, b]
-    points = np.array([[row, row + [0, 0, 40.0]] for row in rows])
+    points = np.array([[row, row + np.array([0, 0, 40.0])] for row in rows])
     return BSplineSurface(5, 1, [0] * 6 + [1] * 6, [0, 0, 1, 1], points)
 
 
