@@ -141,6 +141,7 @@ from .solver.topology.resolving import resolve_edge as resolve_edge
 from .solver.topology.solid_blends import SolidBlend as SolidBlend
 from .solver.topology.solid_blends import replace_face as replace_face
 from .solver.topology.solid_gate import GateReport as GateReport
+from .solver.topology.solid_joins import join_faces as join_faces
 from .solver.topology.solid_rounds import round_edge as round_edge
 
 __version__: str

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Annotated, Any, cast, get_args
 
 import typer
 
-from semispline.solver.cli.solids import WantedEdge, no_solid, write_rounded, write_solid
+from semispline.solver.cli.solids import WantedEdge, WantedJoin, no_solid, write_joined, write_rounded, write_solid
 from semispline.solver.cli.wanted_bases import WantedBases, face_numbers
 from semispline.solver.cli.words import (
     EDGE_HELP,
@@ -50,9 +50,15 @@ _CUT_HELP = (
 @reports_errors
 @takes_blend_options
 def blend_command(
-    a: Annotated[str, typer.Argument(metavar="A", help=f"{SURFACE_HELP} With --replace and --round the file alone.")],
     out: Annotated[str, typer.Option("-o", "--out", metavar="OUT", help="File to write; the suffix says the format.")],
     options: BlendOptions,
+    a: Annotated[
+        str | None,
+        typer.Argument(
+            metavar="[A]",
+            help=f"{SURFACE_HELP} With --replace and --round the file alone; none with --from and --to.",
+        ),
+    ] = None,
     b: Annotated[str | None, typer.Argument(metavar="[B]", help="The same for the other surface.")] = None,
     edge_a: Annotated[str | None, typer.Option(metavar="EDGE", help=EDGE_HELP.format("A, or of FACE"))] = None,
     edge_b: Annotated[str | None, typer.Option(metavar="EDGE", help=EDGE_HELP.format("B, or another of FACE"))] = None,
@@ -78,6 +84,18 @@ def blend_command(
     distance: Annotated[
         float | None, typer.Option(metavar="D", help="How far from the edge --round begins, along both faces.")
     ] = None,
+    from_face: Annotated[
+        str | None,
+        typer.Option(
+            "--from",
+            metavar="FILE#FACE",
+            help="Take this planar face off its solid and join its outline to that of --to: one solid comes back.",
+        ),
+    ] = None,
+    to_face: Annotated[
+        str | None,
+        typer.Option("--to", metavar="FILE#FACE", help="The other, of this file or of another; FILE:FACE will do."),
+    ] = None,
     cut_a: Annotated[str | None, typer.Option(metavar="D", help=_CUT_HELP.format("A"))] = None,
     cut_b: Annotated[str | None, typer.Option(metavar="D", help=_CUT_HELP.format("B"))] = None,
     surfaces: Annotated[
@@ -98,6 +116,14 @@ def blend_command(
     """Join an edge of A and an edge of B by a semi-structured surface of fairest shape, or as the options say."""
     from semispline.solver.io import check_surface_output, face_warnings
 
+    if from_face is not None or to_face is not None:
+        join = WantedJoin(from_face, to_face, (a, b, edge_a, edge_b, replace_face, round_edge, distance, cut_a, cut_b))
+        join.check(out)
+        check_outputs({"--out": out, "--report": report}, join.specs)
+        write_joined(join, out, options, split_name(split), report)
+        return
+    if a is None:
+        raise OptionError("blend: A missing, expected a surface or a file; with --from and --to there is none")
     if round_edge is not None or distance is not None:
         wanted_edge = WantedEdge(a, round_edge, distance, (b, edge_a, edge_b, replace_face, cut_a, cut_b))
         wanted_edge.check(out)

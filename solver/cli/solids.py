@@ -20,6 +20,7 @@ from semispline.solver.options import BlendOptions
 from semispline.solver.reports import print_result, reports_record
 
 if TYPE_CHECKING:
+    from semispline.solver.blending import Split
     from semispline.solver.cli.wanted_bases import WantedBases
     from semispline.solver.topology import SolidBlend
 
@@ -72,6 +73,66 @@ class WantedEdge:
                 f"--round: found {self.path} and {out}, expected a STEP, IGES or BREP file and one of STEP or BREP to "
                 "write: no solid can come back otherwise"
             )
+
+
+@dataclass(frozen=True)
+class WantedJoin:
+    """What was said of two outlines to be joined; `others` belong to other ways to say what is blended."""
+
+    start: str | None
+    end: str | None
+    others: tuple[object, ...]
+
+    @property
+    def specs(self) -> tuple[str, str]:
+        """Both as "PATH#N"; `PATH:N` is read so too.
+
+        Raises
+        ------
+        OptionError
+        """
+        from semispline.solver.io import split_spec
+
+        found = []
+        for name, said in (("--from", self.start), ("--to", self.end)):
+            if said is None:
+                raise OptionError(f"{name}: missing, expected --from FILE#FACE and --to FILE#FACE together")
+            spec = said if split_spec(said)[1] is not None else re.sub(r":(\d{1,9})$", r"#\1", said)
+            if split_spec(spec)[1] is None:
+                raise OptionError(f"{name}: found {said!r}, expected a file and its face, as part.step#12")
+            found.append(spec)
+        return found[0], found[1]
+
+    def check(self, out: str) -> None:
+        """Refuse what does not go together before a file is read.
+
+        Raises
+        ------
+        OptionError
+        """
+        from semispline.solver.io import split_spec
+        from semispline.solver.topology import can_hold_a_solid
+
+        if any(other is not None for other in self.others):
+            raise OptionError(
+                "--from and --to: found together with A, B, --replace, --round, --distance, --edge-a, --edge-b, "
+                "--cut-a or --cut-b"
+            )
+        paths = [split_spec(spec)[0] for spec in self.specs]
+        if not all(map(can_hold_a_solid, paths)) or not can_hold_a_solid(out, written=True):
+            raise OptionError(
+                f"--from and --to: found {', '.join(paths)} and {out}, expected STEP, IGES or BREP files and one of "
+                "STEP or BREP to write: no solid can come back otherwise"
+            )
+
+
+def write_joined(wanted: WantedJoin, out: str, options: BlendOptions, split: Split, report: str | None) -> None:
+    """Write the joined solid, and the report: both or none."""
+    from semispline.solver.topology import joined_solid
+
+    with progress("blending"):
+        found = joined_solid(wanted.specs, Path(out).suffix.lower(), options, split)
+    _write(found, out, report)
 
 
 def write_rounded(wanted: WantedEdge, out: str, options: BlendOptions, report: str | None) -> None:
@@ -132,10 +193,11 @@ def _print(found: SolidBlend) -> None:
     typer.echo(found.said)
     typer.echo(
         f"{f'one sound {kind}' if count == 1 else f'{count} sound {kind}s'} of {report.faces[1]} faces: "
-        f"{', '.join(map(str, found.faces))} {'is' if len(found.faces) == 1 else 'are'} the blend, "
-        f"{', '.join(map(str, found.touched))} have new borders, all else is as it was"
+        f"{_numbers(found.faces)} the blend, {', '.join(map(str, found.touched))} have new borders, all else is as it "
+        "was"
     )
-    typer.echo(f"volume {had:.9g} -> {has:.9g}, by {has - had:.4g} of at most {report.volume_limit:.4g}")
+    about = f"{report.volume_expected:.4g}, give or take" if report.volume_expected else "at most"
+    typer.echo(f"volume {had:.9g} -> {has:.9g}, by {has - had:.4g} of {about} {report.volume_limit:.4g}")
     before = max((edge.was or 0.0 for edge in report.border), default=0.0)
     typer.echo(
         f"largest tolerance at the blend {before:.2g} -> {report.largest_tolerance:.2g}, read back "
@@ -143,3 +205,7 @@ def _print(found: SolidBlend) -> None:
     )
     for note in found.notes:
         typer.echo(note)
+
+
+def _numbers(faces: tuple[int, ...]) -> str:
+    return f"{faces[0]} is" if len(faces) == 1 else f"{', '.join(map(str, faces))} are"

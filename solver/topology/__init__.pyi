@@ -42,4 +42,5 @@ from .resolving import resolve_edges as resolve_edges
 from .solid_blends import SolidBlend as SolidBlend
 from .solid_blends import can_hold_a_solid as can_hold_a_solid
 from .solid_blends import solid_with_blend as solid_with_blend
+from .solid_joins import joined_solid as joined_solid
 from .solid_rounds import solid_with_round as solid_with_round

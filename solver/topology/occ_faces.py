@@ -86,7 +86,7 @@ def rebuilt(face: Any, edges: Mapping[int, Any], users: EdgeUsers, more: Sequenc
     builder, own = BRep_Builder(), forward(face)
     found = forward(own.EmptyCopied())
     for wire in children(own):
-        old = _walked(forward(wire), own)
+        old = edges_of_wire(forward(wire), own)
         numbers = [users.number(edge) for edge in old]
         made = TopoDS_Wire()
         builder.MakeWire(made)
@@ -103,7 +103,7 @@ def rebuilt(face: Any, edges: Mapping[int, Any], users: EdgeUsers, more: Sequenc
     return turned(found, backwards=is_reversed(face))
 
 
-def _walked(wire: Any, face: Any) -> list[Any]:
+def edges_of_wire(wire: Any, face: Any) -> list[Any]:
     """Return the edges of a wire as one walks it, where that can be done, else in their order in the file."""
     from OCP.BRepTools import BRepTools_WireExplorer
 

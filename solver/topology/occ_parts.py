@@ -12,6 +12,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
+from semispline.solver.arrays import FloatArray
 from semispline.solver.errors import FileError
 from semispline.solver.io import (
     MILLIMETRES,
@@ -22,6 +25,7 @@ from semispline.solver.io import (
     step_unit,
     system_unit,
 )
+from semispline.solver.splines import BSplineSurface, transform
 from semispline.solver.topology.occ_shapes import parts
 
 _STEP = (".step", ".stp")
@@ -88,7 +92,7 @@ class PartFile:
             raise FileError(f"{self.path}#{number}: no such surface; the file holds {len(faces)}")
         face = faces[number]
         if self.document is not None:
-            for label, shape in self._simple():
+            for label, shape in self.simple_shapes():
                 for k, own in enumerate(parts(shape, "FACE")):
                     if own.IsPartner(face):
                         place = face.Location().Transformation() * own.Location().Transformation().Inverted()
@@ -113,9 +117,9 @@ class PartFile:
         if part.label is None:
             return PartFile(self.path, shape, self.unit, self.document)
         tool = XCAFDoc_DocumentTool.ShapeTool_s(self.document.Main())
-        _relabel(tool, part, shape, image)
+        move_labels(tool, part, shape, image)
         tool.UpdateAssemblies()
-        return PartFile(self.path, _root(tool), self.unit, self.document)
+        return PartFile(self.path, root_of(tool), self.unit, self.document)
 
     def content(self, suffix: str) -> bytes:
         """Return the file as bytes, in its own unit; numbers have 17 digits.
@@ -145,7 +149,8 @@ class PartFile:
             with_names.Transfer(self.document, kind)
             return bytes(step_text(with_names.ChangeWriter().Model()))
 
-    def _simple(self) -> list[tuple[Any, Any]]:
+    def simple_shapes(self) -> list[tuple[Any, Any]]:
+        """Return the label and the shape of each part of a document that is no assembly."""
         from OCP.collections import Sequence_TDF_Label
         from OCP.XCAFDoc import XCAFDoc_DocumentTool, XCAFDoc_ShapeTool
 
@@ -187,11 +192,19 @@ def open_parts(path: str | Path) -> PartFile:
         unit = step_unit(reader.ChangeReader())
         XCAFDoc_DocumentTool.SetLengthUnit_s(document, MILLIMETRES[unit] / 1000)
         reader.Transfer(document)
-        root = _root(XCAFDoc_DocumentTool.ShapeTool_s(document.Main()))
+        root = root_of(XCAFDoc_DocumentTool.ShapeTool_s(document.Main()))
     return PartFile(str(path), root, unit, document)
 
 
-def _root(tool: Any) -> Any:
+def placed(surface: BSplineSurface, trsf: Any) -> BSplineSurface:
+    """Return a surface moved as the kernel says."""
+    if trsf.Form().name == "gp_Identity":
+        return surface
+    matrix: FloatArray = np.array([[trsf.Value(i, j) for j in range(1, 5)] for i in range(1, 4)])
+    return transform(surface, matrix[:, :3], matrix[:, 3])
+
+
+def root_of(tool: Any) -> Any:
     """Return all that a document shows, in its order."""
     from OCP.BRep import BRep_Builder
     from OCP.collections import Sequence_TDF_Label
@@ -210,7 +223,7 @@ def _root(tool: Any) -> Any:
     return compound
 
 
-def _relabel(tool: Any, part: Part, shape: Any, image: Callable[[Any], Any]) -> None:
+def move_labels(tool: Any, part: Part, shape: Any, image: Callable[[Any], Any]) -> None:
     """Give the label of a part its new shape, and those of its pieces what these became."""
     from OCP.collections import Sequence_TDF_Label
     from OCP.XCAFDoc import XCAFDoc_ShapeTool

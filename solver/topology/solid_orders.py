@@ -68,6 +68,28 @@ class Rounding:
 
 
 @dataclass(frozen=True, eq=False)
+class Joining:
+    """Two faces to be taken out, and the surfaces that join their outlines.
+
+    Attributes
+    ----------
+    face : int
+        Of the first file.
+    other_path : str or None
+        The second file; None where it is the same.
+    other : int
+        The face there.
+    surfaces : tuple of BSplineSurface
+        As `joined` of `occ_joining` has them, in the unit of the first file that names one.
+    """
+
+    face: int
+    other_path: str | None
+    other: int
+    surfaces: tuple[BSplineSurface, ...]
+
+
+@dataclass(frozen=True, eq=False)
 class Outcome:
     """What came of it.
 
