@@ -74,6 +74,35 @@ def moved_edges(
     return [replace(one, loaded=loaded) for one, loaded in zip(found, same, strict=True)]
 
 
+def moved_uses(
+    measured: MeasuredEdges, rows: Sequence[int], cuts: Sequence[str], names: Sequence[str]
+) -> list[ResolvedEdge]:
+    """Return uses of edges by faces of one file, each moved into its face; errors as `moved_edges`.
+
+    Parameters
+    ----------
+    measured : MeasuredEdges
+    rows : sequence of int
+    cuts : sequence of str
+        As `moved_edges` has them.
+    names : sequence of str
+        Of each "A" or "B".
+    """
+    uses, path = measured.graph.uses, measured.graph.path
+    ends = [
+        _Wanted(
+            name, f"{path}#{uses.face[row]}", uses.name(row), parse_cut(cut, f"--cut-{name.lower()}"), measured, row
+        )
+        for row, cut, name in zip(rows, cuts, names, strict=True)
+    ]
+    surfaces, curves = _surfaces([end.spec for end in ends]), _curves(ends)
+    found = []
+    for end, loaded, row in zip(ends, surfaces, rows, strict=True):
+        assert end.cut is not None
+        found.append(_moved_in_face(end, end.cut, measured, row, loaded, curves))
+    return found
+
+
 @dataclass(frozen=True, eq=False)
 class _Wanted:
     """One side: what was said, and the use of the edge where it is one of a face."""

@@ -65,7 +65,12 @@ def seam_edge(
     return edge
 
 
-def rebuilt(face: Any, edges: Mapping[int, Any], users: EdgeUsers, more: Sequence[tuple[int, int, Any, bool]]) -> Any:
+def rebuilt(
+    face: Any,
+    edges: Mapping[int, Sequence[tuple[Any, bool]]],
+    users: EdgeUsers,
+    more: Sequence[tuple[int, int, Any, bool]],
+) -> Any:
     """Return a face with other edges in the places of some, and with edges between.
 
     Parameters
@@ -73,7 +78,7 @@ def rebuilt(face: Any, edges: Mapping[int, Any], users: EdgeUsers, more: Sequenc
     face : TopoDS_Face
         As it is used.
     edges : mapping
-        Number of an edge -> what takes its place, in the same direction.
+        Number of an edge -> the edges that take its place, in its direction, and whether each runs against that.
     users : EdgeUsers
         It knows the numbers.
     more : sequence of (int, int, TopoDS_Edge, bool)
@@ -91,8 +96,10 @@ def rebuilt(face: Any, edges: Mapping[int, Any], users: EdgeUsers, more: Sequenc
         made = TopoDS_Wire()
         builder.MakeWire(made)
         for k, (edge, number) in enumerate(zip(old, numbers, strict=True)):
-            new = edges.get(number)
-            builder.Add(made, edge if new is None else turned(new, backwards=is_reversed(edge)))
+            walked_back = is_reversed(edge)
+            new = edges.get(number, [(forward(edge), False)])
+            for one, against in reversed(new) if walked_back else new:
+                builder.Add(made, turned(one, backwards=walked_back != against))
             for one, two, between, backwards in more:
                 if {one, two} == {number, numbers[(k + 1) % len(old)]} and one != two:
                     walked = backwards != is_reversed(face)
@@ -116,8 +123,10 @@ def _walked(wire: Any, face: Any) -> list[Any]:
     return found if len(found) == len(in_file) else in_file
 
 
-def with_face(shape: Any, beside: int, made: Mapping[int, Any], new: Any) -> tuple[Any, Callable[[Any], Any]]:
-    """Return a shape with some faces rebuilt and a new one in the shell of one of them, and what its parts became."""
+def with_faces(
+    shape: Any, beside: int, made: Mapping[int, Any], new: Sequence[Any]
+) -> tuple[Any, Callable[[Any], Any]]:
+    """Return a shape with some faces rebuilt and new ones in the shell of one of them, and what its parts became."""
     from OCP.BRep import BRep_Builder
     from OCP.BRepTools import BRepTools_ReShape
     from OCP.TopoDS import TopoDS_Shell
@@ -137,7 +146,8 @@ def with_face(shape: Any, beside: int, made: Mapping[int, Any], new: Any) -> tup
         builder.Add(found, face if mine is None else turned(mine, backwards=is_reversed(face)))
         if mine is not None:
             reshape.Replace(forward(face), forward(mine))
-    builder.Add(found, turned(new, backwards=is_reversed(new) != is_reversed(shell)))
+    for one in new:
+        builder.Add(found, turned(one, backwards=is_reversed(one) != is_reversed(shell)))
     found.Closed(shell.Closed())
     reshape.Replace(forward(shell), found)
     return reshape.Apply(shape), reshape.Value

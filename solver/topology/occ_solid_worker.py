@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pickle
+from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -47,20 +48,21 @@ def _changed(file: PartFile, wanted: Replacement | Rounding, suffix: str) -> Out
         change = change_of(place)
         after, became = put_in(copy, place, surface)
     else:
-        after, became, change = rounded(copy, part.face, wanted.edge, surface, grows=wanted.grows)
+        # Faces of a part follow each other in the file.
+        edges = [(face - wanted.face + part.face, k) for face, k in wanted.edges]
+        after, became, change = rounded(copy, edges, replace(wanted, surface=surface))
     millimetres = None if file.unit is None else MILLIMETRES[file.unit]
     report = gate(part.shape, after, change, millimetres=millimetres)
     touched = tuple(sorted(set(change.touched) - set(change.old)))
-    (new,) = change.new
     if not report.is_sound:
-        return Outcome(report, None, None, touched, new, part.times)
+        return Outcome(report, None, None, touched, change.new, part.times)
     before = part.shape
     whole = file.with_part(part, after, lambda piece: became(image(piece)))
-    new_face = parts(after, "FACE")[new]
-    number = next(n for n, face in enumerate(parts(whole.root, "FACE")) if face.IsPartner(new_face))
+    own, all_faces = parts(after, "FACE"), parts(whole.root, "FACE")
+    new = tuple(next(n for n, face in enumerate(all_faces) if face.IsPartner(own[k])) for k in change.new)
     content = whole.content(suffix)
-    again = _read_back(content, suffix, number, before, change, millimetres)
-    return Outcome(report, again, content if again.is_sound else None, touched, number, part.times)
+    again = _read_back(content, suffix, new[0], before, change, millimetres)
+    return Outcome(report, again, content if again.is_sound else None, touched, new, part.times)
 
 
 def _read_back(

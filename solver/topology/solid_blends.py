@@ -43,7 +43,7 @@ class SolidBlend:
     said : str
         What was replaced or rounded.
     face : int
-        The new face, by its number in the file that is written.
+        The new face, by its number in the file that is written; the first of several.
     gate : GateReport
         What was measured of the solid before it was written.
     read_back : GateReport
@@ -54,6 +54,8 @@ class SolidBlend:
         What else is to be said.
     content : bytes
         The file.
+    faces : tuple of int
+        All new faces.
     """
 
     blend: BlendResult
@@ -64,11 +66,13 @@ class SolidBlend:
     touched: tuple[int, ...]
     notes: tuple[str, ...]
     content: bytes
+    faces: tuple[int, ...]
 
     def record(self) -> dict[str, Any]:
         """Return what a report holds of the solid."""
         return {
             "new_face": self.face,
+            "new_faces": list(self.faces),
             "touched": list(self.touched),
             "notes": list(self.notes),
             **{name: _gate_record(x) for name, x in (("solid", self.gate), ("read_back", self.read_back))},
@@ -139,7 +143,8 @@ def solid_with_blend(
     return SolidBlend(
         blend=result,
         said=pair.said,
-        face=outcome.new,
+        face=outcome.new[0],
+        faces=outcome.new,
         gate=outcome.report,
         read_back=outcome.read_back,
         touched=outcome.touched,
@@ -184,7 +189,7 @@ def operated(path: str | Path, order: Replacement | Rounding, suffix: str) -> Ou
     assert isinstance(outcome, Outcome)
     title = f"--replace {order.face}"
     if isinstance(order, Rounding):
-        title = f"--round {order.face}:e{order.edge}"
+        title = "--round {}:e{}".format(*order.edges[0])
     for report, when in ((outcome.report, ""), (outcome.read_back, "written and read again, ")):
         if report is not None and report.reason is not None:
             where = "" if report.place is None else " near ({:.6g}, {:.6g}, {:.6g})".format(*report.place)
