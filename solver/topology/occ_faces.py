@@ -16,6 +16,7 @@ from semispline.solver.topology.occ_shapes import (
     CONFUSION,
     EdgeUsers,
     children,
+    ends,
     forward,
     is_reversed,
     parts,
@@ -69,7 +70,7 @@ def rebuilt(
     face: Any,
     edges: Mapping[int, Sequence[tuple[Any, bool]]],
     users: EdgeUsers,
-    more: Sequence[tuple[int, int, Any, bool]],
+    more: Sequence[tuple[Any, Any, bool]],
 ) -> Any:
     """Return a face with other edges in the places of some, and with edges between.
 
@@ -81,9 +82,9 @@ def rebuilt(
         Number of an edge -> the edges that take its place, in its direction, and whether each runs against that.
     users : EdgeUsers
         It knows the numbers.
-    more : sequence of (int, int, TopoDS_Edge, bool)
-        The numbers of two edges that follow each other, the edge that comes between them, and whether the face, seen
-        from outside, walks that backwards.
+    more : sequence of (TopoDS_Vertex, TopoDS_Edge, bool)
+        A vertex in which two edges follow each other, the edge that comes between them, and whether the face, seen from
+        outside, walks that backwards.
     """
     from OCP.BRep import BRep_Builder
     from OCP.TopoDS import TopoDS_Wire
@@ -95,13 +96,13 @@ def rebuilt(
         numbers = [users.number(edge) for edge in old]
         made = TopoDS_Wire()
         builder.MakeWire(made)
-        for k, (edge, number) in enumerate(zip(old, numbers, strict=True)):
+        for edge, number in zip(old, numbers, strict=True):
             walked_back = is_reversed(edge)
             new = edges.get(number, [(forward(edge), False)])
             for one, against in reversed(new) if walked_back else new:
                 builder.Add(made, turned(one, backwards=walked_back != against))
-            for one, two, between, backwards in more:
-                if {one, two} == {number, numbers[(k + 1) % len(old)]} and one != two:
+            for vertex, between, backwards in more:
+                if ends(edge)[1].IsSame(vertex):
                     walked = backwards != is_reversed(face)
                     builder.Add(made, turned(between, backwards=walked != is_reversed(wire)))
         made.Closed(wire.Closed())

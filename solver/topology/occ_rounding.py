@@ -120,7 +120,7 @@ def rounded(shape: Any, edges: Sequence[tuple[int, int]], order: Rounding) -> tu
             faces[n],
             {**{k: [(edge, False)] for k, edge in trims.items()}, **_in_place(run, borders, n)},
             run.users,
-            [(*x.between, x.edge, x.starts) for x in ends_on if x.beyond == n],
+            [(x.vertex, x.edge, x.starts) for x in ends_on if x.beyond == n],
         )
         for n in sorted(touched)
     }
@@ -255,8 +255,8 @@ class _Across:
         The new faces that end there and that begin there, along the run.
     beyond : int or None
         The old face beyond, at the ends of a run.
-    between : (int, int)
-        The numbers of the edges of that face between which it comes.
+    vertex : TopoDS_Vertex or None
+        The old one at that end.
     starts : bool
         The run begins there.
     """
@@ -264,7 +264,7 @@ class _Across:
     edge: Any
     patches: tuple[int | None, int | None]
     beyond: int | None = None
-    between: tuple[int, int] = (0, 0)
+    vertex: Any = None
     starts: bool = False
 
 
@@ -303,8 +303,8 @@ def _across(
         used = next(x for n, x in run.users.of(a.side) if n == beyond)
         add_by_feet(edge, faces[beyond], np.asarray(parameters_of(used, faces[beyond], np.array([a.at]))[0]))
         settle(edge, [*on, faces[beyond]])
-        between = run.users.number(a.side), run.users.number(b.side)
-        found.append(_Across(edge, (before, after), beyond, between, before is None))
+        vertex = run.vertex(0 if before is None else len(run.edges))
+        found.append(_Across(edge, (before, after), beyond, vertex, before is None))
     return found
 
 

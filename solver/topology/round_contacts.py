@@ -110,8 +110,8 @@ def _joined(graph: EdgeGraph, parts: Sequence[EdgeBase], rows: Sequence[int], ti
     except EdgeError as error:
         said = ", ".join(map(str, faces))
         raise EdgeError(
-            f"{title}: the contacts on face{'s' if len(faces) > 1 else ''} {said} do not run end to end ({error}); "
-            "take another distance"
+            f"{title}: its contact does not go on from one of the faces {said} to the next: where they meet, the edge "
+            f"between them is not square to the rounded ones; they cannot be rounded together ({error})"
         ) from None
 
 

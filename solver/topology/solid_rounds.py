@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from semispline.solver.blending import split_places
+from semispline.solver.blending import Chain, facing_rims, split_places
 from semispline.solver.io import check_outputs, write_bytes
 from semispline.solver.options import BlendOptions, named_options
+from semispline.solver.topology.edge_base import EdgeBase
 from semispline.solver.topology.edge_blends import blend_bases
 from semispline.solver.topology.end_faces import blend_onto
 from semispline.solver.topology.face_edges import check_face, row_of
@@ -80,10 +82,11 @@ def solid_with_round(
     relations = relate(graph)
     chain = sharp_chain(graph, relations, row_of(graph, edge, face, "--round"), title)
     a, b = round_contacts(measured, chain, cuts, options, title)
+    matched = _with_joints(a, b, options)
     if chain.at:
-        result, surface = blend_onto(graph, a, b, options, chain.at)
+        result, surface = blend_onto(graph, a, b, matched, chain.at)
     else:
-        result = blend_bases(a, b, options)
+        result = blend_bases(a, b, matched)
         surface = result.surface.to_bspline()
     uses = graph.uses
     order = Rounding(
@@ -108,6 +111,17 @@ def solid_with_round(
         notes=notes_of(outcome),
         content=outcome.content,
     )
+
+
+def _with_joints(a: EdgeBase, b: EdgeBase, options: BlendOptions) -> BlendOptions:
+    """Return the options with joints of one side that answer those of the other, where nothing else was asked for."""
+    if not isinstance(a.base, Chain) or not isinstance(b.base, Chain) or options.match != "affine":
+        return options
+    count = len(a.base.edges)
+    if len(b.base.edges) != count or facing_rims(a.base, b.base, options) is not None:
+        return options
+    # What ends where it begins is one pair.
+    return replace(options, match=tuple((float(k), float(k)) for k in range(count if a.base.closed else count + 1)))
 
 
 def _said(graph: EdgeGraph, chain: SharpChain, edge: str, cuts: tuple[str, str]) -> str:
