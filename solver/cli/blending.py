@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Annotated, Any, cast, get_args
 
 import typer
 
-from semispline.solver.cli.solids import WantedEdge, no_solid, write_rounded, write_solid
+from semispline.solver.cli.solids import SolidOutputs, WantedEdge, no_solid, write_rounded, write_solid
 from semispline.solver.cli.wanted_bases import WantedBases
 from semispline.solver.cli.words import (
     EDGE_HELP,
@@ -88,15 +88,18 @@ def blend_command(
         ),
     ] = "corners",
     report: Annotated[str | None, typer.Option(metavar="FILE", help="JSON with all that is known of it.")] = None,
+    plots: Annotated[
+        str | None, typer.Option(metavar="DIR", help="Draw the solid with its new faces red, into solid.png there.")
+    ] = None,
 ) -> None:
     """Join an edge of A and an edge of B by a semi-structured surface of fairest shape, or as the options say."""
-    from semispline.solver.io import check_surface_output, face_warnings
+    from semispline.solver.io import check_surface_output, face_warnings, split_spec
 
     if round_edge is not None or distance is not None:
         wanted_edge = WantedEdge(a, round_edge, distance, (b, edge_a, edge_b, replace_face, cut_a, cut_b))
         wanted_edge.check(out)
         check_outputs({"--out": out, "--report": report}, [a])
-        write_rounded(wanted_edge, out, options, report)
+        write_rounded(wanted_edge, SolidOutputs(out, report, plots), options)
         return
     wanted = WantedBases(a, b, edge_a, edge_b, replace_face, (cut_a, cut_b))
     wanted.check()
@@ -105,9 +108,15 @@ def blend_command(
     at = split_name(split)
     check_surface_output(out, 3 if with_bases else 1)
     check_outputs({"--out": out, "--report": report}, wanted.specs)
-    if not (surfaces or with_bases) and wanted.gives_solid(out):
-        write_solid(wanted, out, options, report)
+    sharp = None if surfaces or with_bases else wanted.sharp_edge()
+    if not (surfaces or with_bases) and (wanted.gives_solid(out) or (sharp and wanted.holds_solids(out))):
+        write_solid(wanted, sharp, SolidOutputs(out, report, plots), options)
         return
+    if plots is not None:
+        raise OptionError(
+            "--plots: found it without a solid, expected --replace, --round or cuts of a solid's edge; "
+            f"`semispline show {out} -o PNG` draws surfaces"
+        )
     with progress("reading"):
         ends, said = wanted.resolved()
     trims = face_warnings(*edges_of(ends), strict=options.strict)
@@ -133,8 +142,8 @@ def blend_command(
     if said:
         typer.echo(said)
     print_resolved(ends)
-    if replace_face is not None and not (surfaces or with_bases):
-        typer.echo(no_solid(a, out))
+    if (replace_face is not None or sharp is not None) and not (surfaces or with_bases):
+        typer.echo(no_solid(split_spec(a)[0], out))
     for k, result in enumerate(results):
         if len(results) > 1:
             typer.echo(f"part {k + 1} of {len(results)}, in {files[k] if len(files) > 1 else out}:")

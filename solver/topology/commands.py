@@ -6,15 +6,19 @@ import shlex
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from math import floor, log10
+from pathlib import Path
 
 from semispline.solver.errors import EdgeError
+from semispline.solver.io import OCC_SUFFIXES
 from semispline.solver.topology.between import Between
+from semispline.solver.topology.clearance import clearance
 from semispline.solver.topology.contact_words import beyond, contact_word, has_exact_bases, linked
 from semispline.solver.topology.end_faces import end_edges, going_on
-from semispline.solver.topology.half_edges import EdgeGraph
+from semispline.solver.topology.half_edges import NONE, EdgeGraph
 from semispline.solver.topology.place import Place, PlaceSide
 from semispline.solver.topology.relations import Relations
 from semispline.solver.topology.replacing import pair_of
+from semispline.solver.topology.sharp_chains import sharp_chain
 
 # A contact moves into its face by this share of the way to the next edge, where nobody says how far.
 _OF_CLEARANCE = 1 / 3
@@ -34,6 +38,11 @@ def with_commands(graph: EdgeGraph, relations: Relations, place: Place, betweens
     words = _words(graph, relations, place, betweens)
     if words is not None:
         return replace(place, commands=(_between_chains(graph.path, place, words),))
+    if place.kind == "sharp edge" and Path(graph.path).suffix.lower() in OCC_SUFFIXES:
+        command = _rounding(graph, relations, place)
+        # What cannot be a solid may be a blend all the same.
+        alone = () if command else (f"{x} --surfaces" for x in two_faces(graph.path, place))
+        return replace(place, commands=(command,) if command else tuple(alone))
     if not place.faces:
         return replace(place, commands=tuple(two_faces(graph.path, place)))
     commands = []
@@ -73,6 +82,21 @@ def _words(
     if not has_exact_bases(graph, [row for run in found for row in run]):
         return None
     return contact_word(graph, relations, found[0]), contact_word(graph, relations, found[1])
+
+
+def _rounding(graph: EdgeGraph, relations: Relations, place: Place) -> str | None:
+    """Return the command that rounds a sharp edge with all that go on in it; None where no solid can come back."""
+    face, edge = place.a.face, place.a.edge
+    row = graph.uses.of_face(face).start + int(edge[1:])
+    try:
+        chain = sharp_chain(graph, relations, row, edge)
+    except EdgeError:
+        return None
+    if any(graph.uses.other[use] == NONE for use in chain.rows):
+        return None
+    least = min(clearance(graph, *pair) for pair in zip(chain.rows, chain.others, strict=True))
+    words = ["semispline", "blend", _safe(graph.path), "--round", f"{face}:{edge}", "--distance"]
+    return shlex.join([*words, f"{_two_digits(least * _OF_CLEARANCE):g}", "-o", f"round-{face}{edge}.step"])
 
 
 def _rows(graph: EdgeGraph, side: PlaceSide) -> list[int]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
@@ -28,6 +29,7 @@ from semispline.solver.topology.measuring import MeasuredEdges, measured_edges
 from semispline.solver.topology.outlines import border, curved_edges, outline_of
 from semispline.solver.topology.relations import relate
 from semispline.solver.topology.resolving import resolve_edge
+from semispline.solver.topology.sharp_chains import shared_sharp_edge
 from semispline.solver.topology.trim_curves import TrimCurve, read_trim_curves
 
 _NAMES = ("A", "B")
@@ -101,6 +103,39 @@ def moved_uses(
         assert end.cut is not None
         found.append(_moved_in_face(end, end.cut, measured, row, loaded, curves))
     return found
+
+
+def sharp_edge_between(specs: tuple[str, str], edges: tuple[str | None, str | None]) -> tuple[str, int, str] | None:
+    """Return file, face and edge where two words for edges mean one sharp edge that two faces of a solid share.
+
+    Parameters
+    ----------
+    specs, edges
+        As `moved_edges` has them.
+
+    Returns
+    -------
+    tuple or None
+        The face and the name of the edge are those of the first word.
+
+    Raises
+    ------
+    EdgeError
+        The faces share no edge, or several.
+    FileError, ComputationError
+        As `read_edges`.
+    """
+    (path, face), (other_path, other) = (split_spec(spec) for spec in specs)
+    said = [None if word is None else word.strip() for word in edges]
+    if path != other_path or any(word is not None and not re.fullmatch(r"e\d+", word) for word in said):
+        return None
+    read = cache(measured_edges)
+    one, two = _shared_edge(read, specs) if said == [None, None] else said
+    if one is None or two is None or face is None or other is None:
+        return None
+    graph = read(path).graph
+    a, b = row_of(graph, one, face, "--edge-a"), row_of(graph, two, other, "--edge-b")
+    return (path, face, one) if shared_sharp_edge(graph, relate(graph), a, b) else None
 
 
 @dataclass(frozen=True, eq=False)
