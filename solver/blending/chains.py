@@ -88,9 +88,10 @@ class Chain:
         joined = joined_pieces(pieces, closed=self.closed, tolerance=self.tolerance, ends_on=self.ends_on)
         if lengths is not None:
             joined = _with_lengths(joined, lengths)
-        return self._strip(
-            joined, *(_as_conic(pieces, joined, closed=self.closed, tolerance=self.tolerance) or _assembled(joined))
-        )
+        conic = None
+        if not _is_steered(joined):
+            conic = _as_conic(pieces, joined, closed=self.closed, tolerance=self.tolerance)
+        return self._strip(joined, *(conic or _assembled(joined)))
 
     def rim_pieces(self, order: int) -> JoinedPieces:
         """Return the pieces with nothing but their values made to agree; errors as `strip`."""
@@ -261,6 +262,12 @@ def _with_lengths(joined: JoinedPieces, lengths: Sequence[float]) -> JoinedPiece
         return joined
     factors = np.asarray(lengths) / np.bincount(runs, weights=joined.spans)
     return replace(joined, spans=joined.spans * factors[runs])
+
+
+def _is_steered(joined: JoinedPieces) -> bool:
+    """Tell whether the lines across an end lean along the contact, so that they lie on an end face."""
+    ends = (joined.coefficients[0].values[0], joined.coefficients[-1].values[1])
+    return any(float(np.abs(values[2, 1:]).max(initial=0.0)) > _NO_KNOT for values in ends)
 
 
 def _as_conic(

@@ -41,8 +41,8 @@ def with_commands(graph: EdgeGraph, relations: Relations, place: Place, betweens
     if place.kind == "sharp edge" and Path(graph.path).suffix.lower() in OCC_SUFFIXES:
         command = _rounding(graph, relations, place)
         # What cannot be a solid may be a blend all the same.
-        alone = () if command else (f"{x} --surfaces" for x in two_faces(graph.path, place))
-        return replace(place, commands=(command,) if command else tuple(alone))
+        surfaces = () if command else tuple(f"{x} --surfaces" for x in two_faces(graph.path, place))
+        return replace(place, commands=(command,) if command else surfaces)
     if not place.faces:
         return replace(place, commands=tuple(two_faces(graph.path, place)))
     commands = []

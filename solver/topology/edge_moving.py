@@ -76,9 +76,7 @@ def moved_edges(
     return [replace(one, loaded=loaded) for one, loaded in zip(found, same, strict=True)]
 
 
-def moved_uses(
-    measured: MeasuredEdges, rows: Sequence[int], cuts: Sequence[str], names: Sequence[str]
-) -> list[ResolvedEdge]:
+def moved_uses(measured: MeasuredEdges, rows: Sequence[int], cuts: Sequence[str]) -> list[ResolvedEdge]:
     """Return uses of edges by faces of one file, each moved into its face; errors as `moved_edges`.
 
     Parameters
@@ -87,21 +85,29 @@ def moved_uses(
     rows : sequence of int
     cuts : sequence of str
         As `moved_edges` has them.
-    names : sequence of str
-        Of each "A" or "B".
+
+    Raises
+    ------
+    EdgeError
+        Of all faces that do not reach so far, how far they do.
     """
     uses, path = measured.graph.uses, measured.graph.path
     ends = [
         _Wanted(
-            name, f"{path}#{uses.face[row]}", uses.name(row), parse_cut(cut, f"--cut-{name.lower()}"), measured, row
+            "A", f"{path}#{uses.face[row]}", uses.name(row), parse_cut(cut), measured, row, f"face {uses.face[row]}"
         )
-        for row, cut, name in zip(rows, cuts, names, strict=True)
+        for row, cut in zip(rows, cuts, strict=True)
     ]
     surfaces, curves = _surfaces([end.spec for end in ends]), _curves(ends)
-    found = []
+    found, refused = [], []
     for end, loaded, row in zip(ends, surfaces, rows, strict=True):
         assert end.cut is not None
-        found.append(_moved_in_face(end, end.cut, measured, row, loaded, curves))
+        try:
+            found.append(_moved_in_face(end, end.cut, measured, row, loaded, curves))
+        except EdgeError as error:
+            refused.append(str(error))
+    if refused:
+        raise EdgeError("; ".join(dict.fromkeys(refused)))
     return found
 
 
@@ -148,6 +154,7 @@ class _Wanted:
     cut: Cut | None
     measured: MeasuredEdges | None = None
     row: int | None = None
+    called: str | None = None
 
     @property
     def option(self) -> str:
@@ -156,6 +163,8 @@ class _Wanted:
     @property
     def title(self) -> str:
         """How messages of its cut begin."""
+        if self.called is not None:
+            return self.called
         cut = self.cut
         assert cut is not None
         value = f"{cut.distance:g}" if cut.distance is not None else f"{cut.direction}={cut.parameter:g}"

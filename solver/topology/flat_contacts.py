@@ -208,7 +208,7 @@ def _arc_of(circle: _Circle, start: float, end: float) -> BSplineCurve:
     """Return an arc of the circle as rational quadratic spans."""
     count = max(1, int(np.ceil((end - start) / _SPAN - _STRAIGHT)))
     half = (end - start) / (2 * count)
-    angles = start + half * np.arange(2 * count + 1)
+    angles: FloatArray = start + half * np.arange(2 * count + 1, dtype=np.float64)
     weights = np.where(np.arange(2 * count + 1) % 2 == 0, 1.0, np.cos(half))
     points = circle.centre + (circle.at(circle.radius, angles) - circle.centre) / weights[:, None]
     knots = np.concatenate([[0.0], np.repeat(np.linspace(0.0, 1.0, count + 1), 2), [1.0]])
@@ -243,18 +243,13 @@ def _crossing(
 ) -> FloatArray | None:
     """Return where a next edge is at the distance, first seen from the end near a point; `beyond` is 0 there."""
     flipped = bool(np.linalg.norm(line[-1] - near) < np.linalg.norm(line[0] - near))
-    places = None if curve is None else np.linspace(curve.knots[0], curve.knots[-1], _PLACES + 1)
-    if places is None:
-        # A line, but not of a constant distance from an arc.
-        ends, share = line[[0, -1]], np.linspace(0.0, 1.0, _PLACES + 1)
-        places = share
+    start, end = line[0], line[-1]
+    places = np.linspace(0.0, 1.0, _PLACES + 1)
+    if curve is not None:
+        places = np.linspace(float(curve.knots[0]), float(curve.knots[-1]), _PLACES + 1)
 
-        def at(t: FloatArray) -> FloatArray:
-            return np.asarray(ends[0] + np.asarray(t)[:, None] * (ends[1] - ends[0]))
-    else:
-
-        def at(t: FloatArray) -> FloatArray:
-            return curve.evaluate(np.asarray(t))
+    def at(t: FloatArray) -> FloatArray:
+        return np.asarray(start + t[:, None] * (end - start)) if curve is None else curve.evaluate(t)
 
     places = places[::-1] if flipped else places
     off = beyond(at(places))

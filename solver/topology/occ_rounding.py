@@ -377,4 +377,5 @@ def _change(
         volume=length * (across[0] + across[1]) * min(across[2], length),
         contacts=tuple(dict.fromkeys(n for x in run.edges for n in x.faces)),
         grows=grows,
+        like=tuple(next(x.face for x in borders[0] if x.patch == m) for m in range(len(places))),
     )

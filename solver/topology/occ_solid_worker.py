@@ -57,8 +57,11 @@ def _changed(file: PartFile, wanted: Replacement | Rounding, suffix: str) -> Out
     if not report.is_sound:
         return Outcome(report, None, None, touched, change.new, part.times)
     before = part.shape
-    whole = file.with_part(part, after, lambda piece: became(image(piece)))
-    own, all_faces = parts(after, "FACE"), parts(whole.root, "FACE")
+    own, olds = parts(after, "FACE"), parts(before, "FACE")
+    # A face in the place of another has its label; beside an edge that of the faces on the first side.
+    like = [(own[k], olds[n]) for k, n in zip(change.new, change.like, strict=False)]
+    whole = file.with_part(part, after, lambda piece: became(image(piece)), like)
+    all_faces = parts(whole.root, "FACE")
     new = tuple(next(n for n, face in enumerate(all_faces) if face.IsPartner(own[k])) for k in change.new)
     content = whole.content(suffix)
     again = _read_back(content, suffix, new[0], before, change, millimetres)

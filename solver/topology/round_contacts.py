@@ -55,7 +55,10 @@ def round_contacts(
         raise EdgeError(f"{title}: found a parameter as a cut along {count} edges, expected distances")
     words, names = [cuts[0]] * count + [cuts[1]] * count, ["A"] * count + ["B"] * count
     # It also says how far the faces reach.
-    moved = moved_uses(measured, rows, words, names)
+    try:
+        moved = moved_uses(measured, rows, words)
+    except EdgeError as error:
+        raise EdgeError(f"{title}: {error}") from None
     curves = _curves(graph, rows)
     bases = [
         _base(graph, chain, row, end, word, curves, options.continuities["AB".index(name)], title)

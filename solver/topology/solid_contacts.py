@@ -79,7 +79,8 @@ def contacts_in_solid(path: str | Path, faces: Sequence[int], orders: tuple[int,
     loaded = dict(zip(each, read_surfaces([f"{path}#{n}" for n in each]), strict=True))
     asked = [(int(uses.face[row]), int(uses.number[row])) for row in others]
     curves = read_trim_curves(path, asked) if asked else []
-    order, found = max(2, *orders), []
+    order = max(2, *orders)
+    found: list[SolidContact] = []
     for row, face, curve in zip(rows, own, curves, strict=True):
         name = uses.name(row)
         end = resolved_use(measured, row, f"{path}#{face}", replace(loaded[face], boundary=None), name, name)

@@ -54,6 +54,8 @@ class Change:
         Faces beyond the contacts, by their numbers before.
     grows : bool or None
         Whether the volume has to become more, or less; None where either is right.
+    like : tuple of int
+        Of faces that are put in beside others, by whose colours, by their numbers before.
     """
 
     old: tuple[int, ...]
@@ -62,6 +64,7 @@ class Change:
     volume: float
     contacts: tuple[int, ...]
     grows: bool | None = None
+    like: tuple[int, ...] = ()
 
 
 @dataclass(frozen=True)
