@@ -41,8 +41,7 @@ def with_commands(graph: EdgeGraph, relations: Relations, place: Place, betweens
     if place.kind == "sharp edge" and Path(graph.path).suffix.lower() in OCC_SUFFIXES:
         command = _rounding(graph, relations, place)
         # What cannot be a solid may be a blend all the same.
-        surfaces = () if command else tuple(f"{x} --surfaces" for x in two_faces(graph.path, place))
-        return replace(place, commands=(command,) if command else surfaces)
+        return replace(place, commands=(command,) if command else tuple(two_faces(graph.path, place, alone=True)))
     if not place.faces:
         return replace(place, commands=tuple(two_faces(graph.path, place)))
     commands = []
@@ -141,8 +140,11 @@ def _edges_to_name(graph: EdgeGraph, relations: Relations, between: Between) -> 
     return graph.uses.name(rows[0]), graph.uses.name(rows[1])
 
 
-def two_faces(path: str, place: Place) -> Iterator[str]:
-    """Yield the command of two edges; of a gap with as many on both sides, of each edge and the one that faces it."""
+def two_faces(path: str, place: Place, *, alone: bool = False) -> Iterator[str]:
+    """Yield the command of two edges; of a gap with as many on both sides, of each edge and the one that faces it.
+
+    `alone` asks for the blend as a surface, instead of the solid with it.
+    """
     sides = [[(side.face, side.edge), *side.more] for side in (place.a, place.b)]
     cuts: list[str] = []
     if place.kind == "sharp edge":
@@ -150,7 +152,7 @@ def two_faces(path: str, place: Place) -> Iterator[str]:
         cuts = ["--cut-a", distance, "--cut-b", distance]
     for a, b in zip(*sides, strict=True) if len(sides[0]) == len(sides[1]) else [(sides[0][0], sides[1][0])]:
         words = ["semispline", "blend", *(f"{_safe(path)}#{face}" for face, _ in (a, b))]
-        words += ["--edge-a", a[1], "--edge-b", b[1], *cuts]
+        words += ["--edge-a", a[1], "--edge-b", b[1], *cuts, *["--surfaces"] * alone]
         # Two faces may have several edges in common.
         out = "-".join([place.kind.partition(" ")[0], *(f"{face}{edge}" for face, edge in (a, b))])
         yield shlex.join([*words, "-o", f"{out}.step"])

@@ -15,6 +15,7 @@ from semispline.solver.topology.occ_new_edges import line_on
 from semispline.solver.topology.occ_shapes import (
     CONFUSION,
     EdgeUsers,
+    cast,
     children,
     ends,
     forward,
@@ -136,6 +137,8 @@ def with_faces(
     shell = next(
         (x for x in parts(shape, "SHELL") if any(face.IsSame(faces[beside]) for face in parts(x, "FACE"))), None
     )
+    if shell is None and any(face.IsSame(faces[beside]) for face in children(shape)):
+        return _with_loose_faces(shape, faces, made, new)
     if shell is None or not shell.Location().IsIdentity():
         raise EdgeError(
             "the face is in no shell of its own place; write the part as a solid, not placed, and try again"
@@ -152,6 +155,22 @@ def with_faces(
     found.Closed(shell.Closed())
     reshape.Replace(forward(shell), found)
     return reshape.Apply(shape), reshape.Value
+
+
+def _with_loose_faces(
+    shape: Any, faces: Sequence[Any], made: Mapping[int, Any], new: Sequence[Any]
+) -> tuple[Any, Callable[[Any], Any]]:
+    """Return a compound of faces that are in no shell, with some rebuilt and new ones behind them."""
+    from OCP.BRep import BRep_Builder
+    from OCP.BRepTools import BRepTools_ReShape
+
+    reshape = BRepTools_ReShape()
+    for n, face in made.items():
+        reshape.Replace(forward(faces[n]), forward(face))
+    found, builder = cast(reshape.Apply(shape).EmptyCopied()), BRep_Builder()
+    for one in (*children(reshape.Apply(shape)), *new):
+        builder.Add(found, one)
+    return found, reshape.Value
 
 
 def evenly(line: FloatArray, count: int = 65) -> FloatArray:
