@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Annotated, Any, cast, get_args
 
 import typer
 
-from semispline.solver.cli.solids import SolidOutputs, WantedEdge, no_solid, write_rounded, write_solid
+from semispline.solver.cli.solids import SolidOutputs, WantedEdge, no_solid, write_added, write_rounded, write_solid
 from semispline.solver.cli.wanted_bases import WantedBases
 from semispline.solver.cli.words import (
     EDGE_HELP,
@@ -131,19 +131,24 @@ def blend_command(
     results[0] = replace(results[0], warnings=(*trims, *results[0].warnings))
     record = reports_record(results) | {"a": ends[0].spec, "b": ends[1].spec} | asked(ends) | wanted.record
     whole = Path(out).suffix.lower() == ".json"
+    # Of a 3dm file no solid comes back: what would be in it is added to a copy.
+    added = wanted.is_added(out) and not surfaces
     of_parts = [
         [
             *((result.surface,) if whole else faces_of_blend(result, at)),
-            *(base.surface for side in pair if with_bases for base in side.bases),
+            *(base.surface for side in pair if with_bases or added for base in side.bases),
         ]
         for result, pair in zip(results, pairs, strict=True)
     ]
-    _write(files, of_parts, ends[0].loaded.unit, report, record)
+    if added:
+        write_added(ends[0].spec, out, [x for part in of_parts for x in part], report, record)
+    else:
+        _write(files, of_parts, ends[0].loaded.unit, report, record)
     if said:
         typer.echo(said)
     print_resolved(ends)
-    if (replace_face is not None or sharp is not None) and not (surfaces or with_bases):
-        typer.echo(no_solid(split_spec(a)[0], out))
+    if (replace_face is not None or sharp is not None or added) and not (surfaces or with_bases):
+        typer.echo(no_solid(split_spec(a)[0], out, added=added))
     for k, result in enumerate(results):
         if len(results) > 1:
             typer.echo(f"part {k + 1} of {len(results)}, in {files[k] if len(files) > 1 else out}:")

@@ -6,13 +6,13 @@ Heavy imports wait inside the functions, so that `--help` answers fast.
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass
 from math import isfinite
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import typer
 
@@ -24,6 +24,7 @@ from semispline.solver.reports import print_result, print_table, reports_record
 
 if TYPE_CHECKING:
     from semispline.solver.cli.wanted_bases import WantedBases
+    from semispline.solver.splines import Surface
     from semispline.solver.topology import SolidBlend, SolidContact
 
 
@@ -151,13 +152,32 @@ def _write(found: SolidBlend, outputs: SolidOutputs) -> None:
     print_result(found.blend)
 
 
-def no_solid(path: str, out: str) -> str:
-    """Say why a face was replaced and no solid came back."""
+def write_added(
+    spec: str, out: str, surfaces: Sequence[Surface], report: str | None, record: Mapping[str, Any]
+) -> None:
+    """Write a 3dm file with surfaces added to it on the layer of a face, and the report: both or none."""
+    from semispline.solver.io import atomic_path, split_spec, to_text, with_surfaces
+    from semispline.solver.splines import SemiStructuredSurface
+
+    path, number = split_spec(spec)
+    splines = [x.to_bspline() if isinstance(x, SemiStructuredSurface) else x for x in surfaces]
+    content = with_surfaces(path, number or 0, splines)
+    with ExitStack() as stack:
+        if report is not None:
+            stack.enter_context(atomic_path(report)).write_text(to_text(record))
+        stack.enter_context(atomic_path(out)).write_bytes(content)
+
+
+def no_solid(path: str, out: str, *, added: bool = False) -> str:
+    """Say why a face was replaced, or an edge cut, and no solid came back."""
     from semispline.solver.topology import can_hold_a_solid
 
     which = out if can_hold_a_solid(path) else path
     where = f"{'in' if which == out else 'from'} {Path(which).suffix.lower() or which}"
-    return f"no solid can come back {where}: the blend is written as a surface; STEP and BREP hold solids"
+    what = "the blend is written as a surface"
+    if added:
+        what = "the blend and its bases are added to the file as surfaces, on the layer of A"
+    return f"no solid can come back {where}: {what}; STEP and BREP hold solids"
 
 
 def _print(found: SolidBlend) -> None:

@@ -41,6 +41,17 @@ class WantedBases:
         """Tell whether a solid comes back: one can be read and written, and a face of it is replaced."""
         return self.replaced is not None and self.holds_solids(out)
 
+    def is_added(self, out: str) -> bool:
+        """Tell whether a 3dm file comes back with a fillet or an edge of it blended: it holds no new solid."""
+        from pathlib import Path
+
+        from semispline.solver.io import split_spec
+
+        files = [split_spec(spec)[0] for spec in self.specs]
+        if any(Path(x).suffix.lower() != ".3dm" for x in (*files, out)) or len(set(files)) > 1:
+            return False
+        return self.replaced is not None or None not in self.cuts
+
     def holds_solids(self, out: str) -> bool:
         """Tell whether a solid can be read and written."""
         from semispline.solver.io import split_spec

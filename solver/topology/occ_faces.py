@@ -15,7 +15,6 @@ from semispline.solver.topology.occ_new_edges import line_on
 from semispline.solver.topology.occ_shapes import (
     CONFUSION,
     EdgeUsers,
-    cast,
     children,
     ends,
     forward,
@@ -137,7 +136,7 @@ def with_faces(
     shell = next(
         (x for x in parts(shape, "SHELL") if any(face.IsSame(faces[beside]) for face in parts(x, "FACE"))), None
     )
-    if shell is None and any(face.IsSame(faces[beside]) for face in children(shape)):
+    if shell is None and len(children(shape)) == len(faces):
         return _with_loose_faces(shape, faces, made, new)
     if shell is None or not shell.Location().IsIdentity():
         raise EdgeError(
@@ -160,14 +159,16 @@ def with_faces(
 def _with_loose_faces(
     shape: Any, faces: Sequence[Any], made: Mapping[int, Any], new: Sequence[Any]
 ) -> tuple[Any, Callable[[Any], Any]]:
-    """Return a compound of faces that are in no shell, with some rebuilt and new ones behind them."""
+    """Return faces that are in no shell as one, some rebuilt, new ones behind them: files keep shared edges so."""
     from OCP.BRep import BRep_Builder
     from OCP.BRepTools import BRepTools_ReShape
+    from OCP.TopoDS import TopoDS_Shell
 
     reshape = BRepTools_ReShape()
     for n, face in made.items():
         reshape.Replace(forward(faces[n]), forward(face))
-    found, builder = cast(reshape.Apply(shape).EmptyCopied()), BRep_Builder()
+    found, builder = TopoDS_Shell(), BRep_Builder()
+    builder.MakeShell(found)
     for one in (*children(reshape.Apply(shape)), *new):
         builder.Add(found, one)
     return found, reshape.Value

@@ -64,18 +64,20 @@ def _changed(file: PartFile, wanted: Replacement | Rounding, suffix: str) -> Out
     all_faces = parts(whole.root, "FACE")
     new = tuple(next(n for n, face in enumerate(all_faces) if face.IsPartner(own[k])) for k in change.new)
     content = whole.content(suffix)
-    again = _read_back(content, suffix, new[0], before, change, millimetres)
+    again = _read_back(content, suffix, None if part.label is None else new[0], before, change, millimetres)
     return Outcome(report, again, content if again.is_sound else None, touched, new, part.times)
 
 
 def _read_back(
-    content: bytes, suffix: str, face: int, before: Any, change: Change, millimetres: float | None
+    content: bytes, suffix: str, face: int | None, before: Any, change: Change, millimetres: float | None
 ) -> GateReport:
+    """Gate what was written once more: the part that a face belongs to, or all of it."""
     with TemporaryDirectory() as folder:
         path = Path(folder, f"written{suffix}")
         path.write_bytes(content)
-        part = open_parts(path).part_of(face)
-        return gate(before, part.shape, change, millimetres=millimetres, read_back=True)
+        file = open_parts(path)
+        shape = file.root if face is None else file.part_of(face).shape
+        return gate(before, shape, change, millimetres=millimetres, read_back=True)
 
 
 def _moved(surface: BSplineSurface, trsf: Any) -> BSplineSurface:

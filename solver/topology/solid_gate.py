@@ -137,7 +137,7 @@ def gate(
     """
     report = GateReport(None)
     try:
-        report = _counts(before, after, change, report, read_back=read_back)
+        report = _counts(before, after, change, report)
         both = _Both(before, after, change, EdgeTable.of(before), EdgeTable.of(after), extent(before))
         for part in (_uses, _validity, _volumes):
             report = part(both, report)
@@ -183,14 +183,14 @@ class _Both:
         return dict(zip((n for n in range(len(self.faces[0])) if n not in self.change.old), rest, strict=True))
 
 
-def _counts(before: Any, after: Any, change: Change, report: GateReport, *, read_back: bool) -> GateReport:
+def _counts(before: Any, after: Any, change: Change, report: GateReport) -> GateReport:
     kinds = {"SOLID": "solids", "SHELL": "shells", "FACE": "faces"}
     counts = {name: (len(parts(before, kind)), len(parts(after, kind))) for kind, name in kinds.items()}
     report = replace(report, **counts)  # type: ignore[arg-type]
     more = len(change.new) - len(change.old)
     for name, (had, has) in counts.items():
-        if read_back and name == "shells" and not had:
-            # Writers put loose faces into shells.
+        if name == "shells" and not had:
+            # Loose faces become one.
             continue
         expected = had + (more if name == "faces" else 0)
         if has != expected:
@@ -207,7 +207,7 @@ def _uses(both: _Both, report: GateReport) -> GateReport:
             count = len(news.uses[k])
             said = "would stay open" if count == 1 else f"is used {count} times, not twice, one against the other"
             raise _NotSoundError(f"the edge {news.names[k]} {said}", _triple(news.middles[k]))
-    # Of loose faces that were read back there are none before.
+    # Of loose faces there are none before.
     shells = zip(parts(both.before, "SHELL"), parts(both.after, "SHELL"), strict=False)
     if any(before.Closed() and not after.Closed() for before, after in shells):
         # The flag alone says little, but who reads it takes the shell for open.

@@ -5,6 +5,7 @@ import shlex
 
 import numpy as np
 import pytest
+import rhino3dm
 from typer.testing import CliRunner
 
 from helpers.parts import rounded_box, written
@@ -136,3 +137,43 @@ def test_pairs_name_a_chain_by_any_of_its_edges_and_what_cannot_be_a_solid_as_su
     for words in commands_of("rounded.brep"):
         if "--cut-a" in words:
             assert "--surfaces" in words
+
+
+def box_in_3dm(path):
+    """A box on a layer of its own, behind a sphere on another."""
+    file = rhino3dm.File3dm()
+    file.Settings.ModelUnitSystem = rhino3dm.UnitSystem.Inches
+    for name in ("other", "body"):
+        layer = rhino3dm.Layer()
+        layer.Name = name
+        file.Layers.Add(layer)
+    shapes = (
+        rhino3dm.Sphere(rhino3dm.Point3d(50, 0, 0), 2.0).ToBrep(),
+        rhino3dm.Brep.CreateFromBox(rhino3dm.Box(rhino3dm.BoundingBox(0, 0, 0, 20, 30, 40))),
+    )
+    for k, shape in enumerate(shapes):
+        attributes = rhino3dm.ObjectAttributes()
+        attributes.LayerIndex = k
+        file.Objects.AddBrep(shape, attributes)
+    file.Write(str(path), 0)
+
+
+def test_a_3dm_file_comes_back_with_the_blend_and_its_bases_on_the_layer_of_a(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    box_in_3dm("part.3dm")
+    words = next(words for words in commands_of("part.3dm") if "--cut-a" in words)
+    done = run(*words[:-1], "out.3dm")
+    assert done.exit_code == 0, done.output
+    assert "no solid can come back from .3dm: the blend and its bases are added to the file" in done.output
+    before, after = (rhino3dm.File3dm.Read(name) for name in ("part.3dm", "out.3dm"))
+    assert after.Settings.ModelUnitSystem == before.Settings.ModelUnitSystem
+    assert [x.Name for x in after.Layers] == [x.Name for x in before.Layers]
+    ids = [[str(item.Attributes.Id) for item in file.Objects] for file in (before, after)]
+    assert set(ids[0]) <= set(ids[1])
+    assert len(ids[1]) == len(ids[0]) + 3
+    new = [item for item in after.Objects if str(item.Attributes.Id) not in ids[0]]
+    assert [after.Layers[item.Attributes.LayerIndex].Name for item in new] == ["body"] * 3
+    # The input is as it was, and the blend alone is written as before.
+    alone = run(*words[:-2], "--surfaces", "-o", "alone.3dm")
+    assert alone.exit_code == 0, alone.output
+    assert len(rhino3dm.File3dm.Read("alone.3dm").Objects) == 1
