@@ -25,6 +25,9 @@ from semispline.solver.topology.sharp_chains import SharpChain
 from semispline.solver.topology.solid_blends import close_bases
 from semispline.solver.topology.trim_curves import TrimCurve, read_trim_curves
 
+# Of the size: so far an edge leads into a face that leads nowhere in it.
+_NOTHING = 1e-9
+
 
 def round_contacts(
     measured: MeasuredEdges, chain: SharpChain, cuts: tuple[str, str], options: BlendOptions, title: str
@@ -85,10 +88,15 @@ def _base(
         if base is not None:
             return EdgeBase(name, base)
         if is_straight_flat(graph, row):
-            largest = largest_distance(graph, row, curves)
+            largest, own = largest_distance(graph, row, curves), graph.uses.face[row]
+            if largest <= _NOTHING * graph.size:
+                raise EdgeError(
+                    f"{title}: on face {own} the contact does not meet the next edge: the face beyond its end would "
+                    "have to grow"
+                )
             if largest < distance:
                 raise EdgeError(
-                    f"{title}: a contact {distance:g} inside face {graph.uses.face[row]} misses the next edge, "
+                    f"{title}: a contact {distance:g} inside face {own} misses the next edge, "
                     f"expected a distance below {largest:.4g}"
                 )
     (side,) = close_bases([moved], [continuity])
