@@ -9,12 +9,14 @@ import numpy as np
 
 from semispline.solver.arrays import FloatArray
 from semispline.solver.errors import EdgeError
-from semispline.solver.topology.contact_walk import passage_between, smooth_run
+from semispline.solver.topology.contact_walk import Passage, passage_between, smooth_run
 from semispline.solver.topology.half_edges import NONE, EdgeGraph
 from semispline.solver.topology.relations import Relations
 
 # Of the size: nearer ends are one point.
 _SAME_POINT = 1e-6
+# Degrees: where an edge that meets the run slants by more, contacts at a distance do not meet on it.
+_SLANT = 1e-3
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,6 +78,8 @@ def sharp_chain(graph: EdgeGraph, relations: Relations, row: int, title: str) ->
             names = _named(graph, (run.uses[before], run.uses[after]))
             why = "more edges meet there" if passage is None else "the faces beyond them meet in a crease"
             raise EdgeError(f"{title}: edges {names} go on in each other, but {why}; they cannot be rounded together")
+        for way in (passage, passage_between(graph, relations, run.uses[before], run.uses[after])):
+            _check_square(graph, way, title)
     if not closed:
         # What goes on elsewhere, as where the faces beyond are creased, has to be an end with three edges.
         at = (
@@ -126,6 +130,25 @@ def _end(
             "trimmed"
         )
     return point, int(relations.partner[mine])
+
+
+def _check_square(graph: EdgeGraph, passage: Passage | None, title: str) -> None:
+    """Refuse a joint of which the edge between two faces leaves the rounded ones at a slant, but between planes."""
+    if passage is None or passage.side is None:
+        return
+    uses, side = graph.uses, passage.side[0]
+    faces = [int(uses.face[use]) for use in (passage.before, passage.after)]
+    if all(graph.faces.kind[face] == "plane" for face in faces):
+        return
+    along = uses.tangent[passage.before, 0 if uses.reversed[passage.before] else -1]
+    away = uses.tangent[side, -1 if uses.reversed[side] else 0]
+    slant = float(np.degrees(np.arcsin(min(1.0, abs(along @ away)))))
+    if slant > _SLANT:
+        raise EdgeError(
+            f"{title}: the edge between faces {faces[0]} and {faces[1]} slants by {slant:.2g} degrees where they meet "
+            f"the rounded edges {_named(graph, (passage.before, passage.after))}, expected one that is square to them; "
+            "they cannot be rounded together"
+        )
 
 
 def _is_point(graph: EdgeGraph, one: FloatArray, other: FloatArray) -> bool:

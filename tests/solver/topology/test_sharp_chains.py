@@ -194,7 +194,7 @@ def test_edges_that_meet_at_a_corner_are_no_chain():
 
 def test_joints_with_slanted_edges_are_refused(tmp_path):
     shape = cut(box_with_four(4.0), half_space([10, 15, 32], [0.3, 0.2, 1]))
-    with pytest.raises(EdgeError, match="is not square to the rounded ones; they cannot be rounded together"):
+    with pytest.raises(EdgeError, match=r"slants by .* degrees .* cannot be rounded together"):
         rounded_there(shape, lambda points: points[:, 2].min() > 10, 1.0, tmp_path)
     assert not (tmp_path / "out.step").exists()
 
@@ -225,3 +225,26 @@ def test_an_arc_is_moved_as_far_as_its_radius(tmp_path):
     shape = box_with_four(4.0)
     with pytest.raises(EdgeError, match=r"below 4$|below 4;"):
         rounded_there(shape, at_top, 4.5, tmp_path)
+
+
+def test_an_arc_fillet_is_told_from_a_smooth_one(tmp_path):
+    """What is measured in the solid: a round fillet meets flat faces at no angle, and its whole curvature jumps."""
+    shape = box_with_fillet(5.0)
+    written(shape, tmp_path / "part.brep")
+    number = graph_of(shape).faces.kind.index("cylinder")
+    contacts = contacts_in_solid(tmp_path / "part.brep", [number])
+    assert len(contacts) == 2
+    for x in contacts:
+        assert x.contact.angle_degrees <= 1e-6
+        # Of a plane curvatures are compared with 1e-3 of its size: 1 / 5 with 1e-3 / 40.
+        assert x.contact.curvature_jump_relative == pytest.approx(8000)
+        assert x.contact.gap <= 1e-9
+
+
+@pytest.mark.parametrize("make", [lambda: cylinder(8, 20), lambda: cut(box(40, 40, 10), cylinder(8, 10, (20, 20, 0)))])
+def test_contacts_along_circles_of_flat_faces_are_no_bands(make, tmp_path):
+    found = rounded_there(make(), lambda points: np.linalg.norm(points[0] - points[-1]) < 1e-6, 2.0, tmp_path)
+    assert found.blend.band_a is None
+    assert found.blend.band_b is None
+    # Rounding of points of size 40 alone.
+    assert max(edge.gap for edge in found.gate.border) <= 1e-12
