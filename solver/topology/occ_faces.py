@@ -42,7 +42,8 @@ def closed_face(face: Any, uses: Sequence[tuple[Any, bool]], *, inwards: bool) -
 
     builder, wire = BRep_Builder(), TopoDS_Wire()
     builder.MakeWire(wire)
-    for edge, backwards in uses:
+    # Edges stand in the order in which the face's own normal has them walked.
+    for edge, backwards in reversed(uses) if inwards else uses:
         builder.Add(wire, turned(edge, backwards=backwards != inwards))
     wire.Closed(True)
     builder.Add(face, wire)

@@ -51,12 +51,15 @@ class _Piece:
         Number of the old edge in whose place it comes.
     patch : int
         Which of the new faces.
+    is_first : bool
+        It begins where an edge meets the run.
     """
 
     edge: Any
     face: int
     old: int
     patch: int
+    is_first: bool
 
 
 @dataclass(frozen=True, eq=False)
@@ -204,7 +207,7 @@ def _border(
         add_pcurve(edge, line_on(edge, (u, limits[0]), (u, limits[1])), patch.face)
         number = old.faces[side]
         add_by_feet(edge, faces[number], _start_on(run, side, station, start, faces[number]))
-        found.append(_Piece(edge, number, old.number, m))
+        found.append(_Piece(edge, number, old.number, m, start.station is not None))
     return found
 
 
@@ -351,10 +354,9 @@ def _in_place(run: Run, borders: Sequence[Sequence[_Piece]], face: int) -> Mappi
 
 def _in_order(border: Sequence[_Piece], old: int) -> Iterator[_Piece]:
     """Yield the new edges in the place of an old one, as the run walks them: also over w = 0 of a closed run."""
-    olds = [x.old for x in border]
-    own = [k for k, x in enumerate(olds) if x == old]
-    gap = next((j for j in range(1, len(own)) if own[j] != own[j - 1] + 1), 0)
-    yield from (border[k] for k in (*own[gap:], *own[:gap]))
+    own = [x for x in border if x.old == old]
+    first = next((k for k, x in enumerate(own) if x.is_first), 0)
+    yield from (*own[first:], *own[:first])
 
 
 def _change(

@@ -1,4 +1,4 @@
-"""Arcs of several spans as the contact of a blend: their ends lie on end faces, or they stay the circle that they are."""
+"""Arcs of several spans as the contact of a blend: their ends lie on end faces, or they stay circles."""
 
 from dataclasses import replace
 

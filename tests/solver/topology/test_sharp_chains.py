@@ -21,7 +21,7 @@ from helpers.solids import (
 )
 from semispline import EdgeError, SolidError, round_edge
 from semispline.solver.topology.occ_parts import open_parts
-from semispline.solver.topology.occ_shapes import parts
+from semispline.solver.topology.occ_shapes import children, ends, forward, parts
 from semispline.solver.topology.relations import relate
 from semispline.solver.topology.sharp_chains import sharp_chain
 from semispline.solver.topology.solid_contacts import contacts_in_solid
@@ -149,6 +149,32 @@ def test_an_oblique_rim_is_rounded_too(tmp_path):
     shape = cut(cylinder(8, 30), half_space([0, 0, 20], [0.3, 0.2, 1]))
     found = rounded_there(shape, lambda points: points[:, 2].max() > 5, 1.0, tmp_path)
     check(found, tmp_path, 4)
+
+
+def wires_in_order(faces):
+    """Tell whether in all wires each edge begins where the one before it ends."""
+    walks = [children(forward(wire)) for face in faces for wire in parts(face, "WIRE")]
+    return all(
+        ends(one)[1].IsSame(ends(other)[0])
+        for walk in walks
+        for one, other in zip(walk, [*walk[1:], walk[0]], strict=True)
+    )
+
+
+@pytest.mark.parametrize(
+    ("make", "wanted"),
+    [
+        (lambda: cut(cylinder(8, 30), half_space([0, 0, 20], [0.3, 0.2, 1])), lambda p: p[:, 2].max() > 5),
+        (lambda: box_with_fillet(4.0), at_top),
+        (lambda: box_with_four(4.0), at_top),
+    ],
+)
+def test_wires_are_walked_in_their_order(make, wanted, tmp_path):
+    shape = make()
+    face, edge = edges_at(shape, wanted)[0]
+    found = round_edge(written(shape, tmp_path / "part.brep"), face, edge, 1.0, tmp_path / "out.brep", **FIXED)
+    faces = parts(open_parts(tmp_path / "out.brep").root, "FACE")
+    assert wires_in_order([faces[n] for n in (*found.touched, *found.faces)])
 
 
 def test_an_edge_with_both_ends_on_one_face(tmp_path):
