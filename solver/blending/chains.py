@@ -264,13 +264,6 @@ def chain(edges: Sequence[Base], *, tolerance: float | None = None, names: Seque
     return Chain(bases, tuple(turned), bool(np.linalg.norm(place - first) <= within), called, within)
 
 
-def _is_steered(joined: JoinedPieces) -> bool:
-    """Tell whether q is anything at a free end: lines across then follow the faces there."""
-    ends = (joined.coefficients[0].values[0], joined.coefficients[-1].values[1])
-    is_open = joined.joints[0] is None
-    return is_open and any(bool(values[2].any()) for values in ends)
-
-
 def _with_lengths(joined: JoinedPieces, lengths: Sequence[float]) -> JoinedPieces:
     """Return the pieces with spans such that each smooth run has its length."""
     runs = np.cumsum([k > 0 and joint is not None and joint.kind == "corner" for k, joint in enumerate(joined.joints)])
@@ -278,6 +271,13 @@ def _with_lengths(joined: JoinedPieces, lengths: Sequence[float]) -> JoinedPiece
         return joined
     factors = np.asarray(lengths) / np.bincount(runs, weights=joined.spans)
     return replace(joined, spans=joined.spans * factors[runs])
+
+
+def _is_steered(joined: JoinedPieces) -> bool:
+    """Tell whether the lines across a free end lean along the contact, so that they lie on an end face."""
+    ends = (joined.coefficients[0].values[0], joined.coefficients[-1].values[1])
+    is_open = joined.joints[0] is None
+    return is_open and any(float(np.abs(values[2, 1:]).max(initial=0.0)) > _NO_KNOT for values in ends)
 
 
 def _as_conic(

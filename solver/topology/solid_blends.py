@@ -196,7 +196,7 @@ def operated(path: str | Path, order: Replacement | Rounding | Joining, suffix: 
         )
     assert isinstance(outcome, Outcome)
     if isinstance(order, Rounding):
-        title = f"--round {order.face}:e{order.edge}"
+        title = "--round {}:e{}".format(*order.edges[0])
     elif isinstance(order, Joining):
         title = f"--from {path}#{order.face} --to {order.other_path or path}#{order.other}"
     else:

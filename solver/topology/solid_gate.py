@@ -61,6 +61,8 @@ class Change:
         By what the volume grows, as far as it is known beforehand; `volume` is about the rest.
     kept : dict or None
         The number after of each face that was not taken out, by that before; None where they follow each other.
+    like : tuple of int
+        Of faces that are put in beside others, by whose colours, by their numbers before.
     """
 
     old: tuple[int, ...]
@@ -72,6 +74,7 @@ class Change:
     joined: int = 0
     expected: float = 0.0
     kept: Mapping[int, int] | None = None
+    like: tuple[int, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -200,6 +203,9 @@ def _counts(before: Any, after: Any, change: Change, report: GateReport) -> Gate
     report = replace(report, **counts)  # type: ignore[arg-type]
     more = len(change.new) - len(change.old)
     for name, (had, has) in counts.items():
+        if name == "shells" and not had:
+            # Loose faces become one.
+            continue
         expected = had + (more if name == "faces" else -change.joined)
         if has != expected:
             raise _NotSoundError(f"{has} {name} came out, expected {expected}")
@@ -215,8 +221,10 @@ def _uses(both: _Both, report: GateReport) -> GateReport:
             count = len(news.uses[k])
             said = "would stay open" if count == 1 else f"is used {count} times, not twice, one against the other"
             raise _NotSoundError(f"the edge {news.names[k]} {said}", _triple(news.middles[k]))
-    had, has = (sum(not shell.Closed() for shell in parts(shape, "SHELL")) for shape in (both.before, both.after))
-    if has > had:
+    shells = [parts(shape, "SHELL") for shape in (both.before, both.after)]
+    had, has = (sum(not shell.Closed() for shell in own) for own in shells)
+    # Of loose faces there are none before.
+    if shells[0] and has > had:
         # The flag alone says little, but who reads it takes the shell for open.
         raise _NotSoundError("a shell is no longer marked as closed")
     return replace(report, open_edges=sum(len(uses) == 1 for uses in news.uses))
