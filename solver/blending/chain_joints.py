@@ -29,8 +29,10 @@ CORNER, KINK = 1.0, 1e-6
 BENT = 1e-6
 # Ends that lie apart by less than this part of their coordinates are one point.
 _MOVED = 1e-13
-# What rounding leaves of it asks for nothing.
+# What rounding leaves of it asks for nothing; nor what noise of the file does, as seen where derivatives across do not
+# agree either: so many times that, and so much at most, a crease of 6e-9 degree.
 _ROUNDING = 1e-13
+_OF_NOISE, _MOST_NOISE = 10.0, 1e-10
 # Speeds of a closed chain that come back to the first one, and weights that are flat, to this.
 _SAME = 1e-9
 _LAMBDA, _W, _Q = range(3)
@@ -198,12 +200,13 @@ def joined_pieces(
     _steer(ends, found, ends_on)
     joints: list[Joint | None] = [None] * len(pieces)
     straight = [piece.is_straight for piece in pieces]
+    noise = max(_ROUNDING, min(_OF_NOISE * max(apart), _MOST_NOISE))
     for k, turn in enumerate(turns):
         if turn is not None:
             rounding = (
                 pieces[k - 1].rounding_of_slopes()[1] / spans[k - 1] + pieces[k].rounding_of_slopes()[0] / spans[k]
             )
-            joint = _with_slopes(ends, spans, found, straight, k, turn, rounding)
+            joint = _with_slopes(ends, spans, found, straight, k, turn, rounding, noise)
             joints[k] = replace(joint, apart=apart[k])
     continuity = tuple(int(joint is not None and joint.kind == "smooth") for joint in joints)
     return JoinedPieces(tuple(pieces), spans, tuple(found), tuple(joints), continuity)
@@ -386,6 +389,7 @@ def _with_slopes(
     k: int,
     turn: float,
     rounding: FloatArray,
+    noise: float,
 ) -> Joint:
     """Make the derivatives along v agree at joint k, as far as they can; the slopes are set in `found`."""
     left, right = ends[k - 1][:, :, 1], ends[k][:, :, 0]
@@ -399,11 +403,12 @@ def _with_slopes(
     residuals = []
     for j in range(order + 1):
         left_over = _left_over(left, right, one, other, spans[[k - 1, k]], j)
-        if j and turn <= CORNER and left_over.relative > max(_ROUNDING, rounding[j] / left_over.scale):
+        if j and turn <= CORNER and left_over.relative > max(noise, rounding[j] / left_over.scale):
+            least = noise * left_over.scale
             if share:
-                _take(other, 0, right, spans[k], share * left_over.rest, j)
+                _take(other, 0, right, spans[k], share * left_over.rest, j, least)
             if share < 1:
-                _take(one, 1, left, spans[k - 1], (share - 1) * left_over.rest, j)
+                _take(one, 1, left, spans[k - 1], (share - 1) * left_over.rest, j, least)
             left_over = _left_over(left, right, one, other, spans[[k - 1, k]], j)
         residuals.append(left_over.relative)
     smooth = turn <= KINK and max(residuals) <= CLOSED
@@ -451,16 +456,18 @@ def _left_over(
     return _LeftOver(rest, scale or 1.0)
 
 
-def _take(piece: Coefficients, end: int, derivatives: FloatArray, span: float, wanted: FloatArray, order: int) -> None:
-    """Set the slopes of one order at an end of a piece so that the derivative along v changes as wanted."""
+def _take(
+    piece: Coefficients, end: int, derivatives: FloatArray, span: float, wanted: FloatArray, order: int, least: float
+) -> None:
+    """Set the slopes of one order at an end so that the derivative along v changes as wanted, but for the `least`."""
     lam = piece.values[end, _LAMBDA, 0]
     columns = {_W: lam * derivatives[1, 0] / span, _Q: lam * derivatives[0, 1] / span}
     if derivatives.shape[-1] == 4:
         columns[_LAMBDA] = derivatives[0, 0] / span
     solved, _ = _solved(list(columns.values()), wanted)
     for (name, column), value in zip(columns.items(), solved, strict=True):
-        # A slope of rounding would cost the degree of a cubic.
-        if abs(value) * np.linalg.norm(column) > _ROUNDING * np.linalg.norm(wanted):
+        # A slope of noise would cost the degree of a cubic.
+        if abs(value) * np.linalg.norm(column) > max(_ROUNDING * np.linalg.norm(wanted), least):
             piece.slopes[end, name, order] += value
 
 
