@@ -6,8 +6,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import cast
 
+from semispline.solver.blending.chain_coefficients import Joint
 from semispline.solver.blending.chain_contact import chain_contact
-from semispline.solver.blending.chain_joints import Joint
 from semispline.solver.blending.chain_rims import facing_rims
 from semispline.solver.blending.chain_runs import facing_chains
 from semispline.solver.blending.chains import Chain, Strip, order_of_contact

@@ -11,7 +11,8 @@ from numpy.typing import ArrayLike
 
 from semispline.solver.arrays import FloatArray
 from semispline.solver.blending.band_contact import BandContact
-from semispline.solver.blending.chain_joints import CLOSED, KINK, Joint
+from semispline.solver.blending.chain_coefficients import CLOSED, Joint
+from semispline.solver.blending.chain_joints import KINK
 from semispline.solver.blending.chains import Chain, Strip
 from semispline.solver.errors import ContactError
 from semispline.solver.judge import (

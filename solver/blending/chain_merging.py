@@ -12,7 +12,8 @@ from math import ceil, cos, pi, sin
 import numpy as np
 
 from semispline.solver.arrays import FloatArray
-from semispline.solver.blending.chain_joints import JoinedPieces, Joint, only_continuous
+from semispline.solver.blending.chain_coefficients import JoinedPieces, Joint
+from semispline.solver.blending.chain_joints import only_continuous
 from semispline.solver.blending.chain_pieces import Piece, standard
 from semispline.solver.blending.chain_rows import assembled, jets_of_rows, rows_of_jets
 from semispline.solver.blending.conics import Conic, recognised_conic

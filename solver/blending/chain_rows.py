@@ -8,7 +8,7 @@ from math import factorial
 import numpy as np
 
 from semispline.solver.arrays import FloatArray
-from semispline.solver.blending.chain_joints import Coefficients, JoinedPieces
+from semispline.solver.blending.chain_coefficients import Coefficients, JoinedPieces
 from semispline.solver.blending.chain_pieces import Piece, normalised_jets
 from semispline.solver.blending.reparametrisation import (
     Reparametrisation,
@@ -61,7 +61,7 @@ def well_told_width(jets: FloatArray) -> float:
     points = jets[0, :, :3] if jets.shape[2] == 3 else jets[0, :, :3] / jets[0, :, 3:]
     extent = float(np.ptp(points, axis=0).max()) / 2
     sizes = [float(np.linalg.norm(jet[:, :3], axis=1).max()) for jet in jets[1:]]
-    return min((extent * factorial(k) / size) ** (1 / k) for k, size in enumerate(sizes, start=1) if size > 0)
+    return min(float((extent * factorial(k) / size) ** (1 / k)) for k, size in enumerate(sizes, start=1) if size > 0)
 
 
 def rows_of_jets(jets: FloatArray, width: float) -> FloatArray:

@@ -8,13 +8,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from semispline.solver.arrays import FloatArray
-from semispline.solver.blending.chain_joints import (
-    EndFaces,
-    JoinedPieces,
-    Joint,
-    joined_pieces,
-    only_continuous,
-)
+from semispline.solver.blending.chain_coefficients import JoinedPieces, Joint
+from semispline.solver.blending.chain_joints import EndFaces, joined_pieces, only_continuous
 from semispline.solver.blending.chain_merging import merged_pieces
 from semispline.solver.blending.chain_pieces import Piece, read_pieces
 from semispline.solver.blending.chain_rows import assembled, positive_rows, rows_of_jets, well_told_width

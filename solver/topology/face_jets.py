@@ -74,7 +74,7 @@ class Face:
         at = np.empty((2, _SEAM_PLACES, 2))
         at[..., axis] = (self.low[axis] + np.array([0.0, self.widths[axis]]))[:, None]
         at[..., 1 - axis] = self.low[1 - axis] + self.widths[1 - axis] * np.linspace(0, 1, _SEAM_PLACES)
-        jets = [surface_jet(self.surface, *x.T, 1) for x in at]
+        jets = [surface_jet(self.surface, x[:, 0], x[:, 1], 1) for x in at]
         one, other = (unit(np.cross(jet[1, 0], jet[0, 1])) for jet in jets)
         # A pole has no normal.
         apart = np.nan_to_num(np.linalg.norm(np.cross(one, other), axis=1))
