@@ -9,6 +9,7 @@ from .chains import chain as chain
 from .end_curves import end_on_face as end_on_face
 from .end_curves import face_at as face_at
 from .end_faces import EndFace as EndFace
+from .kept_ends import end_on_curve as end_on_curve
 from .linear_alpha import LinearInV as LinearInV
 from .measured_energy import thin_plate_energy as thin_plate_energy
 from .nlp import ConstrainedProblem as ConstrainedProblem

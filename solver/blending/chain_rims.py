@@ -45,6 +45,8 @@ def facing_rims(a: Chain, b: Chain, options: BlendOptions) -> tuple[Chain, Chain
     ]
     wanted = _stations(a)
     nearest = min(ways, key=lambda way: float(np.sum((_stations(way) - wanted) ** 2)))
+    if any(chain.is_steered(order) for chain, order in zip((a, nearest), options.orders, strict=True)):
+        return None
     pair = [chain.rim_pieces(order) for chain, order in zip((a, nearest), options.orders, strict=True)]
     return (a, nearest) if _answer(*pair) else None
 

@@ -68,7 +68,11 @@ class Chain:
         """
         pieces = self._pieces(order)
         joined = joined_pieces(pieces, closed=self.closed, tolerance=self.tolerance, ends_on=self.ends_on)
-        if conic := _as_conic(pieces, joined, closed=self.closed, tolerance=self.tolerance):
+        # A circle run through anew would leave the faces at its ends.
+        conic = None
+        if not _is_steered(joined):
+            conic = _as_conic(pieces, joined, closed=self.closed, tolerance=self.tolerance)
+        if conic:
             return self._strip(joined if lengths is None else _with_lengths(joined, lengths), *conic)
         merged = merged_pieces(pieces, joined, closed=self.closed)
         if len(merged.pieces) < len(pieces):
@@ -91,6 +95,14 @@ class Chain:
         joined = self.rim_pieces(order)
         joined = joined if spans is None else replace(joined, spans=spans)
         return self._strip(joined, *assembled(joined))
+
+    def is_steered(self, order: int) -> bool:
+        """Tell whether its lines across have to be bent at its ends, to lie on the faces there; errors as `strip`."""
+        if self.closed or self.ends_on == (None, None):
+            return False
+        return _is_steered(
+            joined_pieces(self._pieces(order), closed=False, tolerance=self.tolerance, ends_on=self.ends_on)
+        )
 
     @property
     def _origin(self) -> FloatArray:
@@ -264,6 +276,13 @@ def chain(edges: Sequence[Base], *, tolerance: float | None = None, names: Seque
     first = ends[0][1] if turned[0] else ends[0][0]
     assert place is not None
     return Chain(bases, tuple(turned), bool(np.linalg.norm(place - first) <= within), called, within)
+
+
+def _is_steered(joined: JoinedPieces) -> bool:
+    """Tell whether q is anything at a free end: lines across then follow the faces there."""
+    ends = (joined.coefficients[0].values[0], joined.coefficients[-1].values[1])
+    is_open = joined.joints[0] is None
+    return is_open and any(bool(values[2].any()) for values in ends)
 
 
 def _with_lengths(joined: JoinedPieces, lengths: Sequence[float]) -> JoinedPieces:

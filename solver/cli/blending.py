@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Annotated, Any, cast, get_args
 import typer
 
 from semispline.solver.cli.solids import WantedEdge, no_solid, write_rounded, write_solid
-from semispline.solver.cli.wanted_bases import WantedBases
+from semispline.solver.cli.wanted_bases import WantedBases, face_numbers
 from semispline.solver.cli.words import (
     EDGE_HELP,
     SURFACE_HELP,
@@ -57,14 +57,20 @@ def blend_command(
     edge_a: Annotated[str | None, typer.Option(metavar="EDGE", help=EDGE_HELP.format("A, or of FACE"))] = None,
     edge_b: Annotated[str | None, typer.Option(metavar="EDGE", help=EDGE_HELP.format("B, or another of FACE"))] = None,
     replace_face: Annotated[
-        int | None,
+        str | None,
         typer.Option(
             "--replace",
-            metavar="FACE",
-            min=0,
-            help="Take this face out of its solid and put a blend of its neighbours in.",
+            metavar="FACE[,FACE..]",
+            help="Take this face out of its solid and put a blend of its neighbours in; several that go on into each "
+            "other together.",
         ),
     ] = None,
+    keep_ends: Annotated[
+        bool,
+        typer.Option(
+            "--keep-ends", help="Keep end edges over which FACE goes on into others: contact falls to G1 near them."
+        ),
+    ] = False,
     round_edge: Annotated[
         str | None,
         typer.Option("--round", metavar="FACE:EDGE", help="Round this sharp edge, as 12:e3: the solid comes back."),
@@ -98,15 +104,19 @@ def blend_command(
         check_outputs({"--out": out, "--report": report}, [a])
         write_rounded(wanted_edge, out, options, report)
         return
-    wanted = WantedBases(a, b, edge_a, edge_b, replace_face, (cut_a, cut_b))
+    wanted = WantedBases(a, b, edge_a, edge_b, face_numbers(replace_face), (cut_a, cut_b))
     wanted.check()
+    if keep_ends and (surfaces or with_bases or not wanted.gives_solid(out)):
+        raise OptionError(
+            "--keep-ends: found it where no solid comes back, expected --replace from STEP or BREP to such"
+        )
     if surfaces and with_bases:
         raise OptionError("--surfaces: found it together with --with-bases, expected one of them")
     at = split_name(split)
     check_surface_output(out, 3 if with_bases else 1)
     check_outputs({"--out": out, "--report": report}, wanted.specs)
     if not (surfaces or with_bases) and wanted.gives_solid(out):
-        write_solid(wanted, out, options, report)
+        write_solid(wanted, out, options, report, keep_ends=keep_ends)
         return
     with progress("reading"):
         ends, said = wanted.resolved()

@@ -84,14 +84,20 @@ def write_rounded(wanted: WantedEdge, out: str, options: BlendOptions, report: s
     _write(found, out, report)
 
 
-def write_solid(wanted: WantedBases, out: str, options: BlendOptions, report: str | None) -> None:
+def write_solid(wanted: WantedBases, out: str, options: BlendOptions, report: str | None, *, keep_ends: bool) -> None:
     """Write the solid with the blend in it, and the report: both or none."""
     from semispline.solver.topology import solid_with_blend
 
     assert wanted.replaced is not None
     with progress("blending"):
         found = solid_with_blend(
-            wanted.a, wanted.replaced, Path(out).suffix.lower(), options, wanted.edge_a, wanted.edge_b
+            wanted.a,
+            wanted.replaced,
+            Path(out).suffix.lower(),
+            options,
+            wanted.edge_a,
+            wanted.edge_b,
+            keep_ends=keep_ends,
         )
     _write(found, out, report)
 
@@ -126,7 +132,8 @@ def _print(found: SolidBlend) -> None:
     typer.echo(found.said)
     typer.echo(
         f"{f'one sound {kind}' if count == 1 else f'{count} sound {kind}s'} of {report.faces[1]} faces: "
-        f"{found.face} is the blend, {', '.join(map(str, found.touched))} have new borders, all else is as it was"
+        f"{', '.join(map(str, found.faces))} {'is' if len(found.faces) == 1 else 'are'} the blend, "
+        f"{', '.join(map(str, found.touched))} have new borders, all else is as it was"
     )
     typer.echo(f"volume {had:.9g} -> {has:.9g}, by {has - had:.4g} of at most {report.volume_limit:.4g}")
     before = max((edge.was or 0.0 for edge in report.border), default=0.0)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pickle
+from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -41,26 +42,27 @@ def work(path: str, order: str, suffix: str) -> Outcome:
 def _changed(file: PartFile, wanted: Replacement | Rounding, suffix: str) -> Outcome:
     part = file.part_of(wanted.face)
     copy, image = copy_of(part.shape)
-    surface = _moved(wanted.surface, part.place.Inverted())
+    back = part.place.Inverted()
     if isinstance(wanted, Replacement):
-        place = opening(copy, part.face, wanted.contacts)
-        change = change_of(place)
-        after, became = put_in(copy, place, surface)
+        news = [replace(x, face=file.part_of(x.face).face, surface=_moved(x.surface, back)) for x in wanted.faces]
+        places = [opening(copy, x.face, x.contacts) for x in news]
+        change = change_of(places)
+        after, became = put_in(copy, places, news)
     else:
+        surface = _moved(wanted.surface, back)
         after, became, change = rounded(copy, part.face, wanted.edge, surface, grows=wanted.grows)
     millimetres = None if file.unit is None else MILLIMETRES[file.unit]
     report = gate(part.shape, after, change, millimetres=millimetres)
     touched = tuple(sorted(set(change.touched) - set(change.old)))
-    (new,) = change.new
     if not report.is_sound:
-        return Outcome(report, None, None, touched, new, part.times)
+        return Outcome(report, None, None, touched, change.new, part.times)
     before = part.shape
     whole = file.with_part(part, after, lambda piece: became(image(piece)))
-    new_face = parts(after, "FACE")[new]
-    number = next(n for n, face in enumerate(parts(whole.root, "FACE")) if face.IsPartner(new_face))
+    made, there = parts(after, "FACE"), parts(whole.root, "FACE")
+    numbers = tuple(next(n for n, face in enumerate(there) if face.IsPartner(made[new])) for new in change.new)
     content = whole.content(suffix)
-    again = _read_back(content, suffix, number, before, change, millimetres)
-    return Outcome(report, again, content if again.is_sound else None, touched, number, part.times)
+    again = _read_back(content, suffix, numbers[0], before, change, millimetres)
+    return Outcome(report, again, content if again.is_sound else None, touched, numbers, part.times)
 
 
 def _read_back(

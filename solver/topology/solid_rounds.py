@@ -102,7 +102,7 @@ def solid_with_round(
     return SolidBlend(
         blend=result,
         said=f"{kind} {edge} between faces {face} and {beyond} rounded, cuts {cuts[0]} and {cuts[1]}",
-        face=outcome.new,
+        faces=outcome.new,
         gate=outcome.report,
         read_back=outcome.read_back,
         touched=outcome.touched,
