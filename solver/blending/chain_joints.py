@@ -35,9 +35,9 @@ CORNER, KINK = 1.0, 1e-6
 # Ends that lie apart by less than this part of their coordinates are one point.
 _MOVED = 1e-13
 # What rounding leaves of it asks for nothing; nor what noise of the file does, as seen where derivatives across do not
-# agree either: so many times that, and so much at most, a crease of 6e-9 degree.
+# agree either: so many times that, and so much at most, a crease of 2e-9 degree.
 _ROUNDING = 1e-13
-_OF_NOISE, _MOST_NOISE = 10.0, 1e-10
+_OF_NOISE, _MOST_NOISE = 10.0, 4e-11
 # Speeds of a closed chain that come back to the first one, and weights that are flat, to this.
 _SAME = 1e-9
 EndFaces: TypeAlias = tuple[EndFace | None, EndFace | None]
