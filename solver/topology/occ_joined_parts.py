@@ -74,14 +74,14 @@ def join_parts(path: str, wanted: Joining, suffix: str) -> Outcome:
     assert change.kept is not None
     touched = tuple(sorted(change.kept[n] for n in change.touched if n in change.kept))
     if not report.is_sound:
-        return Outcome(report, None, None, touched, change.new[0], 1, more=change.new[1:])
+        return Outcome(report, None, None, touched, change.new, 1)
     whole, notes = _whole(a, b, solid, change, unit)
     content = whole.content(suffix)
     first = _first_of(whole.root, solid)
     again = _read_back(content, suffix, first + change.new[0], before, change, millimetres)
-    new, *more = (first + n for n in change.new)
+    new = tuple(first + n for n in change.new)
     touched = tuple(first + n for n in touched)
-    return Outcome(report, again, content if again.is_sound else None, touched, new, 1, notes, tuple(more))
+    return Outcome(report, again, content if again.is_sound else None, touched, new, 1, notes)
 
 
 def _side(file: PartFile, number: int, onto: Any, factor: float) -> _Side:

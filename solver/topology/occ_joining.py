@@ -266,7 +266,7 @@ def _new_faces(
         a, b = (one.rims[k] for one in divided)
         of_a = contact_edges(a, faces, new, geometry, surface, u0, (start, end))
         of_b = contact_edges(b, faces, new, geometry, surface, u1, (end, start))
-        used = [[(edge, is_reversed(old)) for old, edge, _ in side] for side in (of_a, of_b)]
+        used = [[(one.edge, is_reversed(one.old)) for one in side] for side in (of_a, of_b)]
         if sides:
             next_one = sides[(k + 1) % len(sides)]
             after = [[(sides[k] if against else next_one, False)], [(next_one if against else sides[k], True)]]
@@ -275,9 +275,9 @@ def _new_faces(
             after = [[(seam, False)], [(seam, True)]]
             settle(turned(seam, backwards=True), [new])
             settle(seam, [new])
-        for old, edge, beyond in (*of_a, *of_b):
-            settle(edge, [new, *beyond])
-            replaced.append((old, edge))
+        for one in (*of_a, *of_b):
+            settle(one.edge, one.faces)
+            replaced.append((one.old, one.edge))
         made.append(closed_face(new, used[0] + after[0] + used[1] + after[1], inwards=not against))
     return made, replaced
 

@@ -6,7 +6,7 @@ face belongs to, wherever it stands. Runs in the process that read the file.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -100,7 +100,9 @@ class PartFile:
                         return Part(shape, label, k, place, times)
         return Part(self.root, None, number, gp_Trsf(), 1)
 
-    def with_part(self, part: Part, shape: Any, image: Callable[[Any], Any]) -> PartFile:
+    def with_part(
+        self, part: Part, shape: Any, image: Callable[[Any], Any], like: Sequence[tuple[Any, Any]] = ()
+    ) -> PartFile:
         """Return the file with a part changed; a document is changed itself.
 
         Parameters
@@ -111,13 +113,15 @@ class PartFile:
         image : callable
             What became of a face or another piece of the part; None of what is gone. A face that was put in the place
             of another keeps its name, colour and layer.
+        like : sequence of (TopoDS_Face, TopoDS_Face)
+            New faces, each with one of the part before that tells its colour and layer.
         """
         from OCP.XCAFDoc import XCAFDoc_DocumentTool
 
         if part.label is None:
             return PartFile(self.path, shape, self.unit, self.document)
         tool = XCAFDoc_DocumentTool.ShapeTool_s(self.document.Main())
-        move_labels(tool, part, shape, image)
+        move_labels(tool, part, shape, image, [(new, labelled(part.label, old)) for new, old in like])
         tool.UpdateAssemblies()
         return PartFile(self.path, root_of(tool), self.unit, self.document)
 
@@ -223,8 +227,21 @@ def root_of(tool: Any) -> Any:
     return compound
 
 
-def move_labels(tool: Any, part: Part, shape: Any, image: Callable[[Any], Any]) -> None:
-    """Give the label of a part its new shape, and those of its pieces what these became."""
+def labelled(label: Any, piece: Any) -> Any | None:
+    """Return the label of a piece of a part; None where it has none."""
+    from OCP.collections import Sequence_TDF_Label
+    from OCP.XCAFDoc import XCAFDoc_ShapeTool
+
+    pieces = Sequence_TDF_Label()
+    XCAFDoc_ShapeTool.GetSubShapes_s(label, pieces)
+    labels = [pieces.Value(k + 1) for k in range(pieces.Length())]
+    return next((x for x in labels if XCAFDoc_ShapeTool.GetShape_s(x).IsSame(piece)), None)
+
+
+def move_labels(
+    tool: Any, part: Part, shape: Any, image: Callable[[Any], Any], like: Sequence[tuple[Any, Any | None]] = ()
+) -> None:
+    """Give a part's label its new shape, those of its pieces what these became, and new pieces labels like others."""
     from OCP.collections import Sequence_TDF_Label
     from OCP.XCAFDoc import XCAFDoc_ShapeTool
 
@@ -236,6 +253,26 @@ def move_labels(tool: Any, part: Part, shape: Any, image: Callable[[Any], Any]) 
     for label, became in zip(labels, images, strict=True):
         if became is not None:
             tool.SetShape(label, became)
+    for new, model in like:
+        if model is not None:
+            _copy_looks(model, tool.AddSubShape(part.label, new))
+
+
+def _copy_looks(model: Any, label: Any) -> None:
+    """Give a label the colours and the layers of another, but not its name."""
+    from OCP.collections import Sequence_TDF_Label
+    from OCP.Quantity import Quantity_ColorRGBA
+    from OCP.XCAFDoc import XCAFDoc_ColorTool, XCAFDoc_ColorType, XCAFDoc_DocumentTool
+
+    colors, color = XCAFDoc_DocumentTool.ColorTool_s(label), Quantity_ColorRGBA()
+    for kind in ("Gen", "Surf", "Curv"):
+        which = getattr(XCAFDoc_ColorType, f"XCAFDoc_Color{kind}")
+        if XCAFDoc_ColorTool.GetColor_s(model, which, color):
+            colors.SetColor(label, color, which)
+    layers, found = XCAFDoc_DocumentTool.LayerTool_s(label), Sequence_TDF_Label()
+    layers.GetLayers(model, found)
+    for k in range(found.Length()):
+        layers.SetLayer(label, found.Value(k + 1))
 
 
 @contextmanager

@@ -17,7 +17,7 @@ from semispline.solver.arrays import FloatArray
 from semispline.solver.errors import SemisplineError
 from semispline.solver.io import OccFace
 from semispline.solver.judge import cad_measures, measure_regularity, measure_turn
-from semispline.solver.topology.gate_edges import Border, EdgeTable, measured_border
+from semispline.solver.topology.gate_edges import Border, EdgeTable, loose_area, measured_border
 from semispline.solver.topology.occ_shapes import box_of, boxes_meet, extent, forward, parts, point_of
 
 Point = tuple[float, float, float]
@@ -61,6 +61,8 @@ class Change:
         By what the volume grows, as far as it is known beforehand; `volume` is about the rest.
     kept : dict or None
         The number after of each face that was not taken out, by that before; None where they follow each other.
+    like : tuple of int
+        Of faces that are put in beside others, by whose colours, by their numbers before.
     """
 
     old: tuple[int, ...]
@@ -72,6 +74,7 @@ class Change:
     joined: int = 0
     expected: float = 0.0
     kept: Mapping[int, int] | None = None
+    like: tuple[int, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -150,7 +153,8 @@ def gate(
         for part in (_uses, _validity, _volumes):
             report = part(both, report)
         report = _tolerances(both, report, millimetres, read_back=read_back)
-        for part in (_unchanged, _folds, _interferences):
+        report = _unchanged(both, report, read_back=read_back)
+        for part in (_folds, _interferences):
             report = part(both, report)
     except _NotSoundError as found:
         return replace(report, reason=found.reason, place=found.place)
@@ -199,6 +203,9 @@ def _counts(before: Any, after: Any, change: Change, report: GateReport) -> Gate
     report = replace(report, **counts)  # type: ignore[arg-type]
     more = len(change.new) - len(change.old)
     for name, (had, has) in counts.items():
+        if name == "shells" and not had:
+            # Loose faces become one.
+            continue
         expected = had + (more if name == "faces" else -change.joined)
         if has != expected:
             raise _NotSoundError(f"{has} {name} came out, expected {expected}")
@@ -214,8 +221,10 @@ def _uses(both: _Both, report: GateReport) -> GateReport:
             count = len(news.uses[k])
             said = "would stay open" if count == 1 else f"is used {count} times, not twice, one against the other"
             raise _NotSoundError(f"the edge {news.names[k]} {said}", _triple(news.middles[k]))
-    had, has = (sum(not shell.Closed() for shell in parts(shape, "SHELL")) for shape in (both.before, both.after))
-    if has > had:
+    shells = [parts(shape, "SHELL") for shape in (both.before, both.after)]
+    had, has = (sum(not shell.Closed() for shell in own) for own in shells)
+    # Of loose faces there are none before.
+    if shells[0] and has > had:
         # The flag alone says little, but who reads it takes the shell for open.
         raise _NotSoundError("a shell is no longer marked as closed")
     return replace(report, open_edges=sum(len(uses) == 1 for uses in news.uses))
@@ -325,13 +334,23 @@ def _check_vertices(both: _Both, limits: dict[int, float], wider: float, floor: 
             )
 
 
-def _unchanged(both: _Both, report: GateReport) -> GateReport:
-    """Faces that were not touched have their areas and their places."""
+def _unchanged(both: _Both, report: GateReport, *, read_back: bool) -> GateReport:
+    """Faces that were not touched have their areas and their places.
+
+    A reader may make the curves of edges in the parameters of a face anew from those in space: where a file holds both
+    apart, the borders move by that much.
+    """
     for old, new in both.kept.items():
         if old in both.change.touched:
             continue
-        (area, at), (area_now, at_now) = _area(both.faces[0][old]), _area(both.faces[1][new])
-        if abs(area_now - area) > _SAME_AREA * both.size**2 or np.linalg.norm(at_now - at) > _TOLERANCE * both.size:
+        before, after = both.faces[0][old], both.faces[1][new]
+        (area, at), (area_now, at_now) = _area(before), _area(after)
+        change, moved = abs(area_now - area), float(np.linalg.norm(at_now - at))
+        allowed, far = _SAME_AREA * both.size**2, _TOLERANCE * both.size
+        if read_back and (change > allowed or moved > far):
+            loose = loose_area(before) + loose_area(after)
+            allowed, far = allowed + loose, far + loose / max(area, loose) * extent(before)
+        if change > allowed or moved > far:
             raise _NotSoundError(f"face {old} was not to be changed, and is not what it was", _triple(at))
     return report
 

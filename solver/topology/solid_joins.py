@@ -85,13 +85,12 @@ def joined_solid(specs: tuple[str, str], suffix: str, options: BlendOptions, spl
     return SolidBlend(
         blend=result,
         said=f"outline of {specs[0]} ({counts[0]} edges) joined to that of {specs[1]} ({counts[1]} edges)",
-        face=outcome.new,
+        faces=outcome.new,
         gate=outcome.report,
         read_back=outcome.read_back,
         touched=outcome.touched,
         notes=notes_of(outcome),
         content=outcome.content,
-        more=outcome.more,
     )
 
 

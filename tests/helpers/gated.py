@@ -10,6 +10,7 @@ from helpers.parts import compound, graph_of
 from semispline import Base, blend, plane
 from semispline.solver.topology.occ_replacing import change_of, opening, put_in
 from semispline.solver.topology.occ_shapes import copy_of
+from semispline.solver.topology.solid_orders import NewFace
 
 
 @cache
@@ -37,8 +38,8 @@ def put(shape, surface, number, contacts):
     copy, _ = copy_of(shape)
     place = opening(copy, number, contacts)
     # u runs from the first contact: from the plane y = 0.
-    after, _ = put_in(copy, place, surface)
-    return after, change_of(place)
+    after, _ = put_in(copy, [place], [NewFace(number, contacts, surface)])
+    return after, change_of([place])
 
 
 def placed(shape, surface):

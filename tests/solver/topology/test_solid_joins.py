@@ -73,7 +73,7 @@ def test_an_oval_profile_joined_to_a_round_one(continuity, arcs, split, pieces, 
     assert max(x.worst("angle_degrees") for x in (found.blend.chain_a, found.blend.chain_b)) < 1e-10
     assert max(edge.gap for edge in found.gate.border) < 1e-11
     # Curves on faces lie within 1e-7 of each other, and no curvature is above 2: 2e-7 in radians at most.
-    assert all(normals_beside(root, n) < 2e-5 for n in (found.face, *found.more))
+    assert all(normals_beside(root, n) < 2e-5 for n in found.faces)
     assert volume(a) + volume(b) < volume(root) == pytest.approx(found.gate.volume[1], rel=1e-9)
     # Less than the hull of both ends, more than the tube alone.
     assert np.pi * 1.5**2 * 6 < volume(root) - volume(a) - volume(b) < volume(bar(oval_wire(3, 1, 1, 0), 6))
@@ -94,7 +94,7 @@ def test_other_profiles(make, at, pieces, tmp_path):
     a, b = make()
     found = join_faces(*two(a, b, tmp_path, at), tmp_path / "out.step")
     root = open_parts(tmp_path / "out.step").root
-    assert len(found.more) == pieces - 1
+    assert len(found.faces) == pieces
     assert_one_valid_solid(root, len(parts(a, "FACE")) + len(parts(b, "FACE")) - 2 + pieces)
     assert found.gate.largest_tolerance <= 1.1e-7
 
