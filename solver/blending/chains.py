@@ -21,6 +21,8 @@ from semispline.solver.splines import Basis, BSplineSurface, boundary_curve, clo
 
 # Ends of edges nearer than this, of the size of the faces, are one point, unless a file says otherwise.
 _MEET = 1e-7
+# Less than this, of q over the length of a span, is rounding: lines across do not lean.
+_LEANS = 1e-12
 # Times its width a face could be wider before its rows are taken further apart than it has them.
 _SMALL = 4.0
 
@@ -291,7 +293,7 @@ def _is_steered(joined: JoinedPieces) -> bool:
     """Tell whether the lines across a free end lean along the contact, so that they lie on an end face."""
     ends = (joined.coefficients[0].values[0], joined.coefficients[-1].values[1])
     is_open = joined.joints[0] is None
-    return is_open and any(float(np.abs(values[2, 1:]).max(initial=0.0)) > _NO_KNOT for values in ends)
+    return is_open and any(float(np.abs(values[2, 1:]).max(initial=0.0)) > _LEANS for values in ends)
 
 
 def _as_conic(
