@@ -40,6 +40,7 @@ from .records import Correction as Correction
 from .records import Counterexample as Counterexample
 from .records import Formula as Formula
 from .records import LedgerError as LedgerError
+from .records import Paper as Paper
 from .records import Part as Part
 from .records import Reading as Reading
 from .records import Strength as Strength

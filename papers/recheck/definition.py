@@ -1,0 +1,115 @@
+"""B-splines by their definition, as text: the recursion of Cox and de Boor, unrolled, and nothing derived from it.
+
+A polynomial next to a point is the list of its coefficients, up to an order, with the point as origin. No code is
+shared with `derivations`: these are the witnesses for what is derived there.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from math import factorial
+from typing import Any
+
+from semispline.papers.recheck.texts import Text, as_text, total
+
+
+@dataclass
+class Lets:
+    """Names for intermediate results, so that texts stay short; `pairs` says what they stand for."""
+
+    letter: str
+    pairs: list[tuple[str, str]] = field(default_factory=list)
+
+    def named(self, value: Any) -> Text:
+        """Return a name for a value, or the value itself where it is a number or a name."""
+        found = as_text(value)
+        if found.binding == 4:
+            return found
+        name = f"{self.letter}{len(self.pairs) + 1}"
+        self.pairs.append((name, str(found)))
+        return Text(name)
+
+
+Jet = list[Any]
+
+
+def basis_jets(lets: Lets, degree: int, knots: Sequence[Any], span: int, order: int) -> list[Jet]:
+    """Return coefficients 0 .. order of functions span - degree .. span on one span, the origin being x = 0.
+
+    By N_i,p = (x - t_i)/(t_(i+p) - t_i) N_i,p-1 + (t_(i+p+1) - x)/(t_(i+p+1) - t_(i+1)) N_i+1,p-1. On its span one
+    function of degree 0 is 1, the others are 0.
+    """
+    knots = [as_text(knot) for knot in knots]
+    level: dict[int, Jet] = {span: [Text("1"), *[None] * order]}
+    for p in range(1, degree + 1):
+        above: dict[int, Jet] = {}
+        for i in range(span - p, span + 1):
+            parts: list[list[Any]] = [[] for _ in range(order + 1)]
+            if i in level:
+                _multiply(parts, level[i], -1, knots[i], 1, knots[i + p] - knots[i])
+            if i + 1 in level:
+                _multiply(parts, level[i + 1], 1, knots[i + p + 1], -1, knots[i + p + 1] - knots[i + 1])
+            above[i] = [lets.named(total(terms)) if terms else None for terms in parts]
+        level = above
+    return [level[i] for i in range(span - degree, span + 1)]
+
+
+def _multiply(parts: list[list[Any]], jet: Jet, sign: int, knot: Text, slope: int, width: Text) -> None:
+    """Add (sign * knot + slope * x) / width times a polynomial."""
+    for d, coefficient in enumerate(jet):
+        if coefficient is None:
+            continue
+        if knot.text != "0":
+            parts[d].append((knot if sign > 0 else -knot) * coefficient / width)
+        if d + 1 < len(parts):
+            parts[d + 1].append((coefficient if slope > 0 else -coefficient) / width)
+
+
+def end_jets(lets: Lets, degree: int, spans: Sequence[Any], order: int, end: str = "start") -> list[Jet]:
+    """Return coefficients at a clamped end of the functions next to it, the one of the end first.
+
+    `spans` are the distances of the first inner knots from the end; where there are fewer than the degree, letters
+    stand for the others. At "end" x runs towards the end, so that it is negative inside.
+    """
+    distances = [as_text(x) for x in spans[:degree]]
+    distances += [Text(f"{lets.letter}_far{r}") for r in range(len(distances) + 1, degree + 1)]
+    clamped = [Text("0")] * (degree + 1)
+    if end == "start":
+        return basis_jets(lets, degree, [*clamped, *distances], degree, order)
+    return basis_jets(lets, degree, [*(-x for x in reversed(distances)), *clamped], degree - 1, order)[::-1]
+
+
+def curve_jet(jets: Sequence[Jet], points: Sequence[Any]) -> Jet:
+    """Return the coefficients of a spline whose first control points are given, the others zero."""
+    order = len(jets[0]) - 1
+    return [
+        total(jet[d] * point for jet, point in zip(jets, points, strict=False) if jet[d] is not None)
+        for d in range(order + 1)
+    ]
+
+
+def derivative(jet: Jet, d: int) -> Text:
+    """Return a derivative at the origin."""
+    return as_text(jet[d]) * factorial(d) if d > 1 else as_text(jet[d])
+
+
+def basis_value(lets: Lets, order: int, knots: Sequence[Any], i: int, x: Any) -> Text:
+    """Return B_i of an order at x, knots and x numbers: the recursion with its 0/0 = 0, the last span closed."""
+    last = max(j for j in range(len(knots) - 1) if knots[j] < knots[j + 1])
+    span = last if x == knots[last + 1] else max(j for j in range(last + 1) if knots[j] <= x)
+    if not i <= span < i + order:
+        return Text("0")
+    x = as_text(x)
+    values: dict[int, Text] = {span: Text("1")}
+    for p in range(1, order):
+        above = {}
+        for j in range(span - p, span + 1):
+            terms = []
+            if j in values and knots[j + p] != knots[j]:
+                terms.append((x - knots[j]) / (as_text(knots[j + p]) - knots[j]) * values[j])
+            if j + 1 in values and knots[j + p + 1] != knots[j + 1]:
+                terms.append((as_text(knots[j + p + 1]) - x) / (as_text(knots[j + p + 1]) - knots[j + 1]) * values[j + 1])
+            above[j] = lets.named(total(terms))
+        values = above
+    return values[i]
