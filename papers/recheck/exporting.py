@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from functools import cache
@@ -216,7 +217,7 @@ def _pairs(where: Where) -> tuple[tuple[str, str], ...]:
 
 
 def _condition_sides(conditions: Iterable[str]) -> list[str]:
-    return [side.strip() for condition in conditions for side in condition.replace("=", "").replace("!", "").replace("<", ">").split(">")]
+    return [side.strip() for condition in conditions for side in re.split("[<>=!]+", condition)]
 
 
 def _needed(pairs: tuple[tuple[str, str], ...], texts: Iterable[str]) -> tuple[tuple[str, str], ...]:

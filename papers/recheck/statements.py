@@ -149,10 +149,10 @@ class Rank(Statement):
 
     matrix: Matrix
     rank: int
-    rows: tuple[int, ...]
-    columns: tuple[int, ...]
-    kernel: Matrix
-    free: tuple[int, ...]
+    rows: tuple[int, ...] = ()
+    columns: tuple[int, ...] = ()
+    kernel: Matrix = ()
+    free: tuple[int, ...] = ()
     affirmed: bool = True
     form: ClassVar[str] = "rank"
 

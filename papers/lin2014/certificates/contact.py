@@ -13,9 +13,9 @@ from typing import Any
 
 import sympy as sp
 
-from semispline.derivations.contact import contact_rows, contact_rows_from_pieces
+from semispline.derivations.contact import contact_rows
 from semispline.derivations.splines import end_derivatives, span_symbols
-from semispline.papers.ledger import Claim, Formula
+from semispline.papers.ledger import Claim, Formula, given
 from semispline.papers.lin2014 import printed as pr
 from semispline.papers.lin2014.checks.contact_rows import (
     BASE_H,
@@ -133,7 +133,7 @@ def row_cases(
     **flags: bool,
 ) -> Iterator[Statement]:
     """Yield what decides a condition for a row of the blend."""
-    assert formula is not None
+    formula = given(formula)
     relation, counted = formula.relation, formula.relation.has(pr.u_m3)
     if equal:
         yield from induction()
@@ -208,7 +208,7 @@ def defined_case(
 
 def excess_cases(formula: Formula | None, side: Side, printed: Formula) -> Iterator[Statement]:
     """Yield what a printed row 2 gives along the normal, less what G2 asks."""
-    assert formula is not None
+    formula = given(formula)
     shape = letters(side, "normal")
     flat = tuple((text(row), text(BASE_ROWS[side][0])) for row in ROWS[side][:2])
     last: Pairs = ((text(pr.u_m3), text(u_last)),) if printed.relation.has(pr.u_m3) else ()
@@ -244,17 +244,11 @@ def second_row(side: Side) -> Any:
         true, *excesses = claim.corrected_formulas
         correction = [*row_cases(true, side, 2)]
         for excess, formula in zip(excesses, printed, strict=True):
-            assert formula is not None
-            correction += excess_cases(excess, side, formula)
-        readings = [row_cases(formula, side, 2, "normal", equal=False, **_own(formula)) for formula in printed]
+            correction += excess_cases(excess, side, given(formula))
+        readings = [row_cases(formula, side, 2, "normal", equal=False) for formula in printed]
         return Draft(readings, correction, (INDUCTION,))
 
     return draft
-
-
-def _own(formula: Formula | None) -> dict[str, bool]:
-    """Return the flags of a row that fails: for k = 4 it does, which is the paper's own setting."""
-    return {}
 
 
 DRAFTS = {
