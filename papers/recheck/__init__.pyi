@@ -1,8 +1,12 @@
 from .definition import Lets as Lets
-from .definition import basis_value as basis_value
+from .definition import basis_jets as basis_jets
+from .definition import basis_number as basis_number
 from .definition import curve_jet as curve_jet
 from .definition import derivative as derivative
 from .definition import end_jets as end_jets
+from .definition import span_of as span_of
+from .definition import span_value as span_value
+from .definition import triangle as triangle
 from .draft import Draft as Draft
 from .draft import Drafts as Drafts
 from .draft import export_of as export_of

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from fractions import Fraction
 from math import factorial
 from typing import Any
 
@@ -94,10 +95,8 @@ def derivative(jet: Jet, d: int) -> Text:
     return as_text(jet[d]) * factorial(d) if d > 1 else as_text(jet[d])
 
 
-def basis_value(lets: Lets, order: int, knots: Sequence[Any], i: int, x: Any) -> Text:
-    """Return B_i of an order at x, knots and x numbers: the recursion with its 0/0 = 0, the last span closed."""
-    last = max(j for j in range(len(knots) - 1) if knots[j] < knots[j + 1])
-    span = last if x == knots[last + 1] else max(j for j in range(last + 1) if knots[j] <= x)
+def span_value(lets: Lets, order: int, knots: Sequence[Any], i: int, x: Any, span: int) -> Text:
+    """Return B_i of an order at a letter x on one span of numbers or letters, all of them different knots there."""
     if not i <= span < i + order:
         return Text("0")
     x = as_text(x)
@@ -106,10 +105,47 @@ def basis_value(lets: Lets, order: int, knots: Sequence[Any], i: int, x: Any) ->
         above = {}
         for j in range(span - p, span + 1):
             terms = []
-            if j in values and knots[j + p] != knots[j]:
+            if j in values:
                 terms.append((x - knots[j]) / (as_text(knots[j + p]) - knots[j]) * values[j])
-            if j + 1 in values and knots[j + p + 1] != knots[j + 1]:
+            if j + 1 in values:
                 terms.append((as_text(knots[j + p + 1]) - x) / (as_text(knots[j + p + 1]) - knots[j + 1]) * values[j + 1])
             above[j] = lets.named(total(terms))
         values = above
     return values[i]
+
+
+def triangle(lets: Lets, order: int, knots: Sequence[Any], points: Sequence[Any], x: Any, span: int) -> Text:
+    """Return a spline at a letter x on one span by de Boor's triangle, which knows no basis functions."""
+    x = as_text(x)
+    level = {j: as_text(points[j]) for j in range(span - order + 1, span + 1)}
+    for step in range(1, order):
+        for j in range(span, span - order + step, -1):
+            width = as_text(knots[j + order - step]) - knots[j]
+            weight = (x - knots[j]) / width
+            level[j] = lets.named(level[j - 1] * (1 - weight) + level[j] * weight)
+    return level[span]
+
+
+def basis_number(order: int, knots: Sequence[Fraction], i: int, x: Fraction) -> Fraction:
+    """Return B_i of an order at a number, by the recursion with its 0/0 = 0; the last span is closed.
+
+    Examples
+    --------
+    >>> basis_number(2, [Fraction(t) for t in (0, 0, 1, 1)], 1, Fraction(1, 3))
+    Fraction(1, 3)
+    """
+    last = max(j for j in range(len(knots) - 1) if knots[j] < knots[j + 1])
+    if order == 1:
+        closed = i == last and x == knots[i + 1]
+        return Fraction(int(knots[i] <= x < knots[i + 1] or closed))
+
+    def share(above: Fraction, width: Fraction, j: int) -> Fraction:
+        return above / width * basis_number(order - 1, knots, j, x) if width else Fraction(0)
+
+    rising = share(x - knots[i], knots[i + order - 1] - knots[i], i)
+    return rising + share(knots[i + order] - x, knots[i + order] - knots[i + 1], i + 1)
+
+
+def span_of(knots: Sequence[Fraction], x: Fraction) -> int:
+    """Return the span that holds a number."""
+    return max(j for j in range(len(knots) - 1) if knots[j] <= x and knots[j] < knots[j + 1])
