@@ -34,6 +34,7 @@ from .questions import question as question
 from .questions import unconditional as unconditional
 from .records import Case as Case
 from .records import Check as Check
+from .records import CheckFailedError as CheckFailedError
 from .records import Claim as Claim
 from .records import Consequence as Consequence
 from .records import Correction as Correction

@@ -1,6 +1,8 @@
 from .definition import Lets as Lets
 from .definition import basis_jets as basis_jets
 from .definition import basis_number as basis_number
+from .definition import integral as integral
+from .definition import integrals as integrals
 from .definition import curve_jet as curve_jet
 from .definition import derivative as derivative
 from .definition import end_jets as end_jets
@@ -18,6 +20,11 @@ from .exporting import minimum as minimum
 from .exporting import not_zero as not_zero
 from .exporting import positive as positive
 from .exporting import rank as rank
+from .files import write_certificates as write_certificates
+from .rechecking import Recheck as Recheck
+from .rechecking import exported as exported
+from .rechecking import rechecked as rechecked
+from .rechecking import require_system as require_system
 from .statements import Certificate as Certificate
 from .statements import Export as Export
 from .statements import Identity as Identity

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
+from itertools import pairwise
 from math import factorial
 from typing import Any
 
@@ -149,3 +150,62 @@ def basis_number(order: int, knots: Sequence[Fraction], i: int, x: Fraction) -> 
 def span_of(knots: Sequence[Fraction], x: Fraction) -> int:
     """Return the span that holds a number."""
     return max(j for j in range(len(knots) - 1) if knots[j] <= x and knots[j] < knots[j + 1])
+
+
+def basis_polynomial(order: int, knots: Sequence[Fraction], i: int, span: int) -> list[Fraction]:
+    """Return the coefficients of B_i of an order on one span, by the recursion; the lowest power first.
+
+    Examples
+    --------
+    >>> [str(c) for c in basis_polynomial(2, [Fraction(t) for t in (0, 0, 2, 2)], 0, 1)]
+    ['1', '-1/2']
+    """
+    if order == 1:
+        return [Fraction(int(i == span))]
+    found = [Fraction(0)] * order
+    for j, knot, slope, width in (
+        (i, knots[i], 1, knots[i + order - 1] - knots[i]),
+        (i + 1, knots[i + order], -1, knots[i + order] - knots[i + 1]),
+    ):
+        if not width:
+            continue
+        for d, c in enumerate(basis_polynomial(order - 1, knots, j, span)):
+            found[d] -= slope * knot * c / width
+            found[d + 1] += slope * c / width
+    return found
+
+
+def integral(
+    order: int, one: tuple[Sequence[Fraction], int, int], other: tuple[Sequence[Fraction], int, int] | None = None
+) -> Fraction:
+    """Return the integral of a derivative of a function, or of the product of two: knots, index, derivative of each.
+
+    Examples
+    --------
+    >>> hat = [Fraction(t) for t in (0, 0, 1, 1)]
+    >>> integral(2, (hat, 0, 0)), integral(2, (hat, 0, 1), (hat, 1, 1))
+    (Fraction(1, 2), Fraction(-1, 1))
+    """
+    return sum(integrals(order, one, other), Fraction(0))
+
+
+def integrals(
+    order: int, one: tuple[Sequence[Fraction], int, int], other: tuple[Sequence[Fraction], int, int] | None = None
+) -> list[Fraction]:
+    """Return `integral` span by span."""
+    factors = [one] if other is None else [one, other]
+    points = sorted({knot for knots, _, _ in factors for knot in knots})
+    found = []
+    for start, end in pairwise(points):
+        product = [Fraction(1)]
+        for knots, i, d in factors:
+            piece = basis_polynomial(order, knots, i, span_of(knots, start))
+            for _ in range(d):
+                piece = [n * c for n, c in enumerate(piece)][1:]
+            terms = [Fraction(0)] * (len(product) + len(piece))
+            for m, a in enumerate(product):
+                for n, b in enumerate(piece):
+                    terms[m + n] += a * b
+            product = terms
+        found.append(sum((c * (end ** (n + 1) - start ** (n + 1)) / (n + 1) for n, c in enumerate(product)), Fraction(0)))
+    return found

@@ -1,7 +1,7 @@
 """Statements in the language of PARI/GP: the same text runs in `gp` and in the library.
 
 Each statement is a function without arguments that returns 1 if PARI finds what is stated. `CHECKER` holds what these
-functions call; all that PARI is asked is in there, in forty lines.
+functions call; all that PARI is asked is in there, in thirty lines.
 """
 
 from __future__ import annotations
@@ -10,7 +10,6 @@ from collections.abc import Iterable, Sequence
 
 from semispline.papers.recheck.arithmetic import divisors
 from semispline.papers.recheck.statements import (
-    Certificate,
     Contained,
     Identity,
     Knots,
@@ -45,11 +44,11 @@ increasing(v) = vecsort(v) == v;
 inner(v, k) = v[k + 1 .. #v - k];
 clamped(v, k) = v[1 .. k] == vector(k) && v[#v - k + 1 .. #v] == vector(k, i, 1);
 single(v, k) = #Set(inner(v, k)) == #inner(v, k) && (#v == 2 * k || (vecmin(inner(v, k)) > 0 && vecmax(inner(v, k)) < 1));
-asked = 0; agreed = 0;
+asked = 0; agreed = 0; refused = List();
 check(id, f) = {
   my(found = iferr(f(), e, Str(e)));
   asked++;
-  if(found === 1, agreed++, print("DIFFERENT ", id, if(type(found) == "t_STR", Str(": ", found), ""))) };
+  if(found === 1, agreed++, listput(refused, id); print("DIFFERENT ", id, if(type(found) == "t_STR", Str(": ", found), ""))) };
 """
 
 
@@ -151,11 +150,6 @@ def statement_id(identifier: str, number: int, statement: Statement) -> str:
     """Return how a statement is named when PARI disagrees."""
     label = statement.label.replace('"', "'").replace("\\", "/")
     return f"{identifier} #{number}: {label}"
-
-
-def certificate_lines(certificate: Certificate) -> list[str]:
-    """Return the checks of a record, one a line."""
-    return check_lines(certificate.id, certificate.statements)
 
 
 def check_lines(identifier: str, statements: Sequence[Statement]) -> list[str]:
