@@ -22,6 +22,7 @@ from .loading import collected as collected
 from .loading import paper_files as paper_files
 from .loading import paper_names as paper_names
 from .mutation import explained as explained
+from .mutation import mutants as mutants
 from .number_lists import Knots as Knots
 from .number_lists import Numbers as Numbers
 from .number_lists import inner_moves as inner_moves

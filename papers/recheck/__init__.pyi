@@ -1,11 +1,11 @@
 from .definition import Lets as Lets
 from .definition import basis_jets as basis_jets
 from .definition import basis_number as basis_number
-from .definition import integral as integral
-from .definition import integrals as integrals
 from .definition import curve_jet as curve_jet
 from .definition import derivative as derivative
 from .definition import end_jets as end_jets
+from .definition import integral as integral
+from .definition import integrals as integrals
 from .definition import span_of as span_of
 from .definition import span_value as span_value
 from .definition import triangle as triangle

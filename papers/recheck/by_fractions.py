@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from fractions import Fraction
+from typing import Any
 
 from semispline.papers.recheck.arithmetic import instance, satisfied, value
 from semispline.papers.recheck.statements import Contained, Identity, Knots, Minimum, Positive, Rank, Statement, Term
@@ -16,19 +17,12 @@ def agrees(statement: Statement) -> bool:
     at = instance(statement.at, statement.where)
     if any(value(factor, at) == 0 for factor in statement.nonzero):
         return False
-    if isinstance(statement, Identity):
-        equal = value(statement.left, at) == value(statement.right, at)
-        return equal == statement.equal and all(satisfied(condition, at) for condition in statement.conditions)
-    if isinstance(statement, Positive):
-        return _positive(statement, at)
-    if isinstance(statement, Rank):
-        return _rank(statement, at)
-    if isinstance(statement, Contained):
-        return _contained(statement)
-    if isinstance(statement, Minimum):
-        return _minimum(statement)
-    assert isinstance(statement, Knots)
-    return _fact(statement) == statement.holds
+    return _BY_FORM[statement.form](statement, at)
+
+
+def _identity(statement: Identity, at: dict[str, Fraction]) -> bool:
+    equal = value(statement.left, at) == value(statement.right, at)
+    return equal == statement.equal and all(satisfied(condition, at) for condition in statement.conditions)
 
 
 def _positive(statement: Positive, at: dict[str, Fraction]) -> bool:
@@ -45,7 +39,8 @@ def _signs(statement: Positive) -> bool:
     known = positive | set(statement.nonnegative)
     terms = (*statement.over, *statement.under)
     allowed = all(
-        Fraction(term.coefficient) > 0 and all(n in known or power % 2 == 0 for n, power in term.powers) for term in terms
+        Fraction(term.coefficient) > 0 and all(n in known or power % 2 == 0 for n, power in term.powers)
+        for term in terms
     )
 
     def strict(part: tuple[Term, ...]) -> bool:
@@ -77,7 +72,7 @@ def _rank(statement: Rank, at: dict[str, Fraction]) -> bool:
     )
 
 
-def _contained(statement: Contained) -> bool:
+def _contained(statement: Contained, _: dict[str, Fraction]) -> bool:
     outer, inner = _numbers(statement.outer), _numbers(statement.inner)
     if statement.solution:
         return _product(outer, _numbers(statement.solution)) == inner
@@ -85,7 +80,7 @@ def _contained(statement: Contained) -> bool:
     return not any(_product(row, outer)[0]) and any(_product(row, inner)[0])
 
 
-def _minimum(statement: Minimum) -> bool:
+def _minimum(statement: Minimum, _: dict[str, Fraction]) -> bool:
     full, lower = _numbers(statement.matrix), _numbers(statement.lower)
     pivots = [Fraction(x) for x in statement.pivots]
     size = len(pivots)
@@ -93,6 +88,10 @@ def _minimum(statement: Minimum) -> bool:
     scaled = [[lower[i][j] * pivots[j] for j in range(size)] for i in range(size)]
     back = [list(row) for row in zip(*lower, strict=True)]
     return triangular and all(pivot > 0 for pivot in pivots) and _product(scaled, back) == full
+
+
+def _knots(statement: Knots, _: dict[str, Fraction]) -> bool:
+    return _fact(statement) == statement.holds
 
 
 def _fact(statement: Knots) -> bool:
@@ -134,3 +133,13 @@ def _determinant(rows: _Rows) -> Fraction:
             factor = rows[r][n] / rows[n][n]
             rows[r] = [a - factor * b for a, b in zip(rows[r], rows[n], strict=True)]
     return total
+
+
+_BY_FORM: dict[str, Callable[[Any, dict[str, Fraction]], bool]] = {
+    "identity": _identity,
+    "positive": _positive,
+    "rank": _rank,
+    "contained": _contained,
+    "minimum": _minimum,
+    "knots": _knots,
+}

@@ -109,7 +109,9 @@ def span_value(lets: Lets, order: int, knots: Sequence[Any], i: int, x: Any, spa
             if j in values:
                 terms.append((x - knots[j]) / (as_text(knots[j + p]) - knots[j]) * values[j])
             if j + 1 in values:
-                terms.append((as_text(knots[j + p + 1]) - x) / (as_text(knots[j + p + 1]) - knots[j + 1]) * values[j + 1])
+                terms.append(
+                    (as_text(knots[j + p + 1]) - x) / (as_text(knots[j + p + 1]) - knots[j + 1]) * values[j + 1]
+                )
             above[j] = lets.named(total(terms))
         values = above
     return values[i]
@@ -207,5 +209,7 @@ def integrals(
                 for n, b in enumerate(piece):
                     terms[m + n] += a * b
             product = terms
-        found.append(sum((c * (end ** (n + 1) - start ** (n + 1)) / (n + 1) for n, c in enumerate(product)), Fraction(0)))
+        found.append(
+            sum((c * (end ** (n + 1) - start ** (n + 1)) / (n + 1) for n, c in enumerate(product)), Fraction(0))
+        )
     return found

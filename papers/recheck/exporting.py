@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
-from functools import cache
 from itertools import chain
 from typing import Any
 
@@ -13,9 +12,9 @@ import sympy as sp
 from sympy.polys.domains import QQ
 from sympy.polys.matrices import DomainMatrix
 
-from semispline.papers.recheck.arithmetic import divisors, instance, names, parsed, satisfied, value
+from semispline.papers.recheck.arithmetic import divisors, instance, names, satisfied, value
 from semispline.papers.recheck.statements import Contained, Identity, Knots, Minimum, Positive, Rank, Term
-from semispline.papers.recheck.texts import NotExpressibleError, as_text, lets, text
+from semispline.papers.recheck.texts import NotExpressibleError, lets, text
 
 Where = Mapping[Any, Any] | Sequence[tuple[str, str]]
 
@@ -54,15 +53,21 @@ def identity(
     conditions = tuple(conditions)
 
     def fits(at: Mapping[str, Fraction]) -> bool:
-        return all(satisfied(c, at) for c in conditions) and (
-            equal or value(sides[0], at) != value(sides[1], at)
-        )
+        return all(satisfied(c, at) for c in conditions) and (equal or value(sides[0], at) != value(sides[1], at))
 
     at = _instance(label, variables, pairs, nonzero, fits)
     return Identity(
-        label=label, left=sides[0], right=sides[1], equal=equal, variables=variables, where=pairs, nonzero=nonzero,
-        conditions=conditions, at=at, **flags,
-    )  # fmt: skip
+        label=label,
+        left=sides[0],
+        right=sides[1],
+        equal=equal,
+        variables=variables,
+        where=pairs,
+        nonzero=nonzero,
+        conditions=conditions,
+        at=at,
+        **flags,
+    )
 
 
 def different(label: str, left: Any, right: Any, **more: Any) -> Identity:
@@ -86,7 +91,7 @@ def positive(
     strict: bool = True,
     **flags: bool,
 ) -> Positive:
-    """Return the statement that an expression is positive (or, not `strict`, not negative) for letters with these signs.
+    """Return the statement that an expression is positive, or not negative, for letters with these signs.
 
     Without `over`, numerator and denominator have no negative coefficient.
     """
@@ -109,10 +114,20 @@ def positive(
 
     at = _instance(label, variables, pairs, nonzero, fits)
     return Positive(
-        label=label, left=text(expression), over=tuple(over), under=under, positive=signs[0], nonnegative=signs[1],
-        strict=strict, variables=variables, where=pairs, nonzero=nonzero, at=at, affirmed=flags.pop("affirmed", True),
+        label=label,
+        left=text(expression),
+        over=tuple(over),
+        under=under,
+        positive=signs[0],
+        nonnegative=signs[1],
+        strict=strict,
+        variables=variables,
+        where=pairs,
+        nonzero=nonzero,
+        at=at,
+        affirmed=flags.pop("affirmed", True),
         **flags,
-    )  # fmt: skip
+    )
 
 
 def _terms(polynomial: Any) -> list[Term]:
@@ -147,9 +162,19 @@ def rank(label: str, matrix: Any, *, affirmed: bool = True, **flags: bool) -> Ra
     variables, nonzero = _read((), texts)
     at = _instance(label, variables, (), nonzero, lambda _: True)
     return Rank(
-        label=label, matrix=entries, rank=len(columns), rows=tuple(rows), columns=tuple(columns), kernel=vectors,
-        free=free, affirmed=affirmed, variables=variables, nonzero=nonzero, at=at, **flags,
-    )  # fmt: skip
+        label=label,
+        matrix=entries,
+        rank=len(columns),
+        rows=tuple(rows),
+        columns=tuple(columns),
+        kernel=vectors,
+        free=free,
+        affirmed=affirmed,
+        variables=variables,
+        nonzero=nonzero,
+        at=at,
+        **flags,
+    )
 
 
 def contained(label: str, outer: Any, inner: Any, *, wanted: bool = True, **flags: bool) -> Contained:
@@ -169,7 +194,9 @@ def contained(label: str, outer: Any, inner: Any, *, wanted: bool = True, **flag
         )
     # A row that sends the first columns to zero, and not all of the second ones.
     for row in one.transpose().nullspace().to_Matrix().tolist():
-        if any(sum(a * b for a, b in zip(row, column, strict=True)) for column in other.transpose().to_Matrix().tolist()):
+        if any(
+            sum(a * b for a, b in zip(row, column, strict=True)) for column in other.transpose().to_Matrix().tolist()
+        ):
             separator = tuple(map(text, row))
             return Contained(label=label, outer=texts[0], inner=texts[1], separator=separator, wanted=wanted, **flags)
     raise NotExpressibleError(f"{label}: found neither a solution nor what separates the columns")

@@ -17,7 +17,6 @@ from semispline.papers.recheck.statements import (
     certificate_record,
     from_record,
 )
-from semispline.papers.recheck.verdicts import verdict_of
 from semispline.solver.errors import InputError
 
 CONTROLS = "controls"
@@ -36,7 +35,7 @@ def write_certificates(folder: str | Path, export: Export) -> list[Path]:
         for part in ("statements", "gp"):
             (folder / part).mkdir(parents=True, exist_ok=True)
     except OSError as error:
-        raise InputError(f"certificates: {folder} cannot be a folder ({error.strerror}), expected a new or old one") from None
+        raise InputError(f"certificates: {folder} is no folder ({error.strerror}), expected one") from None
     files = {"README.md": _page(export), "check.gp": _check(export), "gp/checker.gp": CHECKER}
     for certificate in export.certificates:
         files[f"statements/{certificate.id}.json"] = _json(certificate_record(certificate))
@@ -108,7 +107,7 @@ To check all of it with PARI alone (Debian: `apt-get install pari-gp`), in this 
     gp -q check.gp
 
 The last line counts, and the status is 0 if PARI agrees on everything. What PARI is asked stands in `gp/checker.gp`.
-With Python, `cypari` and this package, but without SymPy: `python -m semispline.papers.recheck.process .`, which decides
+With Python, `cypari` and this package, but without SymPy: `python -m semispline.papers.recheck.process .`. It decides
 every instance with `fractions` too, and makes each verdict anew from its cases.
 
 What remains to be believed: that the statements say what the paper says, the sentences under `believed`, and the
@@ -121,10 +120,7 @@ of its reading must be false. `controls` are formulas with one change each, whic
 
 
 def _page(export: Export) -> str:
-    rows = [
-        f"| {c.id} | {c.verdict} | {len(c.statements)} | {c.left_out or ('' if verdict_of(c) == c.verdict else 'the verdict')} |"
-        for c in export.certificates
-    ]
+    rows = [f"| {c.id} | {c.verdict} | {len(c.statements)} | {c.left_out} |" for c in export.certificates]
     missing = [f"- {identifier}: {reason}" for identifier, reason in export.not_expressible.items()]
     tail = "\n\nDecided records of which nothing is here:\n\n" + "\n".join(missing) if missing else ""
     return _HEAD.format(paper=export.paper) + "\n".join(rows) + tail + "\n"

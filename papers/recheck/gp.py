@@ -6,7 +6,8 @@ functions call; all that PARI is asked is in there, in thirty lines.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
+from typing import Any
 
 from semispline.papers.recheck.arithmetic import divisors
 from semispline.papers.recheck.statements import (
@@ -34,42 +35,33 @@ covered(ds, fs) = {
   1 };
 \\ A minor that is not zero, and independent vectors that the matrix sends to zero: together the rank.
 ranked(M, minor, K, free, r) = {
-  #minor == r && (r == 0 || matdet(minor) != 0) && #K == matsize(M)[2] - r && (#K == 0 || (same(M * K, 0 * (M * K)) &&
-    matrix(#K, #K, i, j, K[free[i], j]) == matid(#K))) };
+  #minor == r && (r == 0 || matdet(minor) != 0) && #K == matsize(M)[2] - r &&
+    (#K == 0 || (same(M * K, 0 * (M * K)) && matrix(#K, #K, i, j, K[free[i], j]) == matid(#K))) };
 definite(A, L, d) = {
   my(n = #d);
   same(A, L * matdiagonal(d) * L~) && A == A~ && vecmin(d) > 0 && sum(i = 1, n, L[i, i] == 1) == n &&
     sum(i = 1, n, sum(j = i + 1, n, L[i, j] != 0)) == 0 };
+\\ Odd powers are taken of names alone that are positive, or not negative.
+signed(used, known) = setminus(Set(used), Set(known)) == [];
 increasing(v) = vecsort(v) == v;
 inner(v, k) = v[k + 1 .. #v - k];
 clamped(v, k) = v[1 .. k] == vector(k) && v[#v - k + 1 .. #v] == vector(k, i, 1);
-single(v, k) = #Set(inner(v, k)) == #inner(v, k) && (#v == 2 * k || (vecmin(inner(v, k)) > 0 && vecmax(inner(v, k)) < 1));
+single(v, k) = {
+  my(w = inner(v, k));
+  #Set(w) == #w && (#w == 0 || (vecmin(w) > 0 && vecmax(w) < 1)) };
 asked = 0; agreed = 0; refused = List();
 check(id, f) = {
   my(found = iferr(f(), e, Str(e)));
   asked++;
-  if(found === 1, agreed++, listput(refused, id); print("DIFFERENT ", id, if(type(found) == "t_STR", Str(": ", found), ""))) };
+  if(found === 1, agreed++; return());
+  listput(refused, id);
+  print("DIFFERENT ", id, if(type(found) == "t_STR", Str(": ", found), "")) };
 """
 
 
 def code(statement: Statement) -> str:
     """Return a statement as a function of PARI/GP without arguments."""
-    return f"()->if(1, {'; '.join([*_lets(statement.where), _asked(statement)])})"
-
-
-def _asked(statement: Statement) -> str:
-    if isinstance(statement, Identity):
-        return _identity(statement)
-    if isinstance(statement, Positive):
-        return _positive(statement)
-    if isinstance(statement, Rank):
-        return _rank(statement)
-    if isinstance(statement, Contained):
-        return _contained(statement)
-    if isinstance(statement, Minimum):
-        return f"definite({matrix(statement.matrix)}, {matrix(statement.lower)}, {vector(statement.pivots)})"
-    assert isinstance(statement, Knots)
-    return _knots(statement)
+    return f"()->if(1, {'; '.join([*_lets(statement.where), _BY_FORM[statement.form](statement)])})"
 
 
 def _lets(where: Iterable[tuple[str, str]]) -> list[str]:
@@ -96,8 +88,15 @@ def _identity(statement: Identity) -> str:
 def _positive(statement: Positive) -> str:
     terms = (*statement.over, *statement.under)
     signs = " && ".join(f"{term.coefficient} > 0" for term in terms)
+    used = {name for term in terms for name, power in term.powers if power % 2}
+    known = _strings([*statement.positive, *statement.nonnegative])
+    signs += f" && signed({_strings(sorted(used))}, {known})"
     sums = [" + ".join(map(term_text, part)) for part in (statement.over, statement.under)]
     return f"{_covered(statement)} && {signs} && same(({statement.left}) * ({sums[1]}), {sums[0]})"
+
+
+def _strings(words: Iterable[str]) -> str:
+    return vector([f'"{word}"' for word in words])
 
 
 def term_text(term: Term) -> str:
@@ -120,7 +119,9 @@ def _contained(statement: Contained) -> str:
     outer, inner = matrix(statement.outer), matrix(statement.inner)
     if statement.solution:
         return f"{outer} * {matrix(statement.solution)} == {inner}"
-    return f"my(y = {vector(statement.separator)}); y * {outer} == 0 * (y * {outer}) && y * {inner} != 0 * (y * {inner})"
+    return (
+        f"my(y = {vector(statement.separator)}); y * {outer} == 0 * (y * {outer}) && y * {inner} != 0 * (y * {inner})"
+    )
 
 
 def _knots(statement: Knots) -> str:
@@ -136,6 +137,20 @@ def _knots(statement: Knots) -> str:
     return asked if statement.holds else f"!({asked})"
 
 
+def _minimum(statement: Minimum) -> str:
+    return f"definite({matrix(statement.matrix)}, {matrix(statement.lower)}, {vector(statement.pivots)})"
+
+
+_BY_FORM: dict[str, Callable[[Any], str]] = {
+    "identity": _identity,
+    "positive": _positive,
+    "rank": _rank,
+    "contained": _contained,
+    "minimum": _minimum,
+    "knots": _knots,
+}
+
+
 def vector(entries: Sequence[str]) -> str:
     """Return a row vector."""
     return f"[{', '.join(entries)}]"
@@ -143,7 +158,11 @@ def vector(entries: Sequence[str]) -> str:
 
 def matrix(rows: Matrix) -> str:
     """Return a matrix."""
-    return f"[{'; '.join(', '.join(row) for row in rows)}]" if len(rows[0]) > 1 or len(rows) > 1 else f"Mat([{rows[0][0]}])"
+    return (
+        f"[{'; '.join(', '.join(row) for row in rows)}]"
+        if len(rows[0]) > 1 or len(rows) > 1
+        else f"Mat([{rows[0][0]}])"
+    )
 
 
 def statement_id(identifier: str, number: int, statement: Statement) -> str:

@@ -1,4 +1,4 @@
-"""The process that rechecks: PARI and `fractions`, never SymPy. `python -m semispline.papers.recheck.process FOLDER`."""
+"""The process that rechecks, with PARI and `fractions` but without SymPy: run it as a module, with a folder."""
 
 from __future__ import annotations
 
@@ -63,11 +63,12 @@ def main(arguments: Sequence[str]) -> int:
     result = recheck(arguments[0])
     for found in result["refused"].values():
         for name in found:
-            print(name, file=sys.stderr)
+            sys.stderr.write(f"{name}\n")
     if len(arguments) > 1:
         Path(arguments[1]).write_text(json.dumps(result), encoding="utf-8")
     count = result["statements"]
-    print(f"{count - sum(map(len, result['refused'].values()))} of {count} statements agree (PARI {result['pari']})")
+    agreed = count - sum(map(len, result["refused"].values()))
+    sys.stdout.write(f"{agreed} of {count} statements agree (PARI {result['pari']})\n")
     return int(bool(result["refused"]))
 
 

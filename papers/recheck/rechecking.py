@@ -11,6 +11,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from typing import Any
 
 from semispline.papers.ledger import CheckFailedError, Paper, paper_names
 from semispline.papers.recheck.draft import is_decided
@@ -49,7 +50,20 @@ class Recheck:
         """Records whose cases amount to another verdict than the recorded one, where all of them are there."""
         verdicts = self.verdicts or {}
         return tuple(
-            c.id for c in self.export.certificates if c.id in verdicts and not c.left_out and verdicts[c.id] != c.verdict
+            c.id
+            for c in self.export.certificates
+            if c.id in verdicts and not c.left_out and verdicts[c.id] != c.verdict
+        )
+
+    @property
+    def problems(self) -> tuple[str, ...]:
+        """What the second system disagrees with, one a line."""
+        refused = [f"recheck: found different: {name}" for found in (self.refused or {}).values() for name in found]
+        verdicts = self.verdicts or {}
+        recorded = {c.id: c.verdict for c in self.export.certificates}
+        return (
+            *refused,
+            *(f"recheck: {i}: the cases amount to {verdicts[i]}, recorded {recorded[i]}" for i in self.changed),
         )
 
     def is_whole(self, identifier: str) -> bool:
@@ -92,6 +106,20 @@ class Recheck:
     def reasons(self) -> dict[str, str]:
         """Return why records are not rechecked as a whole."""
         return dict(self.export.not_expressible) | {c.id: c.left_out for c in self.export.certificates if c.left_out}
+
+    def record(self, identifier: str) -> dict[str, Any] | None:
+        """Return what a ledger says of one record; None where it is not decided."""
+        found = next((c for c in self.export.certificates if c.id == identifier), None)
+        reason = self.reasons().get(identifier, "")
+        if found is None and not reason:
+            return None
+        return {
+            "statements": len(found.statements) if found else 0,
+            "refused": list((self.refused or {}).get(identifier, ())),
+            "whole": self.is_whole(identifier),
+            "not_expressible": reason,
+            "believed": list(found.believed) if found else [],
+        }
 
 
 def exported(paper: Paper) -> Export:
@@ -152,5 +180,3 @@ def rechecked(export: Export, folder: str | Path | None = None) -> Recheck:
         raise CheckFailedError("recheck: found SymPy in the process that rechecks, expected it not to be imported")
     refused = {name: tuple(found) for name, found in result["refused"].items()}
     return Recheck(export, refused, result["verdicts"])
-
-

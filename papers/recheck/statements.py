@@ -232,9 +232,7 @@ class Knots(Statement):
         return self.holds
 
 
-FORMS: dict[str, type[Statement]] = {
-    kind.form: kind for kind in (Identity, Positive, Rank, Contained, Minimum, Knots)
-}
+FORMS: dict[str, type[Statement]] = {kind.form: kind for kind in (Identity, Positive, Rank, Contained, Minimum, Knots)}
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,21 @@ import sympy as sp
 from semispline.solver.errors import InputError
 
 # What PARI and Coq read as something else.
-_RESERVED = {"I", "O", "Pi", "Euler", "Catalan", "same", "is_number", "covered", "ranked", "definite", "increasing"}
+_RESERVED = {
+    "I",
+    "O",
+    "Pi",
+    "Euler",
+    "Catalan",
+    "same",
+    "is_number",
+    "covered",
+    "ranked",
+    "signed",
+    "refused",
+    "definite",
+    "increasing",
+}
 _RESERVED |= {"inner", "clamped", "single", "asked", "agreed", "check", "if", "my", "for", "x_", "fun", "let", "in"}
 _SPELLED = {"+": "_plus_", "-": "_less_", "'": "_prime", "^": "_", ",": "_", " ": "_", ".": "_dot_"}
 
@@ -131,24 +145,33 @@ def _written(expression: Any) -> Text:
     """Return a SymPy expression as it stands."""
     if expression.is_Rational:
         return _number(Fraction(int(expression.p), int(expression.q)))
-    if expression.is_Symbol:
-        return Text(name_of(expression.name))
     if expression.is_Add:
-        # Positive terms first, as one writes them.
-        terms = sorted(expression.args, key=lambda term: term.could_extract_minus_sign())
-        total = _written(terms[0])
-        for term in terms[1:]:
-            total = total - _written(-term) if term.could_extract_minus_sign() else total + _written(term)
-        return total
+        return _sum(expression)
     if expression.is_Mul:
         return _product(expression)
     if expression.is_Pow and expression.exp.is_Integer:
         return _written(expression.base) ** int(expression.exp)
+    return Text(name_of(_letter(expression)))
+
+
+def _letter(expression: Any) -> str:
+    """Return the letter of a symbol, of a value of a function or of an entry."""
+    if expression.is_Symbol:
+        return str(expression.name)
     if isinstance(expression, sp.core.function.AppliedUndef):
-        return Text(name_of("_".join([expression.func.__name__, *(name_of(str(a)) for a in expression.args)])))
+        return "_".join([expression.func.__name__, *(name_of(str(a)) for a in expression.args)])
     if isinstance(expression, sp.Indexed):
-        return Text(name_of("_".join([str(expression.base), *(name_of(str(a)) for a in expression.indices)])))
+        return "_".join([str(expression.base), *(name_of(str(a)) for a in expression.indices)])
     raise NotExpressibleError(f"expression: found {expression}, expected a rational function")
+
+
+def _sum(expression: Any) -> Text:
+    # Positive terms first, as one writes them.
+    terms = sorted(expression.args, key=lambda term: term.could_extract_minus_sign())
+    found = _written(terms[0])
+    for term in terms[1:]:
+        found = found - _written(-term) if term.could_extract_minus_sign() else found + _written(term)
+    return found
 
 
 def _product(expression: Any) -> Text:

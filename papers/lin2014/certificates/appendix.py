@@ -12,7 +12,7 @@ from semispline.derivations.contact import A, contact_conditions, special_condit
 from semispline.papers.ledger import Claim, Formula, given
 from semispline.papers.lin2014 import printed as pr
 from semispline.papers.lin2014.certificates.contact import INDUCTION, Pairs, closed_derivative, induction, letters
-from semispline.papers.lin2014.checks.contact_rows import BASE_H, BASE_ROWS, BLEND_H, ROWS, Side, u_last, w_kr1
+from semispline.papers.lin2014.checks.contact_rows import BASE_H, BASE_ROWS, BLEND_H, ROWS, Side, u_last
 from semispline.papers.recheck import (
     Draft,
     Lets,
@@ -91,10 +91,16 @@ def first_order(right: Any, **flags: bool) -> Iterator[Statement]:
     free = vector("P_u")
     product = cross(slope, along)
     for c, axis in enumerate(_AXES):
-        yield identity(f"sufficiency, any R and P: P_u x P_v, {axis}", product[c], Text("p_1") * normal[c],
-                       where=pairs, **flags)  # fmt: skip
-        yield identity(f"necessity, any R and P: {axis}", free[c] - slope[c].at(2), dot(free, normal) / square * normal[c],
-                       where=(*pairs, *_solved(free, (pr.p_1, pr.q_1))), **flags)  # fmt: skip
+        yield identity(
+            f"sufficiency, any R and P: P_u x P_v, {axis}", product[c], Text("p_1") * normal[c], where=pairs, **flags
+        )
+        yield identity(
+            f"necessity, any R and P: {axis}",
+            free[c] - slope[c].at(2),
+            dot(free, normal) / square * normal[c],
+            where=(*pairs, *_solved(free, (pr.p_1, pr.q_1))),
+            **flags,
+        )
 
 
 def second_order(right: Any, **flags: bool) -> Iterator[Statement]:
@@ -105,29 +111,45 @@ def second_order(right: Any, **flags: bool) -> Iterator[Statement]:
     second, bends = vector("P_uu"), [vector(s) for s in _BASE[2:]]
     # P_uv is the derivative of (15) along the contact.
     mixed = [
-        Text("p_1_prime") * across[c] + Text("p_1") * bends[1][c] + Text("q_1_prime") * along[c]
-        + Text("q_1") * bends[2][c] for c in range(3)
-    ]  # fmt: skip
+        Text("p_1_prime") * across[c]
+        + Text("p_1") * bends[1][c]
+        + Text("q_1_prime") * along[c]
+        + Text("q_1") * bends[2][c]
+        for c in range(3)
+    ]
     for c, axis in enumerate(_AXES):
         left = slope[c] * Text("du") + along[c] * Text("dv")
-        yield identity(f"one direction in both parametrisations, {axis}", left,
-                       steps[0] * across[c] + steps[1] * along[c], **flags)  # fmt: skip
+        yield identity(
+            f"one direction in both parametrisations, {axis}", left, steps[0] * across[c] + steps[1] * along[c], **flags
+        )
     forms = [
-        second[c] * Text("du^2", 3) + 2 * mixed[c] * Text("du", 4) * Text("dv") + bends[2][c] * Text("dv^2", 3)
+        second[c] * Text("du^2", 3)
+        + 2 * mixed[c] * Text("du", 4) * Text("dv")
+        + bends[2][c] * Text("dv^2", 3)
         - (bends[0][c] * steps[0] ** 2 + 2 * bends[1][c] * steps[0] * steps[1] + bends[2][c] * steps[1] ** 2)
         for c in range(3)
-    ]  # fmt: skip
+    ]
     seconds = [_at_coordinate(_chain_rule(2).subs({pr.p_2: 0, pr.q_2: 0}), c) for c in range(3)]
     excess = [second[c] - seconds[c] for c in range(3)]
-    yield identity("the second fundamental forms differ by the normal part of P_uu", dot(forms, normal),
-                   dot(excess, normal) * Text("du^2", 3), where=pairs, **flags)  # fmt: skip
+    yield identity(
+        "the second fundamental forms differ by the normal part of P_uu",
+        dot(forms, normal),
+        dot(excess, normal) * Text("du^2", 3),
+        where=pairs,
+        **flags,
+    )
     printed = tuple((f"P_uu_{axis}", str(_at_coordinate(right, c))) for c, axis in enumerate(_AXES))
     yield identity("sufficiency: the forms agree", dot(forms, normal), 0, where=(*pairs, *printed), **flags)
     free = vector("X")
     where = (*pairs, *_solved(free, (pr.p_2, pr.q_2)))
     for c, axis in enumerate(_AXES):
-        yield identity(f"necessity: {axis}", seconds[c] + free[c] - _at_coordinate(right, c),
-                       dot(free, normal) / square * normal[c], where=where, **flags)  # fmt: skip
+        yield identity(
+            f"necessity: {axis}",
+            seconds[c] + free[c] - _at_coordinate(right, c),
+            dot(free, normal) / square * normal[c],
+            where=where,
+            **flags,
+        )
 
 
 def _chain_rule(order: int) -> Any:
@@ -183,7 +205,7 @@ def joined(
     patch, slopes, along = [], [], []
     for c, part in enumerate(base):
         start = part.subs(_W, 0)
-        derivatives = [pr.EQ_15.relation.rhs, condition][:: 1 if order == 2 else -1][: order]
+        derivatives = [pr.EQ_15.relation.rhs, condition][:: 1 if order == 2 else -1][:order]
         polynomial: Any = as_text(start)
         for d, right in enumerate(derivatives, start=1):
             coefficient = right.subs(values).subs(at[c])
@@ -194,11 +216,17 @@ def joined(
         along.append(as_text(sp.diff(start, _V)))
     names = [(axis, str(value)) for axis, value in zip(_AXES, patch, strict=True)]
     graph = "z - (x^2 - x*y/2 + y^3/3 + y/7)" if base[2] != 0 else "z"
-    in_uv = sp.expand(sp.sympify(graph.replace("^", "**")).subs(
-        {axis: sp.sympify(value.replace("^", "**")) for axis, value in names}))  # fmt: skip
+    in_uv = sp.expand(
+        sp.sympify(graph.replace("^", "**")).subs({axis: sp.sympify(value.replace("^", "**")) for axis, value in names})
+    )
     rest = sp.cancel(in_uv / _U ** (order + 1))
-    yield identity(f"{label}: F has no power of u up to {order}", Text(graph, 1), Text(f"u^{order + 1}", 3) * as_text(rest),
-                   where=names, own=False)  # fmt: skip
+    yield identity(
+        f"{label}: F has no power of u up to {order}",
+        Text(graph, 1),
+        Text(f"u^{order + 1}", 3) * as_text(rest),
+        where=names,
+        own=False,
+    )
     normal = cross(slopes, along)
     if meets:
         for i in range(11):
@@ -208,8 +236,15 @@ def joined(
     else:
         singular = {_V: sp.Rational(1, 2)}
         for c, axis in enumerate(_AXES):
-            yield identity(f"{label}: P is singular at v = 1/2, {axis}", normal[c], 0, where=singular, own=False,
-                           meets=False, wanted=False)  # fmt: skip
+            yield identity(
+                f"{label}: P is singular at v = 1/2, {axis}",
+                normal[c],
+                0,
+                where=singular,
+                own=False,
+                meets=False,
+                wanted=False,
+            )
 
 
 def general(order: int) -> Any:
@@ -226,8 +261,15 @@ def general(order: int) -> Any:
         cases += (first_order if order == 1 else second_order)(right)
         cases += instances(order, right)
         if order == 1:
-            cases.append(contained("necessity, the plane as (w^2, v, 0), continued by (-u, v, 0)",
-                                   [[0, 0], [0, 1], [0, 0]], [[-1], [0], [0]], own=False, meets=False))  # fmt: skip
+            cases.append(
+                contained(
+                    "necessity, the plane as (w^2, v, 0), continued by (-u, v, 0)",
+                    [[0, 0], [0, 1], [0, 0]],
+                    [[-1], [0], [0]],
+                    own=False,
+                    meets=False,
+                )
+            )
         return Draft([cases], believed=(PLANES, *((FORMS,) if order == 2 else ())))
 
     return draft
@@ -241,9 +283,14 @@ def special(formula: Formula, order: int, *, equal: bool = True) -> list[Stateme
     right = formula.relation.rhs
     return [
         identity(f"every alpha and {letter}: the derived condition", right, derived, equal=equal, where=where),
-        identity(f"every alpha and {letter}: derivative {order} of R(w_s - a u)", right,
-                 Text(f"(-a)^{order}") * as_text(letter), equal=equal, where=where),
-    ]  # fmt: skip
+        identity(
+            f"every alpha and {letter}: derivative {order} of R(w_s - a u)",
+            right,
+            Text(f"(-a)^{order}") * as_text(letter),
+            equal=equal,
+            where=where,
+        ),
+    ]
 
 
 def special_contact(order: int) -> Iterator[Statement]:
@@ -276,10 +323,14 @@ def substitution(claim: Claim) -> Draft:
     """Return that p_1 = alpha^2, the rest zero, turns (15), (16) into (17), (18)."""
     chosen = ((text(pr.p_1), text(pr.alpha**2)), (text(pr.q_1), "0"), (text(pr.p_2), "0"), (text(pr.q_2), "0"))
     general_ = (pr.EQ_15, pr.EQ_16)
-    return Draft([
-        [identity(f"({17 + n}), all alpha", formula.relation.rhs, general_[n].relation.rhs, where=chosen)
-         for n, formula in enumerate(claim.formulas)]
-    ])  # fmt: skip
+    return Draft(
+        [
+            [
+                identity(f"({17 + n}), all alpha", formula.relation.rhs, general_[n].relation.rhs, where=chosen)
+                for n, formula in enumerate(claim.formulas)
+            ]
+        ]
+    )
 
 
 def derivative_cases(formula: Formula, *, equal: bool = True) -> Iterator[Statement]:
@@ -298,8 +349,14 @@ def derivative_cases(formula: Formula, *, equal: bool = True) -> Iterator[Statem
         unrolled = Lets("c")
         jets = end_jets(unrolled, number - 1, [text(x) for x in h], d)
         true = derivative(curve_jet(jets, [as_text(row) for row in rows]), d)
-        yield identity(f"order {number}, by the recursion: {relation.lhs}", relation.rhs, true, equal=equal,
-                       where=((text(order), str(number)), *where, *unrolled.pairs), own=number == 4)  # fmt: skip
+        yield identity(
+            f"order {number}, by the recursion: {relation.lhs}",
+            relation.rhs,
+            true,
+            equal=equal,
+            where=((text(order), str(number)), *where, *unrolled.pairs),
+            own=number == 4,
+        )
 
 
 def first_derivatives(claim: Claim) -> Draft:
@@ -319,9 +376,7 @@ def second_derivatives(claim: Claim) -> Draft:
 
 def solved_row(formula: Formula, order: int, *, equal: bool = True) -> Statement:
     """Return whether a row satisfies (17) or (18) with the end derivatives, all as printed."""
-    condition, of_p, of_r = (
-        (pr.EQ_17, pr.APP_D1_P, pr.APP_D1_R) if order == 1 else (pr.EQ_18, pr.APP_D2_P, pr.APP_D2_R)
-    )
+    condition, of_p, of_r = (pr.EQ_17, pr.APP_D1_P, pr.APP_D1_R) if order == 1 else (pr.EQ_18, pr.APP_D2_P, pr.APP_D2_R)
     where = (lets({formula.relation.lhs: formula.relation.rhs})[0], lets({of_r.relation.lhs: of_r.relation.rhs})[0])
     return identity(f"put into ({16 + order})", of_p.relation.rhs, condition.relation.rhs, where=where, equal=equal)
 
@@ -342,14 +397,23 @@ def similarly(claim: Claim) -> Draft:
         left, right = at_s.relation.rhs, at_r.relation.rhs
         last = ((text(pr.u_m3), text(u_last)),) if row else ()
         mirrored = lets(names)
-        cases.append(identity(f"row {row}, k = 4, where u_{{m-3}} is the last inner knot", left, right,
-                              where=(*last, *mirrored)))  # fmt: skip
+        cases.append(
+            identity(f"row {row}, k = 4, where u_{{m-3}} is the last inner knot", left, right, where=(*last, *mirrored))
+        )
         if row:
             cases += [
-                identity(f"row {row}, k = {k}, where it is another knot", left, right, equal=False, own=False, meets=False,
-                         where=((text(pr.k), str(k)), *mirrored), conditions=("u_m_less_3 != u_m_less_k_plus_1",))
+                identity(
+                    f"row {row}, k = {k}, where it is another knot",
+                    left,
+                    right,
+                    equal=False,
+                    own=False,
+                    meets=False,
+                    where=((text(pr.k), str(k)), *mirrored),
+                    conditions=("u_m_less_3 != u_m_less_k_plus_1",),
+                )
                 for k in (3, 5, 6)
-            ]  # fmt: skip
+            ]
     return Draft([cases])
 
 

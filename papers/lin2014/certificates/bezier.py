@@ -48,12 +48,18 @@ def by_triangle(points: Any, x: Any) -> Text:
 def triangle_step() -> Iterator[Statement]:
     """Yield a step of de Casteljau's triangle on the factors of control points, for every degree, and degree 0."""
     # b stands for C(k-1, r-1); then C(k-1, r) = b (k - r) / r and C(k, r) = b k / r, powers of x and 1 - x apart.
-    yield identity("a step of the triangle, every degree k and index r", Text("b*k/r", 2), Text("b*(k - r)/r + b", 1), own=False)
+    yield identity(
+        "a step of the triangle, every degree k and index r", Text("b*k/r", 2), Text("b*(k - r)/r + b", 1), own=False
+    )
     yield identity("degree 0", bernstein(0, 0, Text("x")), 1, own=False)
     for degree in range(1, 5):
         points = [Text(f"P_{i}") for i in range(degree + 1)]
-        yield identity(f"degree {degree}: the derived triangle", de_casteljau(points, Text("x")), by_triangle(points, Text("x")),
-                       own=False)  # fmt: skip
+        yield identity(
+            f"degree {degree}: the derived triangle",
+            de_casteljau(points, Text("x")),
+            by_triangle(points, Text("x")),
+            own=False,
+        )
 
 
 def lemmas() -> Iterator[Statement]:
@@ -61,13 +67,21 @@ def lemmas() -> Iterator[Statement]:
     v, w, x, y, p, q, r = map(Text, "vwxypqr")
     factorials = Text("fn/(fs*fns)", 2) * (Text("fs") / (Text("fj") * Text("fsj")))
     other = Text("fn/(fj*fnj)", 2) * (Text("fnj") / (Text("fsj") * Text("fns")))
-    yield identity("subdivision: C(n, s) C(s, j) = C(n, j) C(n-j, s-j), fn = n!, fns = (n-s)!, ..", factorials, other, own=False)
+    yield identity(
+        "subdivision: C(n, s) C(s, j) = C(n, j) C(n-j, s-j), fn = n!, fns = (n-s)!, ..", factorials, other, own=False
+    )
     product = Text("A*B/D", 2) * Text("D")
-    yield identity("product: the weight times B_(i+j)^(a+b) is B_i^a B_j^b, A = C(a, i), ..", product, Text("A*B", 2), own=False)
+    yield identity(
+        "product: the weight times B_(i+j)^(a+b) is B_i^a B_j^b, A = C(a, i), ..", product, Text("A*B", 2), own=False
+    )
     yield identity("collect", (1 - w) + w * (1 - v), 1 - v * w, own=False)
     yield identity("mirror", 1 - (v + (1 - v) * w), (1 - v) * (1 - w), own=False)
-    yield identity("affine", blossom([p, q], [v * w + (1 - v) * x]), v * blossom([p, q], [w]) + (1 - v) * blossom([p, q], [x]),
-                   own=False)  # fmt: skip
+    yield identity(
+        "affine",
+        blossom([p, q], [v * w + (1 - v) * x]),
+        v * blossom([p, q], [w]) + (1 - v) * blossom([p, q], [x]),
+        own=False,
+    )
     yield identity("symmetric", blossom([p, q, r], [x, y]), blossom([p, q, r], [y, x]), own=False)
 
 
@@ -81,9 +95,16 @@ def patch_cases(formula: Formula, *, equal: bool = True) -> Iterator[Statement]:
     u, v = Text("u"), Text("v")
     for m, n, _ in DEGREES:
         net = net_of(m, n)
-        meaning = Meaning({pr.u: u, pr.v: v, pr.m: m, pr.n: n}, {"P": lambda i, j, net=net: net[int(i)][int(j)], "B": bernstein})
-        yield identity(f"degrees {m}, {n}", interpret(formula.relation.rhs, meaning),
-                       by_triangle([by_triangle(row, v) for row in net], u), own=m == n == 3, equal=equal)  # fmt: skip
+        meaning = Meaning(
+            {pr.u: u, pr.v: v, pr.m: m, pr.n: n}, {"P": lambda i, j, net=net: net[int(i)][int(j)], "B": bernstein}
+        )
+        yield identity(
+            f"degrees {m}, {n}",
+            interpret(formula.relation.rhs, meaning),
+            by_triangle([by_triangle(row, v) for row in net], u),
+            own=m == n == 3,
+            equal=equal,
+        )
 
 
 def function(claim: Claim) -> Draft:
@@ -100,7 +121,12 @@ def function(claim: Claim) -> Draft:
             cases.append(identity(f"degree {k}: {name}", interpret(formula.relation.rhs, meaning), true))
     # i/k C(k, i) = C(k-1, i-1), b the latter; so term i is t B_(i-1)^(k-1), and these sum to t.
     cases.append(identity("every k: term i of the abscissae", Text("i/k*(b*k/i)", 2), Text("b"), own=False))
-    v = positive("weights x^i (1-x)^(k-i) with x = a/(a+b) are not negative", Text("a/(a + b)", 2), positive=("a", "b"), own=False)
+    v = positive(
+        "weights x^i (1-x)^(k-i) with x = a/(a+b) are not negative",
+        Text("a/(a + b)", 2),
+        positive=("a", "b"),
+        own=False,
+    )
     return Draft([[*cases, *triangle_step(), v]], believed=(UNROLLED, BINOMIALS))
 
 
@@ -120,8 +146,13 @@ def divided(part: str) -> Callable[[Formula], Iterator[Statement]]:
             place = Text("x")
             where = [("c", str(cut)), ("x", "c*v" if part == "bottom" else "c + (1 - c)*v")]
             true = bezier([bezier(line, place) for line in net], u)
-            yield identity(f"{part}, degrees {m}, {n}, {k}", interpret(formula.relation.rhs, meaning), true, where=where,
-                           own=m == n == 3)  # fmt: skip
+            yield identity(
+                f"{part}, degrees {m}, {n}, {k}",
+                interpret(formula.relation.rhs, meaning),
+                true,
+                where=where,
+                own=m == n == 3,
+            )
 
     return cases
 
@@ -135,8 +166,12 @@ def division(claim: Claim) -> Draft:
 def division_rows(claim: Claim) -> Draft:
     """Return the formula for Q_j^s, s = 1, 2, 3."""
     cases = [case for depth, formula in enumerate(claim.formulas, start=1) for case in row_formula(formula, depth)]
-    step = identity("from s - 1 to s: the weight, A = C(n, a), B = C(k, b), D = C(n+k, a+b)", Text("A*B/D*D/A", 2), Text("B"),
-                    own=False)  # fmt: skip
+    step = identity(
+        "from s - 1 to s: the weight, A = C(n, a), B = C(k, b), D = C(n+k, a+b)",
+        Text("A*B/D*D/A", 2),
+        Text("B"),
+        own=False,
+    )
     return Draft([[*cases, step, *lemmas()]], believed=(UNROLLED, BINOMIALS))
 
 
@@ -153,8 +188,13 @@ def row_formula(formula: Formula, depth: int) -> Iterator[Statement]:
 
             meaning = Meaning({pr.j: j, pr.u: u, pr.m: m, pr.k: k}, {"B": bernstein, "F": at})
             line = [polar(row[j : j + depth + 1], [Text("c")] * depth) for row in net]
-            yield identity(f"s = {depth}, degrees {m}, {n}, {k}, j = {j}", interpret(formula.relation.rhs, meaning),
-                           bezier(line, u), where=[("c", str(bezier(values, u)))], own=m == n == 3)  # fmt: skip
+            yield identity(
+                f"s = {depth}, degrees {m}, {n}, {k}, j = {j}",
+                interpret(formula.relation.rhs, meaning),
+                bezier(line, u),
+                where=[("c", str(bezier(values, u)))],
+                own=m == n == 3,
+            )
 
 
 def polar(points: list[Text], arguments: list[Text]) -> Text:
@@ -191,8 +231,12 @@ def blossoms(first: bool) -> Callable[[Claim], Draft]:
                     derived = blossom(row[j : j + s + 1], xs[:s])
                     cases.append(identity(f"{label}: the derived blossom", derived, right))
         # Choices with argument s among the c, and those without it.
-        step = identity("every s: choices split by the last argument", Text("(1 - x)*E + x*F", 1), Text("x*F + (1 - x)*E", 1),
-                        own=False)  # fmt: skip
+        step = identity(
+            "every s: choices split by the last argument",
+            Text("(1 - x)*E + x*F", 1),
+            Text("x*F + (1 - x)*E", 1),
+            own=False,
+        )
         return Draft([[*cases, step, *triangle_step()]], believed=(UNROLLED, BINOMIALS))
 
     return draft
@@ -224,15 +268,24 @@ def elevation() -> Iterator[Statement]:
     for d in range(1, 5):
         points = [Text(f"P_{i}") for i in range(d + 1)]
         higher = [points[0]]
-        higher += [Text(f"{i}/{d + 1}", 2) * points[i - 1] + Text(f"{d + 1 - i}/{d + 1}", 2) * points[i] for i in range(1, d + 1)]
+        higher += [
+            Text(f"{i}/{d + 1}", 2) * points[i - 1] + Text(f"{d + 1 - i}/{d + 1}", 2) * points[i]
+            for i in range(1, d + 1)
+        ]
         yield identity(f"degree {d}", bezier(points, Text("x")), bezier([*higher, points[-1]], Text("x")))
 
 
 def kind_of_subpatch(claim: Claim) -> Draft:
     """Return the three readings of what a sub-patch is."""
     count = pr.COUNT_BOTTOM.relation.rhs
-    orders = [different("degree of the last row and of the first", count.subs(pr.s, pr.n), count.subs(pr.s, 0),
-                        conditions=("n > 0", "k > 0"))]  # fmt: skip
+    orders = [
+        different(
+            "degree of the last row and of the first",
+            count.subs(pr.s, pr.n),
+            count.subs(pr.s, 0),
+            conditions=("n > 0", "k > 0"),
+        )
+    ]
     bottom, top, count_bottom, count_top = (given(part.formula) for part in claim.readings[2].parts)
     skins = [*divided("bottom")(bottom), *divided("top")(top), *lemmas()]
     skins += [*row_count_cases(count_bottom, "bottom"), *row_count_cases(count_top, "top")]

@@ -69,7 +69,9 @@ def parametric_c1(claim: Claim) -> Draft:
         row = ((text(formula.relation.lhs), text(formula.relation.rhs)),)
         where = (*letters("start", "parametric"), *rows_before("start", 1), *row)
         right = sign * closed_derivative("start", "base", 1)
-        case = identity("every order and knots", closed_derivative("start", "blend", 1), right, equal=sign < 0, where=where)
+        case = identity(
+            "every order and knots", closed_derivative("start", "blend", 1), right, equal=sign < 0, where=where
+        )
         readings.append([case] if sign > 0 else [*induction(), case])
     return Draft(readings, believed=(INDUCTION,))
 
@@ -97,15 +99,27 @@ def multiples(formula: Formula) -> Iterator[Statement]:
     relation = formula.relation
     far = sp.Symbol("u_first")
     for k, place, distance in ((3, u_before, "1 - u_m_less_k"), (2, far, "1 - u_first")):
-        where = ((text(pr.k), str(k)), *letters("end"), (text(pr.u_m3), text(place)), *rows_before("end", 1),
-                 (text(relation.lhs), text(relation.rhs)))  # fmt: skip
+        where = (
+            (text(pr.k), str(k)),
+            *letters("end"),
+            (text(pr.u_m3), text(place)),
+            *rows_before("end", 1),
+            (text(relation.lhs), text(relation.rhs)),
+        )
         factor = Text(f"a*({distance})/h1", 2)
-        yield identity(f"k = {k}: P_u is a multiple of S_t", closed_derivative("end", "blend", 1),
-                       -factor * closed_derivative("end", "base", 1), where=where, own=False)  # fmt: skip
+        yield identity(
+            f"k = {k}: P_u is a multiple of S_t",
+            closed_derivative("end", "blend", 1),
+            -factor * closed_derivative("end", "base", 1),
+            where=where,
+            own=False,
+        )
     yield positive("k < 4: the factor is positive", Text("b^2*g/h1", 2), positive=("b", "g", "h1"), own=False)
     for k in (5, 6):
         where = ((text(pr.k), str(k)), (text(pr.u_m3), "1"))
-        yield identity(f"k = {k}: row m-1 is row m", relation.rhs, pr.P_m, where=where, wanted=False, own=False, meets=False)
+        yield identity(
+            f"k = {k}: row m-1 is row m", relation.rhs, pr.P_m, where=where, wanted=False, own=False, meets=False
+        )
 
 
 def sufficient_g2(claim: Claim) -> Draft:
@@ -131,17 +145,27 @@ def initial_value(claim: Claim) -> Draft:
     sides: tuple[Side, Side] = ("start", "end")
     for side in sides:
         for row, condition in enumerate(conditions[side]):
-            where = (("alpha", text(shape)), ("beta", text(shape)), *letters(side), *rows_before(side, row),
-                     (text(condition.relation.lhs), text(condition.relation.rhs)))  # fmt: skip
+            where = (
+                ("alpha", text(shape)),
+                ("beta", text(shape)),
+                *letters(side),
+                *rows_before(side, row),
+                (text(condition.relation.lhs), text(condition.relation.rhs)),
+            )
             sign = Text(f"(-1)^{row}", 3)
-            cases.append(identity(f"row {row} from the {side}: derivative {row} is that of the base run backwards",
-                                  closed_derivative(side, "blend", row), sign * closed_derivative(side, "base", row),
-                                  where=where))  # fmt: skip
+            cases.append(
+                identity(
+                    f"row {row} from the {side}: derivative {row} is that of the base run backwards",
+                    closed_derivative(side, "blend", row),
+                    sign * closed_derivative(side, "base", row),
+                    where=where,
+                )
+            )
     return Draft([cases], believed=(INDUCTION,))
 
 
 def undisturbed(claim: Claim) -> Draft:
-    """Return that the contact curve is the first row, and that rows of the blend are combinations of three of the base."""
+    """Return that the contact curve is the first row, and that rows of the blend are made of three of the base."""
     return Draft([[*contact_curve(), *three_rows()]], believed=(INDUCTION,))
 
 
@@ -154,17 +178,25 @@ def contact_curve() -> Iterator[Statement]:
             unrolled = Lets("c")
             jets = end_jets(unrolled, degree, span_symbols(degree), 0, end)
             for i, jet in enumerate(jets):
-                yield identity(f"degree {degree}, by the recursion, at the {end}: function {i}",
-                               jet[0] if jet[0] is not None else 0, int(i == 0), where=unrolled.pairs,
-                               own=degree == 3)  # fmt: skip
+                yield identity(
+                    f"degree {degree}, by the recursion, at the {end}: function {i}",
+                    jet[0] if jet[0] is not None else 0,
+                    int(i == 0),
+                    where=unrolled.pairs,
+                    own=degree == 3,
+                )
 
 
 def three_rows() -> Iterator[Statement]:
     """Yield that R_2 has a factor in row 2, which is a^2 times a positive number, for every order from 3 on."""
     every = contact_rows(2, pr.k - 1, span_symbols(2), pr.k_r - 1, span_symbols(2, "H"))
     over = {pr.k: sp.Symbol("r") + 3, pr.k_r: sp.Symbol("s") + 3}
-    yield positive("every order from 3 on: R_2 has a factor in row 2", every[2, 2].subs(over),
-                   positive=(A, *span_symbols(2), *span_symbols(2, "H")), nonnegative=("r", "s"))  # fmt: skip
+    yield positive(
+        "every order from 3 on: R_2 has a factor in row 2",
+        every[2, 2].subs(over),
+        positive=(A, *span_symbols(2), *span_symbols(2, "H")),
+        nonnegative=("r", "s"),
+    )
     for row in range(3):
         for j in range(row + 1, 3):
             yield identity(f"R_{j} has none in row {row}", every[row, j], 0)
@@ -176,30 +208,52 @@ def three_rows() -> Iterator[Statement]:
 
 
 def figure_row(
-    formula: Formula | None, side: Side, m: int, mode: Mode = "all", extra: Pairs = (), *, equal: bool = True, **flags: bool
+    formula: Formula | None,
+    side: Side,
+    m: int,
+    mode: Mode = "all",
+    extra: Pairs = (),
+    *,
+    equal: bool = True,
+    **flags: bool,
 ) -> Iterator[Statement]:
     """Yield row 2 of a figure: k = k_r = 4, uniform u_i, by closed form and by the recursion."""
     relation = given(formula).relation
     h = sp.Rational(1, m - 2), sp.Rational(2, m - 2)
     knots = (
-        {pr.u_1: h[0], pr.u_2: h[1]}
-        if side == "start"
-        else {u_last: 1 - h[0], u_before: 1 - h[1], pr.u_m3: 1 - h[0]}
+        {pr.u_1: h[0], pr.u_2: h[1]} if side == "start" else {u_last: 1 - h[0], u_before: 1 - h[1], pr.u_m3: 1 - h[0]}
     )
     where = (
-        (text(pr.k), str(CUBIC)), (text(base_order(side)), str(CUBIC)), *((text(s), text(x)) for s, x in knots.items()),
-        *extra, *letters(side, mode), *rows_before(side, 2), (text(relation.lhs), text(relation.rhs)),
-    )  # fmt: skip
+        (text(pr.k), str(CUBIC)),
+        (text(base_order(side)), str(CUBIC)),
+        *((text(s), text(x)) for s, x in knots.items()),
+        *extra,
+        *letters(side, mode),
+        *rows_before(side, 2),
+        (text(relation.lhs), text(relation.rhs)),
+    )
     sign = Text("a^2", 3)
     if equal:
         yield from induction()
-    yield identity(f"any rows, {m + 1} curves", closed_derivative(side, "blend", 2),
-                   sign * closed_derivative(side, "base", 2), equal=equal, where=where, **flags)  # fmt: skip
+    yield identity(
+        f"any rows, {m + 1} curves",
+        closed_derivative(side, "blend", 2),
+        sign * closed_derivative(side, "base", 2),
+        equal=equal,
+        where=where,
+        **flags,
+    )
     unrolled, base_lets = Lets("c"), Lets("d")
     blend = curve_jet(end_jets(unrolled, 3, [Text("h1"), Text("h2")], 2, side), [as_text(x) for x in ROWS[side]])
     base = curve_jet(end_jets(base_lets, 3, [Text("H1"), Text("H2")], 2), [as_text(x) for x in BASE_ROWS[side]])
-    yield identity(f"any rows, {m + 1} curves, by the recursion", derivative(blend, 2), sign * derivative(base, 2),
-                   equal=equal, where=(*where, *unrolled.pairs, *base_lets.pairs), **flags)  # fmt: skip
+    yield identity(
+        f"any rows, {m + 1} curves, by the recursion",
+        derivative(blend, 2),
+        sign * derivative(base, 2),
+        equal=equal,
+        where=(*where, *unrolled.pairs, *base_lets.pairs),
+        **flags,
+    )
 
 
 def c2_figure(claim: Claim) -> Draft:
@@ -224,9 +278,7 @@ def g2_figure(m: int) -> Any:
             *figure_row(squared, "end", m, "normal", _EQUAL),
             *figure_row(squared, "end", m, "normal", equal=False, own=False, meets=False),
         ]
-        readings = [
-            figure_row(printed, "end", m, "normal", equal=False), spans, figure_row(corrected, "end", m)
-        ]  # fmt: skip
+        readings = [figure_row(printed, "end", m, "normal", equal=False), spans, figure_row(corrected, "end", m)]
         return Draft(readings, figure_row(claim.corrected_formulas[0], "end", m), (INDUCTION,))
 
     return draft

@@ -25,7 +25,6 @@ from semispline.papers.lin2014.checks.contact_rows import (
     Mode,
     Side,
     base_order,
-    knots_as_spans,
     t_ks1,
     u_before,
     u_last,
@@ -44,7 +43,6 @@ from semispline.papers.recheck import (
     derivative,
     end_jets,
     identity,
-    lets,
     text,
     total,
 )
@@ -145,9 +143,14 @@ def row_cases(
     left = closed_derivative(side, "blend", row)
     right = Text("-a").at(2)
     yield identity(
-        f"{label}: derivative {row} of the blend", left, Text(f"({right})^{row}") * closed_derivative(side, "base", row),
-        equal=equal, where=where, conditions=conditions, **own,
-    )  # fmt: skip
+        f"{label}: derivative {row} of the blend",
+        left,
+        Text(f"({right})^{row}") * closed_derivative(side, "base", row),
+        equal=equal,
+        where=where,
+        conditions=conditions,
+        **own,
+    )
     derived = contact_rows(2, pr.k - 1, BLEND_H[:2], base_order(side) - 1, BASE_H)
     by_rows = total(as_text(derived[row, j]) * as_text(BASE_ROWS[side][j]) for j in range(row + 1))
     yield identity(
@@ -160,9 +163,16 @@ def row_cases(
         return
     for k in (3, 5):
         yield defined_case(
-            formula, side, row, mode, (k, 4), equal=False, conditions=conditions, counted=True,
+            formula,
+            side,
+            row,
+            mode,
+            (k, 4),
+            equal=False,
+            conditions=conditions,
+            counted=True,
             **{**flags, "own": False, "meets": False},
-        )  # fmt: skip
+        )
 
 
 def defined_case(
@@ -194,16 +204,27 @@ def defined_case(
         place = {3: u_before, 2: sp.Symbol("u_first"), 4: u_last}.get(k, sp.Integer(1)) if counted else u_last
         index = ((text(pr.u_m3), text(place)),)
     where = (
-        (text(pr.k), str(k)), (text(base_order(side)), str(k_b)), *letters(side, mode), *index,
-        *rows_before(side, row), (text(relation.lhs), text(relation.rhs)), *unrolled.pairs, *base_lets.pairs,
-    )  # fmt: skip
+        (text(pr.k), str(k)),
+        (text(base_order(side)), str(k_b)),
+        *letters(side, mode),
+        *index,
+        *rows_before(side, row),
+        (text(relation.lhs), text(relation.rhs)),
+        *unrolled.pairs,
+        *base_lets.pairs,
+    )
     sign = "(-a)" if side == "start" else "a"
     own = flags.pop("own", k == k_b == CUBIC)
     return identity(
-        f"orders {k}, {k_b}, by the recursion: derivative {row}"
-        + (", u_{m-3} counted" if counted else ""),
-        blend, Text(f"{sign}^{row}") * base, equal=equal, where=where, conditions=conditions, own=own, **flags,
-    )  # fmt: skip
+        f"orders {k}, {k_b}, by the recursion: derivative {row}" + (", u_{m-3} counted" if counted else ""),
+        blend,
+        Text(f"{sign}^{row}") * base,
+        equal=equal,
+        where=where,
+        conditions=conditions,
+        own=own,
+        **flags,
+    )
 
 
 def excess_cases(formula: Formula | None, side: Side, printed: Formula) -> Iterator[Statement]:
@@ -216,9 +237,10 @@ def excess_cases(formula: Formula | None, side: Side, printed: Formula) -> Itera
     base = (text(pr.R_ww if side == "start" else sp.Symbol("S_tt")), str(closed_derivative(side, "base", 2)))
     row = (text(printed.relation.lhs), text(printed.relation.rhs))
     yield identity(
-        "every order, knots and base, along the normal", *formula.relation.args,
+        "every order, knots and base, along the normal",
+        *formula.relation.args,
         where=(*shape, *last, *flat, row, second, base),
-    )  # fmt: skip
+    )
 
 
 def condition(side: Side, row: int) -> Any:

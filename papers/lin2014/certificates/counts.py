@@ -81,7 +81,9 @@ def run(count: Any, order: Any) -> Callable[[Formula], Iterator[Statement]]:
         else:
             yield identity("every order and count: the derived end", relation.rhs, end)
             below = Text(text(functions_of_order(last_knot(count, order), order - 1)), 1) - 1
-            yield identity("every order and count: where the last function of the order below starts", relation.rhs, below)
+            yield identity(
+                "every order and count: where the last function of the order below starts", relation.rhs, below
+            )
 
     return cases
 
@@ -100,11 +102,16 @@ def inner_indices(claim: Claim) -> Draft:
     """Return the indices of the first and the last inner knot: next to the ends of the domain."""
     start, end = domain_ends(pr.n_r, pr.ell)
     first, last = claim.formulas
-    return Draft([[
-        *count_induction(),
-        identity("every order: the knot after the start", first.relation.rhs, Text(text(start), 1) + 1),
-        identity("every order and count: the knot before the end", last.relation.rhs, Text(text(end), 1) - 1),
-    ]], believed=(STEPS,))  # fmt: skip
+    return Draft(
+        [
+            [
+                *count_induction(),
+                identity("every order: the knot after the start", first.relation.rhs, Text(text(start), 1) + 1),
+                identity("every order and count: the knot before the end", last.relation.rhs, Text(text(end), 1) - 1),
+            ]
+        ],
+        believed=(STEPS,),
+    )
 
 
 def u_vector(claim: Claim) -> Draft:
@@ -123,12 +130,17 @@ def uniform_knots(claim: Claim) -> Draft:
         return Text(text(printed.subs(pr.i, i)), 1)
 
     middle = Text(f"({text(inner)}) + 1", 1)
-    return Draft([[
-        *count_induction(),
-        identity("every m, k: equal spans", knot(pr.i + 1) - knot(pr.i), knot(pr.i) - knot(pr.i - 1)),
-        identity("the one before the first is 0", knot(sp.Integer(0)), 0),
-        identity("the one after the last is 1", printed, 1, where=((text(pr.i), str(middle)),)),
-    ]], believed=(STEPS,))  # fmt: skip
+    return Draft(
+        [
+            [
+                *count_induction(),
+                identity("every m, k: equal spans", knot(pr.i + 1) - knot(pr.i), knot(pr.i) - knot(pr.i - 1)),
+                identity("the one before the first is 0", knot(sp.Integer(0)), 0),
+                identity("the one after the last is 1", printed, 1, where=((text(pr.i), str(middle)),)),
+            ]
+        ],
+        believed=(STEPS,),
+    )
 
 
 def bound_of_m(claim: Claim) -> Draft:
@@ -138,15 +150,26 @@ def bound_of_m(claim: Claim) -> Draft:
     admitted = relation.rhs.subs(pr.k, CUBIC + over) + more
     cases: list[Statement] = [
         positive("every k >= 4: rows 2 and m-2 differ", "m - 2 - 2", where={pr.m: admitted}, nonnegative=("r", "s")),
-        positive("every k >= 4: enough rows for the order", "m + 1 - k", nonnegative=("r", "s"),
-                 where={pr.k: CUBIC + over, pr.m: admitted}),
-    ]  # fmt: skip
+        positive(
+            "every k >= 4: enough rows for the order",
+            "m + 1 - k",
+            nonnegative=("r", "s"),
+            where={pr.k: CUBIC + over, pr.m: admitted},
+        ),
+    ]
     cases += [
-        identity(f"k = {k}, m = 4, which the bound admits: rows 2 and m-2 are one", "m - 2", 2,
-                 where=((text(pr.k), str(k)), (text(pr.m), "4")), conditions=(f"m >= {text(relation.rhs)}",), wanted=False,
-                 own=False, meets=False)
+        identity(
+            f"k = {k}, m = 4, which the bound admits: rows 2 and m-2 are one",
+            "m - 2",
+            2,
+            where=((text(pr.k), str(k)), (text(pr.m), "4")),
+            conditions=(f"m >= {text(relation.rhs)}",),
+            wanted=False,
+            own=False,
+            meets=False,
+        )
         for k in (2, 3)
-    ]  # fmt: skip
+    ]
     return Draft([cases])
 
 
@@ -161,8 +184,13 @@ def rows_set() -> Iterator[Statement]:
         for i in range(d + 1, 3):
             yield identity(f"derivative {d} does not see row {i}", Text(f"({text(ends[d, i])})*1", 2), 0, own=False)
         diagonal = ends[d, d].subs(pr.k, 3 + sp.Symbol("r"))
-        yield positive(f"row {d} has a factor in derivative {d}, every order from 3 on", diagonal,
-                       positive=span_symbols(4), nonnegative=("r",), own=False)  # fmt: skip
+        yield positive(
+            f"row {d} has a factor in derivative {d}, every order from 3 on",
+            diagonal,
+            positive=span_symbols(4),
+            nonnegative=("r",),
+            own=False,
+        )
 
 
 def row_index(formula: Formula, row: Callable[[Any, Any], Any]) -> Iterator[Statement]:
@@ -173,8 +201,10 @@ def row_index(formula: Formula, row: Callable[[Any, Any], Any]) -> Iterator[Stat
 def three_curves(claim: Claim) -> Draft:
     """Return the rows that have the knots of each base."""
     first, last = claim.formulas
-    return Draft([[*three_rows(), *rows_set(), *row_index(first, lambda a, _: a), *row_index(last, lambda _, b: b)]],
-                 believed=(INDUCTION,))  # fmt: skip
+    return Draft(
+        [[*three_rows(), *rows_set(), *row_index(first, lambda a, _: a), *row_index(last, lambda _, b: b)]],
+        believed=(INDUCTION,),
+    )
 
 
 def two_kinds(claim: Claim) -> Draft:
@@ -192,8 +222,10 @@ def two_kinds(claim: Claim) -> Draft:
 def unknowns(claim: Claim) -> Draft:
     """Return the first and the last unknown row."""
     first, last = claim.formulas
-    return Draft([[*rows_set(), *row_index(first, lambda a, _: a + 1), *row_index(last, lambda _, b: b - 1)]],
-                 believed=(INDUCTION,))  # fmt: skip
+    return Draft(
+        [[*rows_set(), *row_index(first, lambda a, _: a + 1), *row_index(last, lambda _, b: b - 1)]],
+        believed=(INDUCTION,),
+    )
 
 
 def no_middle_curve(claim: Claim) -> Draft:
@@ -208,11 +240,24 @@ def no_middle_curve(claim: Claim) -> Draft:
     for d in range(3):
         for i in range(3):
             true = derivative(jets[i], d) if jets[i][d] is not None else 0
-            cases.append(identity(f"derivative {d} of function {i} at 0, by the recursion", matrix[d, i], true,
-                                  where=unrolled.pairs, own=False))  # fmt: skip
+            cases.append(
+                identity(
+                    f"derivative {d} of function {i} at 0, by the recursion",
+                    matrix[d, i],
+                    true,
+                    where=unrolled.pairs,
+                    own=False,
+                )
+            )
             sign = Text(f"(-1)^{d}", 3)
-            cases.append(identity(f"derivative {d} of function {5 - i} at 1", matrix[3 + d, 5 - i], sign * text(matrix[d, i]),
-                                  own=False))  # fmt: skip
+            cases.append(
+                identity(
+                    f"derivative {d} of function {5 - i} at 1",
+                    matrix[3 + d, 5 - i],
+                    sign * text(matrix[d, i]),
+                    own=False,
+                )
+            )
     return Draft([[*cases, rank("k = 4: the six conditions have one solution", matrix)]], believed=(INDUCTION,))
 
 
@@ -220,12 +265,21 @@ def middle_ends(claim: Claim) -> Draft:
     """Return how often v_s and v_e stand."""
     start, end = domain_ends(pr.n, pr.ell)
     printed = claim.formulas[0].relation.rhs
-    return Draft([[
-        *count_induction(),
-        identity("every order: knots up to the start", printed, Text(text(start), 1) + 1),
-        identity("every order: knots from the end", printed, Text(f"{text(last_knot(pr.n, pr.ell))} - ({text(end)}) + 1", 1)),
-        *contact_curve(),
-    ]], believed=(STEPS, INDUCTION))  # fmt: skip
+    return Draft(
+        [
+            [
+                *count_induction(),
+                identity("every order: knots up to the start", printed, Text(text(start), 1) + 1),
+                identity(
+                    "every order: knots from the end",
+                    printed,
+                    Text(f"{text(last_knot(pr.n, pr.ell))} - ({text(end)}) + 1", 1),
+                ),
+                *contact_curve(),
+            ]
+        ],
+        believed=(STEPS, INDUCTION),
+    )
 
 
 def superfluous(_: Claim) -> Draft:
@@ -241,7 +295,9 @@ def superfluous(_: Claim) -> Draft:
         n_r, n_s = (size[1] for size in pr.SIZES[figure])
         shared, middle = len({*inner_knots(first), *inner_knots(second)}), int(middles[figure])
         own = f"3*({n_r} + {n_s}) + {middle}*({shared // 2} + 4)"
-        cases.append(positive(f"{figure}: more control points on the union", Text(f"(6 + {middle})*({shared} + 4) - ({own})", 1)))
+        cases.append(
+            positive(f"{figure}: more control points on the union", Text(f"(6 + {middle})*({shared} + 4) - ({own})", 1))
+        )
     return Draft([cases])
 
 
@@ -250,7 +306,10 @@ def different_counts(_: Claim) -> Draft:
     cases: list[Statement] = [not_zero("Fig. 1: curves 0 and 3", f"{pr.FIGURE_1_COUNTS[0]} - {pr.FIGURE_1_COUNTS[3]}")]
     for figure, pair in CONTACTS.items():
         lengths = [len(pr.KNOTS[name]) for name in pair]
-        cases += [knots(f"{figure}: {name}", pr.KNOTS[name], f"points {n}", order=0) for name, n in zip(pair, lengths, strict=True)]
+        cases += [
+            knots(f"{figure}: {name}", pr.KNOTS[name], f"points {n}", order=0)
+            for name, n in zip(pair, lengths, strict=True)
+        ]
         cases.append(not_zero(f"{figure}: the two differ", f"{lengths[0]} - {lengths[1]}"))
     return Draft([cases])
 
@@ -279,7 +338,9 @@ def row_count_cases(formula: Formula, part: str) -> Iterator[Statement]:
             points = printed.subs({pr.s: r, pr.m: m, pr.n: n, pr.k: k})
             power = r if part == "bottom" else n - r
             label = f"degrees {m}, {n}, {k}, row {r}"
-            yield identity(f"{label}: the patch u^m v^{power}", f"u^{m}*(u^{k})^{power}", f"u^{points - 1}", own=m == n == 3)
+            yield identity(
+                f"{label}: the patch u^m v^{power}", f"u^{m}*(u^{k})^{power}", f"u^{points - 1}", own=m == n == 3
+            )
             yield identity(f"{label}: the derived row", points, Text(f"{derived[r]} + 1", 1), own=m == n == 3)
 
 
@@ -288,8 +349,13 @@ def last_row(claim: Claim) -> Draft:
 
     def case(formula: Formula, *, equal: bool) -> Statement:
         j, s = formula.relation.lhs.args
-        return identity(f"every m, n, k: Q_j^s with j = {j}, s = {s}", Text(f"m + ({text(s)})*k + 1", 1), formula.relation.rhs,
-                        equal=equal, conditions=("n > 0", "k > 0"))  # fmt: skip
+        return identity(
+            f"every m, n, k: Q_j^s with j = {j}, s = {s}",
+            Text(f"m + ({text(s)})*k + 1", 1),
+            formula.relation.rhs,
+            equal=equal,
+            conditions=("n > 0", "k > 0"),
+        )
 
     return Draft([[case(claim.formulas[0], equal=False)]], [case(claim.corrected_formulas[0], equal=True)], (DEGREE,))
 
@@ -297,15 +363,20 @@ def last_row(claim: Claim) -> Draft:
 def averaging(claim: Claim) -> Draft:
     """Return the averages by pairs, the last of which may not exist, and those of all neighbours."""
     relation = given(claim.readings[0].parts[0].formula).relation
-    pair = [entry.indices[0] for entry in sorted(relation.rhs.atoms(sp.Indexed), key=lambda e: str(e))]
+    pair = [entry.indices[0] for entry in sorted(relation.rhs.atoms(sp.Indexed), key=str)]
     before = Text("2*(i - 1)", 2)
     used: list[Statement] = [
         identity("every pair: its first knot", min(pair, key=lambda e: e.subs(pr.i, 1)), before + 1),
         identity("every pair: its second knot", max(pair, key=lambda e: e.subs(pr.i, 1)), before + 2),
     ]
     last = text(max(pair, key=lambda e: e.subs(pr.i, 1)))
-    missing = positive("n = 2 q + 1, i = q + 1: the second knot would have an index above n", Text(f"({last}) - (2*q + 1)", 1),
-                       where=((text(pr.i), "q + 1"),), nonnegative=("q",), affirmed=False)  # fmt: skip
+    missing = positive(
+        "n = 2 q + 1, i = q + 1: the second knot would have an index above n",
+        Text(f"({last}) - (2*q + 1)", 1),
+        where=((text(pr.i), "q + 1"),),
+        nonnegative=("q",),
+        affirmed=False,
+    )
     complete = [
         identity("n = 2 q or 2 q + 1, i = q: its last knot is v_2q", last, Text("2*q", 2), where=((text(pr.i), "q"),)),
     ]
@@ -324,11 +395,13 @@ DRAFTS: dict[str, Callable[[Claim], Draft]] = {
     "sec-2.u-knots": all_of(last_index(pr.m, pr.k)),
     "sec-2.v-knots": all_of(last_index(pr.n_i, pr.ell)),
     "sec-1.classical-grid": all_of(last_index(pr.n_i, pr.ell)),
-    "sec-3.bezier-ends": all_of(*(
-        run(count, order)
-        for count, order in ((pr.m_r, pr.k_r), (pr.n_r, pr.ell), (pr.m_s, pr.k_s), (pr.n_s, pr.ell))
-        for _ in range(2)
-    )),
+    "sec-3.bezier-ends": all_of(
+        *(
+            run(count, order)
+            for count, order in ((pr.m_r, pr.k_r), (pr.n_r, pr.ell), (pr.m_s, pr.k_s), (pr.n_s, pr.ell))
+            for _ in range(2)
+        )
+    ),
     "sec-3.contact-domain": all_of(run(pr.n_r, pr.ell), run(pr.n_s, pr.ell)),
     "sec-3.u-vector": u_vector,
     "sec-3.inner-knots": inner_indices,
@@ -345,4 +418,4 @@ DRAFTS: dict[str, Callable[[Claim], Draft]] = {
     "sec-2.bottom-counts": row_counts("bottom"),
     "sec-2.top-counts": row_counts("top"),
     "sec-2.top-last-row": last_row,
-}  # fmt: skip
+}

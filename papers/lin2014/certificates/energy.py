@@ -47,9 +47,12 @@ def density(claim: Claim) -> Draft:
     """Return the integrand of (11), and where zero energy means no bend."""
     printed = claim.formulas[0].relation.rhs
     turned = (
-        ("c", "(1 - t^2)/(1 + t^2)"), ("s", "2*t/(1 + t^2)"), ("A_uu", "c^2*P_uu - 2*c*s*P_uv + s^2*P_vv"),
-        ("A_uv", "c*s*P_uu + (c^2 - s^2)*P_uv - c*s*P_vv"), ("A_vv", "s^2*P_uu + 2*c*s*P_uv + c^2*P_vv"),
-    )  # fmt: skip
+        ("c", "(1 - t^2)/(1 + t^2)"),
+        ("s", "2*t/(1 + t^2)"),
+        ("A_uu", "c^2*P_uu - 2*c*s*P_uv + s^2*P_vv"),
+        ("A_uv", "c*s*P_uu + (c^2 - s^2)*P_uv - c*s*P_vv"),
+        ("A_vv", "s^2*P_uu + 2*c*s*P_uv + c^2*P_vv"),
+    )
     there = printed.subs({s: sp.Symbol(f"A_{s.name[2:]}") for s in (pr.P_uu, pr.P_uv, pr.P_vv)}, simultaneous=True)
     cases: list[Statement] = [
         identity("the derived density", Text(f"({text(printed)})*1", 2), thin_plate_density()),
@@ -67,7 +70,9 @@ def density(claim: Claim) -> Draft:
         gram = gram_matrix(2, space, space)
         own = {"own": meets, "meets": meets}
         cases += gram_entries(label, 2, space, own=False) if meets else ()
-        cases.append(rank(f"{label}: what costs nothing has dimension {2 if meets else 3}", gram, affirmed=meets, **own))
+        cases.append(
+            rank(f"{label}: what costs nothing has dimension {2 if meets else 3}", gram, affirmed=meets, **own)
+        )
     return Draft([cases], believed=(RECURRENCE, NO_ENERGY))
 
 
@@ -79,13 +84,20 @@ def gram_entries(label: str, d: int, space: Any, **flags: bool) -> Iterator[Stat
     for i in range(space.size):
         for j in range(i, space.size):
             true = integral(order, (knots, i, d), (knots, j, d))
-            yield identity(f"{label}: entry {i}, {j} by the recursion", Text(f"{text(gram[i, j])} + 0", 1), true, **flags)
+            yield identity(
+                f"{label}: entry {i}, {j} by the recursion", Text(f"{text(gram[i, j])} + 0", 1), true, **flags
+            )
 
 
 def line() -> Statement:
     """Return that lines which meet at a knot with one slope are one."""
-    return identity("lines that meet with one slope are one", Text("a + b*x", 1), Text("c + d*x", 1),
-                    where=(("b", "d"), ("a", "c + d*h - b*h")), own=False)  # fmt: skip
+    return identity(
+        "lines that meet with one slope are one",
+        Text("a + b*x", 1),
+        Text("c + d*x", 1),
+        where=(("b", "d"), ("a", "c + d*h - b*h")),
+        own=False,
+    )
 
 
 def strain(claim: Claim) -> Draft:
@@ -109,26 +121,47 @@ def thin_plate(claim: Claim) -> Draft:
     relation = given(claim.readings[0].parts[0].formula).relation
     where = (("S", "P_uu + P_vv"), ("Q", "P_uu*P_vv - P_uv^2"))
     kept: list[Statement] = [
-        identity("by sum and product of the curvatures", relation.lhs, Text("(kappa_1 + kappa_2)^2 - 2*(kappa_1*kappa_2)", 1)),
+        identity(
+            "by sum and product of the curvatures", relation.lhs, Text("(kappa_1 + kappa_2)^2 - 2*(kappa_1*kappa_2)", 1)
+        ),
         identity("which are trace and determinant", Text("S^2 - 2*Q", 1), relation.rhs, where=where),
     ]
     flat: list[Statement] = [
-        different("the square as (u + c u^2, v, 0): P_uu = 2 c", relation.rhs, 0,
-                  where=(("P_uu", "2*c"), ("P_uv", "0"), ("P_vv", "0"))),
-        different("the square as (u, v + c u v, 0): P_uv = c", relation.rhs, 0,
-                  where=(("P_uu", "0"), ("P_uv", "c"), ("P_vv", "0"))),
-    ]  # fmt: skip
+        different(
+            "the square as (u + c u^2, v, 0): P_uu = 2 c",
+            relation.rhs,
+            0,
+            where=(("P_uu", "2*c"), ("P_uv", "0"), ("P_vv", "0")),
+        ),
+        different(
+            "the square as (u, v + c u v, 0): P_uv = c",
+            relation.rhs,
+            0,
+            where=(("P_uu", "0"), ("P_uv", "c"), ("P_vv", "0")),
+        ),
+    ]
     return Draft([kept, flat], believed=(CURVATURES,))
 
 
 def one_minimum(order: int) -> Iterator[Statement]:
     """Yield why the free rows have one minimum, and pivots of exact energy matrices."""
-    yield positive("(11) is a sum of squares", thin_plate_density(), strict=False, own=False,
-                   over=[Term(coefficient=c, squares=(s,)) for c, s in (("1", "P_uu"), ("2", "P_uv"), ("1", "P_vv"))])  # fmt: skip
+    yield positive(
+        "(11) is a sum of squares",
+        thin_plate_density(),
+        strict=False,
+        own=False,
+        over=[Term(coefficient=c, squares=(s,)) for c, s in (("1", "P_uu"), ("2", "P_uv"), ("1", "P_vv"))],
+    )
     ends = end_derivatives(1, pr.k - 1, span_symbols(1))
     determinant = as_text(ends[0, 0]) * as_text(ends[1, 1]) - as_text(ends[0, 1]) * as_text(ends[1, 0])
-    yield positive("P and P_u at u = 0 determine rows 0 and 1", determinant, where=(("k", "2 + r"),), positive=("h1",),
-                   nonnegative=("r",), own=False)  # fmt: skip
+    yield positive(
+        "P and P_u at u = 0 determine rows 0 and 1",
+        determinant,
+        where=(("k", "2 + r"),),
+        positive=("h1",),
+        nonnegative=("r",),
+        own=False,
+    )
     yield from induction()
     yield line()
     for m in (6, 7, 8):
@@ -167,8 +200,14 @@ def plates() -> Iterator[Statement]:
             if meets:
                 yield positive(f"{label}: {letter} is positive there", best[letter], positive=("d",))
             else:
-                yield identity(f"{label}: {letter} is 0 there", Text(f"{text(best[letter])} + 0", 1), 0, wanted=False, own=False,
-                               meets=False)  # fmt: skip
+                yield identity(
+                    f"{label}: {letter} is 0 there",
+                    Text(f"{text(best[letter])} + 0", 1),
+                    0,
+                    wanted=False,
+                    own=False,
+                    meets=False,
+                )
 
 
 def problem(_: Claim) -> Draft:
@@ -241,7 +280,10 @@ def _true_entries() -> dict[tuple[tuple[int, int], tuple[int, int]], tuple[Any, 
         for letter, d in zip((pr.G_0, pr.G_1, pr.G_2), range(3), strict=True):
             values[letter] = integral(4, (mine, j, d), (theirs, at, d))
         values[pr.G_12] = integral(4, (mine, j, 1), (theirs, at, 2))
-        for (row, point, knots), letters_ in (((i, j, mine), (pr.a_1, pr.b_1, pr.c_1)), ((k, at, theirs), (pr.a_2, pr.b_2, pr.c_2))):
+        for (row, point, knots), letters_ in (
+            ((i, j, mine), (pr.a_1, pr.b_1, pr.c_1)),
+            ((k, at, theirs), (pr.a_2, pr.b_2, pr.c_2)),
+        ):
             across = [integral(4, (u, row, d)) for d in range(3)]
             along = [integral(4, (knots, point, d)) for d in range(3)]
             products = across[2] * along[0], across[0] * along[2], across[1] * along[1]
@@ -251,21 +293,35 @@ def _true_entries() -> dict[tuple[tuple[int, int], tuple[int, int]], tuple[Any, 
 
 
 def entry_cases(formula: Formula, *, equal: bool) -> Iterator[Statement]:
-    """Yield entries over the printed knots of Fig. 5: by the formula, with integrals by the recursion, and as derived."""
+    """Yield entries over the knots of Fig. 5: by the formula, with integrals by the recursion, and as derived."""
     for (one, other), (true, values) in _true_entries().items():
         where = tuple((text(letter), text(number)) for letter, number in values.items())
         label = f"control points {one[0]},{one[1]} and {other[0]},{other[1]}"
-        holds = equal or formula.relation.rhs.subs({s: sp.Rational(x.numerator, x.denominator) for s, x in values.items()}) == true
+        holds = (
+            equal
+            or formula.relation.rhs.subs({s: sp.Rational(x.numerator, x.denominator) for s, x in values.items()})
+            == true
+        )
         yield identity(label, formula.relation.rhs, true, where=where, equal=holds)
 
 
 def gram_general(formula: Formula, *, equal: bool = True) -> Iterator[Statement]:
     """Yield an entry for any two control points: half the mixed difference of the density, which is quadratic."""
-    products = (("A_0", "N0*M0"), ("A_1", "N1*M1"), ("A_2", "N2*M2"), ("A_10", "N1*M0"), ("G_0", "B0*D0"), ("G_1", "B1*D1"),
-                ("G_2", "B2*D2"), ("G_12", "B1*D2"))  # fmt: skip
+    products = (
+        ("A_0", "N0*M0"),
+        ("A_1", "N1*M1"),
+        ("A_2", "N2*M2"),
+        ("A_10", "N1*M0"),
+        ("G_0", "B0*D0"),
+        ("G_1", "B1*D1"),
+        ("G_2", "B2*D2"),
+        ("G_12", "B1*D2"),
+    )
     mixed: Text | None = None
     for sign, x, y in ((1, "1", "1"), (-1, "1", "0"), (-1, "0", "1"), (1, "0", "0")):
-        parts = {f"P_{name}": f"({x}*N{d}*B{e} + {y}*M{d}*D{e})" for name, d, e in (("uu", 2, 0), ("uv", 1, 1), ("vv", 0, 2))}
+        parts = {
+            f"P_{name}": f"({x}*N{d}*B{e} + {y}*M{d}*D{e})" for name, d, e in (("uu", 2, 0), ("uv", 1, 1), ("vv", 0, 2))
+        }
         value = text(thin_plate_density())
         for name, part in parts.items():
             value = value.replace(name, part)
@@ -274,7 +330,9 @@ def gram_general(formula: Formula, *, equal: bool = True) -> Iterator[Statement]
     assert mixed is not None
     names = {"A0": pr.A_0, "A1": pr.A_1, "A2": pr.A_2, "G0": pr.G_0, "G1": pr.G_1, "G2": pr.G_2}
     block = gram_block().subs({sp.Symbol(name): letter for name, letter in names.items()})
-    yield identity("any two basis functions of any orders and knots", formula.relation.rhs, mixed / 2, where=products, equal=equal)
+    yield identity(
+        "any two basis functions of any orders and knots", formula.relation.rhs, mixed / 2, where=products, equal=equal
+    )
     yield identity("the derived entry", Text(f"({text(formula.relation.rhs)})*1", 2), block, equal=equal)
 
 
@@ -321,8 +379,12 @@ def top_terms(order: int) -> Iterator[Statement]:
     first = "R_0j - a*h1/(k - 1)*R_w"
     second = "R_0j - a*(h1 + h2)/(k - 1)*R_w + a^2*h1*h2/((k - 1)*(k - 2))*R_ww"
     for row, polynomial in list(enumerate((first, second), start=1))[:order]:
-        derived = total(as_text(rows[row, j]) * as_text(letter) for j, letter in enumerate((pr.R_0, pr.R_1, pr.R_2)[: order + 1]))
-        yield identity(f"row {row} as a polynomial in a = alpha^2, every order", derived, Text(polynomial, 1), where=where)
+        derived = total(
+            as_text(rows[row, j]) * as_text(letter) for j, letter in enumerate((pr.R_0, pr.R_1, pr.R_2)[: order + 1])
+        )
+        yield identity(
+            f"row {row} as a polynomial in a = alpha^2, every order", derived, Text(polynomial, 1), where=where
+        )
 
 
 def degree_draft(order: int, *, geometric: bool) -> Callable[[Claim], Draft]:
@@ -331,16 +393,25 @@ def degree_draft(order: int, *, geometric: bool) -> Callable[[Claim], Draft]:
     def draft(claim: Claim) -> Draft:
         printed = claim.formulas[0].relation.rhs
         seconds = Text("(z*P_uu)^2 + 2*(z*P_uv)^2 + (z*P_vv)^2", 1)
-        cases: list[Statement] = [identity("(11) is quadratic", seconds, Text("z^2", 3) * as_text(thin_plate_density()), own=False)]
+        cases: list[Statement] = [
+            identity("(11) is quadratic", seconds, Text("z^2", 3) * as_text(thin_plate_density()), own=False)
+        ]
         if not geometric:
-            cases += [identity("quadratic in points that enter linearly", f.relation.rhs, Text("2*1", 2)) for f in claim.formulas]
+            cases += [
+                identity("quadratic in points that enter linearly", f.relation.rhs, Text("2*1", 2))
+                for f in claim.formulas
+            ]
             return Draft([cases])
         cases += top_terms(order)
         cases.append(identity("twice the power of alpha in the rows", printed, Text(f"2*(2*{order})", 2)))
         if order == 2:
             flat = ("R_2j", "R_1j + (R_1j - R_0j)*H2/H1")
-            cases.append(identity("a base with R_ww = 0", closed_derivative("start", "base", 2), 0, where=(flat,), own=False))
-            cases.append(different("then the power in the rows is lower", printed, Text("2*(2*1)", 2), own=False, meets=False))
+            cases.append(
+                identity("a base with R_ww = 0", closed_derivative("start", "base", 2), 0, where=(flat,), own=False)
+            )
+            cases.append(
+                different("then the power in the rows is lower", printed, Text("2*(2*1)", 2), own=False, meets=False)
+            )
         return Draft([cases], believed=(INDUCTION, NO_ENERGY))
 
     return draft
@@ -356,7 +427,9 @@ def fewer_rows(claim: Claim) -> Draft:
     ):
         few, more = fewer.least_energies(*map(sp.Integer, data)).values()
         if few > more:
-            cases.append(positive(f"{label}: 6 rows cost more than 7", Text(f"{text(few)} - {text(more)}", 1), affirmed=False))
+            cases.append(
+                positive(f"{label}: 6 rows cost more than 7", Text(f"{text(few)} - {text(more)}", 1), affirmed=False)
+            )
         else:
             cases.append(positive(f"{label}: 6 rows cost no more than 7", Text(f"{text(more)} - {text(few)} + 1", 1)))
     squares, nested = claim.corrected_formulas
@@ -366,14 +439,22 @@ def fewer_rows(claim: Claim) -> Draft:
         positive("which is never negative", squares.relation.rhs, over=_squares(squares.relation.rhs), strict=False),
     ]
     value = "c + 2*g*x + h*x^2"
-    correction.append(identity("one control point more: value at 0 less value at -g/h", nested.relation.rhs,
-                               Text(f"c - ({value})", 1), where=(("x", "-g/h"),)))  # fmt: skip
+    correction.append(
+        identity(
+            "one control point more: value at 0 less value at -g/h",
+            nested.relation.rhs,
+            Text(f"c - ({value})", 1),
+            where=(("x", "-g/h"),),
+        )
+    )
     return Draft([cases], correction, ("the least energy of a strip is at the solution of its normal equation",))
 
 
 def _squares(expression: Any) -> list[Term]:
-    return [Term(coefficient=text(c), squares=(text(sp.Mul(*rest).base),))
-            for c, rest in (term.as_coeff_mul() for term in sp.Add.make_args(expression))]  # fmt: skip
+    return [
+        Term(coefficient=text(c), squares=(text(sp.Mul(*rest).base),))
+        for c, rest in (term.as_coeff_mul() for term in sp.Add.make_args(expression))
+    ]
 
 
 def fairness(_: Claim) -> Draft:
@@ -382,10 +463,15 @@ def fairness(_: Claim) -> Draft:
     for name, keys in PRINTED_PAIRS.items():
         vectors = [set(inner_knots(key)) for key in keys]
         both = len(set.union(*vectors))
-        lines += [positive(f"{name}: {both} inner knots against {len(v)}", Text(f"{both} - {len(v)}", 1)) for v in vectors]
+        lines += [
+            positive(f"{name}: {both} inner knots against {len(v)}", Text(f"{both} - {len(v)}", 1)) for v in vectors
+        ]
     own, refined = energy.middle_knot_energies()
-    less = positive("orders 4, 2, inner knots 1/2 and 1/3: less energy on all knots", Text(f"{text(own)} - {text(refined)}", 1),
-                    affirmed=False)  # fmt: skip
+    less = positive(
+        "orders 4, 2, inner knots 1/2 and 1/3: less energy on all knots",
+        Text(f"{text(own)} - {text(refined)}", 1),
+        affirmed=False,
+    )
     return Draft([lines, [less, *insertion(), *nested_pairs()]], believed=(RECURRENCE, SPACES))
 
 

@@ -55,10 +55,13 @@ def first_of_10(claim: Claim) -> Draft:
     """Return the first vector of Fig. 10, as printed and with a fourth zero."""
     wrong, right = claim.formulas[0], claim.corrected_formulas[0]
     inner = [x for x in right.relation.rhs if 0 < x < 1]
-    return Draft([vector_cases(wrong, "fig-10.first")], [
-        *vector_cases(right, "fig-10.first"),
-        knots("the printed inner knots", inner, "equal", other=inner_knots("fig-10.first")),
-    ])  # fmt: skip
+    return Draft(
+        [vector_cases(wrong, "fig-10.first")],
+        [
+            *vector_cases(right, "fig-10.first"),
+            knots("the printed inner knots", inner, "equal", other=inner_knots("fig-10.first")),
+        ],
+    )
 
 
 def sevenths(claim: Claim) -> Draft:
@@ -84,9 +87,13 @@ def sizes(claim: Claim) -> Draft:
             cases.append(positive(f"{label}: enough rows for a cubic", Text(f"{text(size[0])} - {CUBIC} + 1", 1)))
             if figure in CONTACTS:
                 vector = inner_knots(CONTACTS[figure][model])
-                cases.append(knots(f"{label}: columns by the printed inner knots", vector, f"points {size[1] - CUBIC}", order=0))
+                cases.append(
+                    knots(f"{label}: columns by the printed inner knots", vector, f"points {size[1] - CUBIC}", order=0)
+                )
             else:
-                cases.append(knots(f"{label}: columns by the text", [size[1]], "equal", other=[printed.CONE_COUNTS[model]]))
+                cases.append(
+                    knots(f"{label}: columns by the text", [size[1]], "equal", other=[printed.CONE_COUNTS[model]])
+                )
             for other in {"fig-8": ("fig-9",), "fig-9": ("fig-8",)}.get(figure, ()):
                 cases.append(knots(f"{label}: as in {other}", size, "equal", other=pr.SIZES[other][model]))
     return Draft([cases])
@@ -95,7 +102,9 @@ def sizes(claim: Claim) -> Draft:
 def same_bases(claim: Claim) -> Draft:
     """Return the sizes of Fig. 9, which are those of Fig. 8."""
     pairs = zip(claim.formulas, pr.SIZES["fig-8"], strict=True)
-    return Draft([[knots(f"model {n}", f.relation.rhs, "equal", other=size) for n, (f, size) in enumerate(pairs, start=1)]])
+    return Draft(
+        [[knots(f"model {n}", f.relation.rhs, "equal", other=size) for n, (f, size) in enumerate(pairs, start=1)]]
+    )
 
 
 def cone_counts(claim: Claim) -> Draft:
@@ -108,7 +117,12 @@ def bicubic(claim: Claim) -> Draft:
     """Return that all printed vectors end as cubics do, and that nets are large enough."""
     order = int(claim.formulas[0].relation.rhs)
     cases: list[Statement] = [
-        knots(f"{key}: {order} ones at the end", list(vector)[-order - 1 :], "equal", other=[vector[-order - 1], *[1] * order])
+        knots(
+            f"{key}: {order} ones at the end",
+            list(vector)[-order - 1 :],
+            "equal",
+            other=[vector[-order - 1], *[1] * order],
+        )
         for key, vector in pr.KNOTS.items()
     ]
     for figure, pair in pr.SIZES.items():
@@ -122,13 +136,16 @@ def middle_curves(claim: Claim) -> Draft:
     """Return how many middle curves figures have."""
     counts = dict(zip(pr.SIZES, claim.formulas[0].relation.rhs, strict=True))
     cases: list[Statement] = [
-        identity(f"{figure}: {count}, of the two kinds", Text(f"{count}*({count} - 1)", 2), 0) for figure, count in counts.items()
+        identity(f"{figure}: {count}, of the two kinds", Text(f"{count}*({count} - 1)", 2), 0)
+        for figure, count in counts.items()
     ]
     cases += [
         knots(f"{figure}: none, as its own paragraph says", [counts[figure]], "equal", other=[0])
         for figure in printed.NO_MIDDLE_CURVE_AGAIN
     ]
-    cases += [positive(f"{name}: averaged knots", Text(f"{len(merged(name))} - 2 + 1", 1)) for name in WITH_MIDDLE_CURVE]
+    cases += [
+        positive(f"{name}: averaged knots", Text(f"{len(merged(name))} - 2 + 1", 1)) for name in WITH_MIDDLE_CURVE
+    ]
     return Draft([cases])
 
 
@@ -167,7 +184,9 @@ def parameters_of_figure_3(claim: Claim) -> Draft:
         (letter,) = formula.relation.rhs.free_symbols
         interval = claim.formulas[len(names) + names.index(name)].relation.rhs
         for end, wanted in zip(interval, (0, 1), strict=True):
-            cases.append(identity(f"{name}: at {end}", formula.relation.rhs, wanted, where=((text(letter), text(end)),)))
+            cases.append(
+                identity(f"{name}: at {end}", formula.relation.rhs, wanted, where=((text(letter), text(end)),))
+            )
     return Draft([cases])
 
 
@@ -182,9 +201,14 @@ def pieces_of_figure_3(_: Claim) -> Draft:
 def first_split(claim: Claim) -> Draft:
     """Return the strip that holds c1."""
     interval = printed.SIDE_INTERVALS["left"].relation.rhs
-    cases: list[Statement] = [knots("c1 is defined over the strip", claim.formulas[0].relation.rhs, "equal", other=interval)]
+    cases: list[Statement] = [
+        knots("c1 is defined over the strip", claim.formulas[0].relation.rhs, "equal", other=interval)
+    ]
     for r, c in enumerate(trimming.hole().left.coefficients):
-        cases += [positive(f"c1, value {r} above 0", text(c)), positive(f"c1, value {r} below 1", Text(f"1 - {text(c)}", 1))]
+        cases += [
+            positive(f"c1, value {r} above 0", text(c)),
+            positive(f"c1, value {r} below 1", Text(f"1 - {text(c)}", 1)),
+        ]
     return Draft([cases])
 
 

@@ -31,13 +31,21 @@ def rolling_ball(claim: Claim) -> Draft:
     first, second = (Text("-r*S", 1), Text("r*C", 2)), (Text("-r*C", 1), Text("-r*S", 1))
     turn = first[0] * second[1] - first[1] * second[0]
     jump = JUMP.relation.rhs
-    return Draft([[
-        identity("the circle has speed r", first[0] ** 2 + first[1] ** 2, Text("r^2", 3), where=_CIRCLE),
-        identity("any ball, any base: curvature of the circle less that of the base", printed, turn / Text("r^3", 3) - Text("c"),
-                 where=_CIRCLE),
-        different("c other than 1/r", jump, 0, wanted=False),
-        identity("c = 1/r", jump, 0, where=(("c", "1/r"),), wanted=False, own=False, meets=False),
-    ]])  # fmt: skip
+    return Draft(
+        [
+            [
+                identity("the circle has speed r", first[0] ** 2 + first[1] ** 2, Text("r^2", 3), where=_CIRCLE),
+                identity(
+                    "any ball, any base: curvature of the circle less that of the base",
+                    printed,
+                    turn / Text("r^3", 3) - Text("c"),
+                    where=_CIRCLE,
+                ),
+                different("c other than 1/r", jump, 0, wanted=False),
+                identity("c = 1/r", jump, 0, where=(("c", "1/r"),), wanted=False, own=False, meets=False),
+            ]
+        ]
+    )
 
 
 def quintic(_: Claim) -> Draft:
@@ -51,9 +59,13 @@ def quintic(_: Claim) -> Draft:
                 entry = end_derivatives(2, degree, ones)[k, i]
                 rows[k, i] += entry
                 rows[3 + k, degree - i] += (-1) ** k * entry
-        cases.append(rank(f"degree {degree}: {'six' if degree == 5 else 'fewer than six'} independent conditions", rows))
+        cases.append(
+            rank(f"degree {degree}: {'six' if degree == 5 else 'fewer than six'} independent conditions", rows)
+        )
     end = end_derivatives(2, sp.Symbol("d") + 6, ones)
-    cases += [positive(f"every degree from 6 on: entry {i} of the diagonal", end[i, i], nonnegative=("d",)) for i in range(3)]
+    cases += [
+        positive(f"every degree from 6 on: entry {i} of the diagonal", end[i, i], nonnegative=("d",)) for i in range(3)
+    ]
     points = [(0, 0), (Fraction(1, 2), 0), (Fraction(5, 3), Fraction(1, 3)), (2, Fraction(1, 2)), (2, 1)]
     x, y = ([Text(text(Fraction(p[c])), 2) for p in points] for c in range(2))
     quartic: list[Statement] = []
@@ -66,7 +78,11 @@ def quintic(_: Claim) -> Draft:
         bend = [12 * (line[order[2]] - 2 * line[order[1]] + line[order[0]]) for line in (x, y)]
         across = 0 if tangent[0] else 1
         quartic.append(identity(f"end {end_}: tangent", slope[1 - across], 0, wanted=False))
-        quartic.append(identity(f"end {end_}: curvature 1", slope[0] * bend[1] - slope[1] * bend[0], slope[across] ** 3, wanted=False))
+        quartic.append(
+            identity(
+                f"end {end_}: curvature 1", slope[0] * bend[1] - slope[1] * bend[0], slope[across] ** 3, wanted=False
+            )
+        )
     return Draft([cases, quartic], believed=(INDUCTION,))
 
 
@@ -74,11 +90,20 @@ def cubic(_: Claim) -> Draft:
     """Return that the six end conditions of a cubic with two inner knots are independent."""
     ends = end_derivatives(2, 3, span_symbols(2))
     cases: list[Statement] = [*induction()]
-    cases += [identity(f"entry {d}, {i} above the diagonal", Text(f"({text(ends[d, i])})*1", 2), 0)
-              for d in range(3) for i in range(d + 1, 3)]  # fmt: skip
+    cases += [
+        identity(f"entry {d}, {i} above the diagonal", Text(f"({text(ends[d, i])})*1", 2), 0)
+        for d in range(3)
+        for i in range(d + 1, 3)
+    ]
     cases += [positive(f"entry {d} of the diagonal", ends[d, d], positive=span_symbols(2)) for d in range(3)]
-    cases.append(positive("two inner knots or more: different rows at both ends", "m - 2 - 2", where=(("m", "3 + 2 + r"),),
-                          nonnegative=("r",)))  # fmt: skip
+    cases.append(
+        positive(
+            "two inner knots or more: different rows at both ends",
+            "m - 2 - 2",
+            where=(("m", "3 + 2 + r"),),
+            nonnegative=("r",),
+        )
+    )
     return Draft([cases], believed=(INDUCTION,))
 
 
@@ -86,16 +111,29 @@ def hartmann_contact(_: Claim) -> Draft:
     """Return that X less its piece has the factor t^(n+1)."""
     f = _F
     blend = f * Text("S1") + (1 - f) * Text("S2")
-    return Draft([[
-        identity("X less its piece at t = 0", blend - "S1", (1 - f) * Text("S2 - S1", 1)),
-        identity("which has the factor t^(n+1)", 1 - f, Text("B*(nu/(mu*A + nu*B))", 2)),
-        positive("whose other factor has a denominator that is not 0 at t = 0", "mu*A + nu*B", where=(("A", "1"), ("B", "0*b")),
-                 positive=("mu",)),
-        identity("X less its piece at t = 1", blend - "S2", f * Text("S1 - S2", 1)),
-        identity("which has the factor (1-t)^(n+1)", f, Text("A*(mu/(mu*A + nu*B))", 2)),
-        positive("whose other factor has a denominator that is not 0 at t = 1", "mu*A + nu*B", where=(("A", "0*b"), ("B", "1")),
-                 positive=("nu",)),
-    ]], believed=(POWERS,))  # fmt: skip
+    return Draft(
+        [
+            [
+                identity("X less its piece at t = 0", blend - "S1", (1 - f) * Text("S2 - S1", 1)),
+                identity("which has the factor t^(n+1)", 1 - f, Text("B*(nu/(mu*A + nu*B))", 2)),
+                positive(
+                    "whose other factor has a denominator that is not 0 at t = 0",
+                    "mu*A + nu*B",
+                    where=(("A", "1"), ("B", "0*b")),
+                    positive=("mu",),
+                ),
+                identity("X less its piece at t = 1", blend - "S2", f * Text("S1 - S2", 1)),
+                identity("which has the factor (1-t)^(n+1)", f, Text("A*(mu/(mu*A + nu*B))", 2)),
+                positive(
+                    "whose other factor has a denominator that is not 0 at t = 1",
+                    "mu*A + nu*B",
+                    where=(("A", "0*b"), ("B", "1")),
+                    positive=("nu",),
+                ),
+            ]
+        ],
+        believed=(POWERS,),
+    )
 
 
 def c_curves() -> Iterator[Statement]:
@@ -108,10 +146,18 @@ def c_curves() -> Iterator[Statement]:
 
 def hartmann_nurbs(_: Claim) -> Draft:
     """Return that a sine in a base is no quotient of polynomials, and that between splines the blend is one."""
-    sine = identity("sin t is a quotient of polynomials if X is", Text("(X - (1 - f)*b)/f", 2), Text("S"),
-                    where=(("X", "f*S + (1 - f)*b"),))  # fmt: skip
-    quotient = identity("pieces of splines: an exact rational form", _F * Text("a") + (1 - _F) * Text("b"),
-                        Text("(mu*A*a + nu*B*b)/(mu*A + nu*B)", 2), wanted=False)  # fmt: skip
+    sine = identity(
+        "sin t is a quotient of polynomials if X is",
+        Text("(X - (1 - f)*b)/f", 2),
+        Text("S"),
+        where=(("X", "f*S + (1 - f)*b"),),
+    )
+    quotient = identity(
+        "pieces of splines: an exact rational form",
+        _F * Text("a") + (1 - _F) * Text("b"),
+        Text("(mu*A*a + nu*B*b)/(mu*A + nu*B)", 2),
+        wanted=False,
+    )
     weight = positive("whose weight is positive", "mu*A + nu*B", positive=("mu", "nu", "A", "B"))
     return Draft([[sine, *c_curves()], [quotient, weight]], believed=(NO_SINE,))
 
@@ -131,11 +177,19 @@ def canal(claim: Claim) -> Draft:
     """Return the section of the envelope of balls around a spine."""
     squared = claim.formulas[0].relation.rhs
     a = (("a", "-r*r_prime/s"), ("q", text(squared)), *_CIRCLE)
-    return Draft([[
-        identity("on the envelope, any spine and radius: the derivative of |X - C|^2 = r^2", Text("a*s", 2), Text("-r*r_prime", 1),
-                 where=a),
-        identity("|X - C|^2 = r^2 at every angle", Text("a^2 + q*C^2 + q*S^2", 1), Text("r^2", 3), where=a),
-    ]])  # fmt: skip
+    return Draft(
+        [
+            [
+                identity(
+                    "on the envelope, any spine and radius: the derivative of |X - C|^2 = r^2",
+                    Text("a*s", 2),
+                    Text("-r*r_prime", 1),
+                    where=a,
+                ),
+                identity("|X - C|^2 = r^2 at every angle", Text("a^2 + q*C^2 + q*S^2", 1), Text("r^2", 3), where=a),
+            ]
+        ]
+    )
 
 
 def cylinders(_: Claim) -> Draft:
@@ -154,17 +208,30 @@ def cone(_: Claim) -> Draft:
     """Return a patch on the circular cone."""
     x, y, z = Text("w*(1 - v^2)", 2), Text("2*w*v", 2), Text("w*(1 + v^2)", 2)
     # The normal at w = 1, v = 0, from the derivatives (1 - v^2, 2 v, 1 + v^2) and w (-2 v, 2, 2 v).
-    across, along = [Text("1 - v^2", 1), Text("2*v", 2), Text("1 + v^2", 1)], [Text("-2*v*w", 1), Text("2*w", 2), Text("2*v*w", 2)]
-    return Draft([[
-        identity("on the circular cone", x**2 + y**2, z**2),
-        not_zero("regular away from its tip", across[0] * along[1] - across[1] * along[0], where=(("w", "1"), ("v", "0"))),
-    ]])  # fmt: skip
+    across, along = (
+        [Text("1 - v^2", 1), Text("2*v", 2), Text("1 + v^2", 1)],
+        [Text("-2*v*w", 1), Text("2*w", 2), Text("2*v*w", 2)],
+    )
+    return Draft(
+        [
+            [
+                identity("on the circular cone", x**2 + y**2, z**2),
+                not_zero(
+                    "regular away from its tip",
+                    across[0] * along[1] - across[1] * along[0],
+                    where=(("w", "1"), ("v", "0")),
+                ),
+            ]
+        ]
+    )
 
 
 def mean_curvature(_: Claim) -> Draft:
     """Return kappa_1^2 + kappa_2^2 against 4 H^2."""
     energy, mean = Text("k_1^2 + k_2^2", 1), Text("4*((k_1 + k_2)/2)^2", 2)
-    return Draft([[identity("kappa_2 = 0", energy, mean, where=(("k_2", "0"),))], [different("any kappa_2", energy, mean)]])
+    return Draft(
+        [[identity("kappa_2 = 0", energy, mean, where=(("k_2", "0"),))], [different("any kappa_2", energy, mean)]]
+    )
 
 
 def hull() -> Iterator[Statement]:
@@ -196,16 +263,32 @@ def inference(claim: Claim) -> Draft:
     """Return both readings of what the hull implies."""
     formulas = [given(part.formula) for part in claim.readings[0].parts[1:]]
     convex: list[Statement] = [
-        positive("any bases on one side of a plane: minus the slope across", Text("(a1*g1 + a2*g2 + a3*g3)/rise", 2), strict=False,
-                 positive=("rise",), nonnegative=("a1", "a2", "a3", "g1", "g2", "g3")),
-    ]  # fmt: skip
+        positive(
+            "any bases on one side of a plane: minus the slope across",
+            Text("(a1*g1 + a2*g2 + a3*g3)/rise", 2),
+            strict=False,
+            positive=("rise",),
+            nonnegative=("a1", "a2", "a3", "g1", "g2", "g3"),
+        ),
+    ]
     convex += [
-        positive(f"bases around an edge, x <= y at {corner}", Text(f"1 - ({corner[0]} - {corner[1]})", 1)) for corner in ROUNDING
+        positive(f"bases around an edge, x <= y at {corner}", Text(f"1 - ({corner[0]} - {corner[1]})", 1))
+        for corner in ROUNDING
     ]
     convex.append(positive("the tangent (1, 0) leads to the other side", Text("1 - 0", 1)))
-    convex.append(positive("coplanar strips, X = t: it runs forward", Text("(t + e - t)/e", 2), positive=("e",), affirmed=False,
-                           own=False, meets=False))  # fmt: skip
-    return Draft([[*hull(), *directions(formulas)], convex], believed=(POWERS, "a limit of slopes that are not positive is not"))
+    convex.append(
+        positive(
+            "coplanar strips, X = t: it runs forward",
+            Text("(t + e - t)/e", 2),
+            positive=("e",),
+            affirmed=False,
+            own=False,
+            meets=False,
+        )
+    )
+    return Draft(
+        [[*hull(), *directions(formulas)], convex], believed=(POWERS, "a limit of slopes that are not positive is not")
+    )
 
 
 DRAFTS: dict[str, Callable[[Claim], Draft]] = {

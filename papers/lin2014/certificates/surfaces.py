@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from fractions import Fraction
+from itertools import pairwise
 from typing import Any
 
 from semispline.papers.ledger import Claim, Formula, Meaning, Sample, clamped, given, interpret, samples, union
@@ -36,7 +37,9 @@ UNROLLED = (
     "the sums are stated on spans of surfaces of orders (2, 2) to (4, 4), for all control points, u and v there; for "
     "every other order by the step of the triangle, which is stated"
 )
-INDUCTION = "the recurrence carries what is stated of one order to the next one, and functions of order 1 are 1 on one span"
+INDUCTION = (
+    "the recurrence carries what is stated of one order to the next one, and functions of order 1 are 1 on one span"
+)
 SPACES = "splines that agree at more points of each span than a polynomial of their order has coefficients are the same"
 U, V = Text("u"), Text("v")
 _AT = ((Fraction(2, 7), Fraction(3, 7)), (Fraction(4, 5), Fraction(1, 9)))
@@ -90,8 +93,13 @@ def surface_cases(formula: Formula) -> Iterator[Statement]:
             lets, other = Lets("c"), Lets("d")
             right = interpret(formula.relation.rhs, _meaning(sample, lets, at))
             true = _surface(sample, other, at)
-            yield identity(f"orders {sample.k}, {sample.l}, the spans of {at[0]}, {at[1]}", true, right,
-                           where=[*lets.pairs, *other.pairs], own=sample.k == sample.l == CUBIC)  # fmt: skip
+            yield identity(
+                f"orders {sample.k}, {sample.l}, the spans of {at[0]}, {at[1]}",
+                true,
+                right,
+                where=[*lets.pairs, *other.pairs],
+                own=sample.k == sample.l == CUBIC,
+            )
 
 
 def surface(claim: Claim) -> Draft:
@@ -110,8 +118,14 @@ def curve_cases(formula: Formula, *, equal: bool = True) -> Iterator[Statement]:
             meaning = _meaning(sample, lets, at)
             right = interpret(formula.relation.rhs, Meaning({**meaning.numbers, pr.i: i}, meaning.functions))
             true = _meaning(sample, other, at).functions["C"](i, V)
-            yield identity(f"curve {i}, order {sample.l}, {sample.sizes[i]} points, the span of {at[1]}", true, right,
-                           equal=equal, where=[*lets.pairs, *other.pairs], own=sample.l == CUBIC)  # fmt: skip
+            yield identity(
+                f"curve {i}, order {sample.l}, {sample.sizes[i]} points, the span of {at[1]}",
+                true,
+                right,
+                equal=equal,
+                where=[*lets.pairs, *other.pairs],
+                own=sample.l == CUBIC,
+            )
 
 
 def curve(claim: Claim) -> Draft:
@@ -146,7 +160,9 @@ def base(letter: str) -> Callable[[Claim], Draft]:
             functions = {letter: lambda i, j: Text(f"P_{int(i)}_{int(j)}"), "B": basis}
             right = interpret(claim.formulas[0].relation.rhs, Meaning(numbers, functions))
             rows = [
-                triangle(other, length, along, [Text(f"P_{i}_{j}") for j in range(len(along) - length)], V, spans["along"])
+                triangle(
+                    other, length, along, [Text(f"P_{i}_{j}") for j in range(len(along) - length)], V, spans["along"]
+                )
                 for i in range(len(across) - k)
             ]
             true = triangle(other, k, across, rows, Text("w"), spans["across"])
@@ -164,32 +180,50 @@ def either_order(_: Claim) -> Draft:
         rows, columns = len(across) - k, len(along) - length
         s, t = span_of(across, Fraction(2, 7)), span_of(along, Fraction(3, 7))
         one, other, third = Lets("c"), Lets("d"), Lets("e")
-        by_rows = [triangle(one, length, along, [Text(f"P_{i}_{j}") for j in range(columns)], V, t) for i in range(rows)]
-        by_columns = [triangle(other, k, across, [Text(f"P_{i}_{j}") for i in range(rows)], U, s) for j in range(columns)]
+        by_rows = [
+            triangle(one, length, along, [Text(f"P_{i}_{j}") for j in range(columns)], V, t) for i in range(rows)
+        ]
+        by_columns = [
+            triangle(other, k, across, [Text(f"P_{i}_{j}") for i in range(rows)], U, s) for j in range(columns)
+        ]
         first, second = triangle(one, k, across, by_rows, U, s), triangle(other, length, along, by_columns, V, t)
         label = f"orders {k}, {length}"
         own = {"own": k == length == CUBIC}
         cases.append(identity(f"{label}: either order", first, second, where=[*one.pairs, *other.pairs], **own))
         sample = Sample(k, length, across, (along,) * rows)
         right = interpret(pr.EQ_1.relation.rhs, _meaning(sample, third, _AT[0]))
-        cases.append(identity(f"{label}: (1) with one knot vector", first, right, where=[*one.pairs, *third.pairs], **own))
+        cases.append(
+            identity(f"{label}: (1) with one knot vector", first, right, where=[*one.pairs, *third.pairs], **own)
+        )
     return Draft([cases], believed=(UNROLLED,))
 
 
 def partition() -> Iterator[Statement]:
     """Yield that functions sum to 1: the step for every order, and orders 2 to 5 over a symbolic inner knot."""
-    yield identity("partition of unity: the step", Text("(x - t_i)/(t_ip - t_i) + (t_ip - x)/(t_ip - t_i)", 1), 1, own=False)
+    yield identity(
+        "partition of unity: the step", Text("(x - t_i)/(t_ip - t_i) + (t_ip - x)/(t_ip - t_i)", 1), 1, own=False
+    )
     n, inner = [Text(f"N_{i}") for i in range(4)], [Text(f"S_{i}") for i in range(4)]
     where = [*((str(s), "1") for s in inner), ("N_3", "1 - N_0 - N_1 - N_2")]
-    yield identity("partition of unity: the surface", total(a * s for a, s in zip(n, inner, strict=True)), 1, where=where,
-                   own=False)  # fmt: skip
+    yield identity(
+        "partition of unity: the surface",
+        total(a * s for a, s in zip(n, inner, strict=True)),
+        1,
+        where=where,
+        own=False,
+    )
     for order in range(2, 6):
         vector = [*["0"] * order, "h", *["1"] * order]
         for span in (order - 1, order):
             lets = Lets("c")
             values = [span_value(lets, order, [Text(t) for t in vector], i, "x", span) for i in range(order + 1)]
-            yield identity(f"order {order}, any inner knot h, span {span - order + 2}: sum of all functions", total(values), 1,
-                           where=lets.pairs, own=order == CUBIC)  # fmt: skip
+            yield identity(
+                f"order {order}, any inner knot h, span {span - order + 2}: sum of all functions",
+                total(values),
+                1,
+                where=lets.pairs,
+                own=order == CUBIC,
+            )
 
 
 def signs() -> Iterator[Statement]:
@@ -235,8 +269,15 @@ def affine(_: Claim) -> Draft:
         letters = [(f"P_{i}_{j}", f"a*Q_{i}_{j} + b") for i in range(sample.m + 1) for j in range(sample.sizes[i])]
         plain = _surface(sample, other, at)
         renamed = [(name, meaning.replace("P_", "Q_")) for name, meaning in other.pairs]
-        cases.append(identity(f"orders {sample.k}, {sample.l}", true, a * Text(str(plain).replace("P_", "Q_")) + b,
-                              where=[*letters, *lets.pairs, *renamed], own=sample.k == sample.l == CUBIC))  # fmt: skip
+        cases.append(
+            identity(
+                f"orders {sample.k}, {sample.l}",
+                true,
+                a * Text(str(plain).replace("P_", "Q_")) + b,
+                where=[*letters, *lets.pairs, *renamed],
+                own=sample.k == sample.l == CUBIC,
+            )
+        )
     return Draft([[*partition(), *cases]], believed=(INDUCTION,))
 
 
@@ -247,8 +288,14 @@ def localness(_: Claim) -> Draft:
     for label, span in (("before its first knot", "i - 1 - d"), ("after its last knot", "i + k + d")):
         for j in ("i", "i + 1"):
             away = f"({j}) - c" if "before" in label else f"c - (({j}) + (k - 1) - 1)"
-            cases.append(positive(f"span {span}, {label}: function {j} of one order less vanishes", Text(away, 1),
-                                  where=[("c", span)], nonnegative=("d",)))  # fmt: skip
+            cases.append(
+                positive(
+                    f"span {span}, {label}: function {j} of one order less vanishes",
+                    Text(away, 1),
+                    where=[("c", span)],
+                    nonnegative=("d",),
+                )
+            )
     for order in range(2, 5):
         knots = [Fraction(t) for t in range(3 * order)]
         i = order
@@ -256,7 +303,11 @@ def localness(_: Claim) -> Draft:
             lets = Lets("c")
             value = span_value(lets, order, knots, i, "x", span)
             if i <= span < i + order:
-                cases.append(not_zero(f"order {order}: function {i} lives on span {span}", value, where=lets.pairs, own=order == CUBIC))
+                cases.append(
+                    not_zero(
+                        f"order {order}: function {i} lives on span {span}", value, where=lets.pairs, own=order == CUBIC
+                    )
+                )
     return Draft([cases], believed=(INDUCTION,))
 
 
@@ -286,9 +337,10 @@ def insertion() -> Iterator[Statement]:
 def spaces(label: str, order: int, inner: Sequence[Fraction], outer: Sequence[Fraction], **flags: Any) -> Statement:
     """Return whether splines over one knot vector are splines over another, by values at points of each span."""
     knots = sorted({*inner, *outer})
-    points = [a + (b - a) * Fraction(r, order + 1) for a, b in zip(knots, knots[1:], strict=False) for r in range(order + 1)]
+    points = [a + (b - a) * Fraction(r, order + 1) for a, b in pairwise(knots) for r in range(order + 1)]
     values = [
-        [[basis_number(order, vector, i, x) for i in range(len(vector) - order)] for x in points] for vector in (outer, inner)
+        [[basis_number(order, vector, i, x) for i in range(len(vector) - order)] for x in points]
+        for vector in (outer, inner)
     ]
     return contained(label, *values, **flags)
 
@@ -299,8 +351,15 @@ def transformation(_: Claim) -> Draft:
     for sample in samples():
         common = union(sample.l, *sample.V)
         for n, vector in enumerate(sorted(set(sample.V))):
-            cases.append(spaces(f"orders {sample.k}, {sample.l}, vector {n}", sample.l, vector, common,
-                                own=sample.k == sample.l == CUBIC))  # fmt: skip
+            cases.append(
+                spaces(
+                    f"orders {sample.k}, {sample.l}, vector {n}",
+                    sample.l,
+                    vector,
+                    common,
+                    own=sample.k == sample.l == CUBIC,
+                )
+            )
     return Draft([cases], believed=(INDUCTION, SPACES))
 
 
@@ -318,17 +377,30 @@ def derivative_steps() -> Iterator[Statement]:
     moved = "(x + e - t0)/(t1 - t0)", "(t2 - (x + e))/(t2 - t1)"
     for name, now, then, slope in zip(("rising", "falling"), hat, moved, ("1/(t1 - t0)", "-1/(t2 - t1)"), strict=True):
         yield identity(f"derivative, base, {name}: over e", Text(f"({then} - ({now}))/e", 2), Text(slope, 1), own=False)
-    low, high = "((x - t0)/(t_pm - t0)*A + (t_p - x)/(t_p - t1)*B)", "((x - t1)/(t_p - t1)*B + (t_pp - x)/(t_pp - t2)*C)"
+    low, high = (
+        "((x - t0)/(t_pm - t0)*A + (t_p - x)/(t_p - t1)*B)",
+        "((x - t1)/(t_p - t1)*B + (t_pp - x)/(t_pp - t2)*C)",
+    )
     low_slope = "((p - 1)*(A/(t_pm - t0) - B/(t_p - t1)))"
     high_slope = "((p - 1)*(B/(t_p - t1) - C/(t_pp - t2)))"
-    left = f"{low}/(t_p - t0) + (x - t0)/(t_p - t0)*{low_slope} - {high}/(t_pp - t1) + (t_pp - x)/(t_pp - t1)*{high_slope}"
-    yield identity("derivative, step, every degree and knots", Text(left, 1), Text(f"p*({low}/(t_p - t0) - {high}/(t_pp - t1))", 2),
-                   own=False)  # fmt: skip
+    left = (
+        f"{low}/(t_p - t0) + (x - t0)/(t_p - t0)*{low_slope} - {high}/(t_pp - t1) + (t_pp - x)/(t_pp - t1)*{high_slope}"
+    )
+    yield identity(
+        "derivative, step, every degree and knots",
+        Text(left, 1),
+        Text(f"p*({low}/(t_p - t0) - {high}/(t_pp - t1))", 2),
+        own=False,
+    )
     terms = [f"P_{i}*p*(N_{i}/d_{i} - N_{i + 1}/d_{i + 1})" for i in range(3)]
     claimed = [f"p*(P_{i} - P_{i - 1})/d_{i}*N_{i}" for i in (1, 2)]
     ends = "p*(P_0/d_0*N_0 - P_2/d_3*N_3)"
-    yield identity("derivative of a curve: summation by parts", Text(" + ".join(terms), 1), Text(" + ".join([*claimed, ends]), 1),
-                   own=False)  # fmt: skip
+    yield identity(
+        "derivative of a curve: summation by parts",
+        Text(" + ".join(terms), 1),
+        Text(" + ".join([*claimed, ends]), 1),
+        own=False,
+    )
 
 
 def sharp_continuity(**flags: bool) -> Iterator[Statement]:
@@ -341,8 +413,12 @@ def sharp_continuity(**flags: bool) -> Iterator[Statement]:
     ):
         yield identity(f"continuity, base, {label}", Text(left, 2), right, where=where, **flags)
     yield from derivative_steps()
-    yield positive("full multiplicity: the slope jumps by minus this", Text("p/g + p/h", 1), positive=("p", "g", "h"), **flags)
-    yield identity("a spline of one degree more has it as derivative", Text("p*((P_i + d*Q_i/p) - P_i)/d", 2), Text("Q_i"), **flags)
+    yield positive(
+        "full multiplicity: the slope jumps by minus this", Text("p/g + p/h", 1), positive=("p", "g", "h"), **flags
+    )
+    yield identity(
+        "a spline of one degree more has it as derivative", Text("p*((P_i + d*Q_i/p) - P_i)/d", 2), Text("Q_i"), **flags
+    )
 
 
 def derivatives_classical(_: Claim) -> Draft:
@@ -378,8 +454,14 @@ def continuity_control(_: Claim) -> Draft:
         functions = {**meaning.functions, "C": lambda i, _, p=position: Text("J") if int(i) == p else Text("0")}
         right = interpret(pr.EQ_3.relation.rhs, Meaning(meaning.numbers, functions))
         factor = span_value(other, CUBIC, sample.U, position, "u", span_of(sample.U, _AT[0][0]))
-        cases.append(identity(f"the jump of curve {position} has the factor N_{position}", right, factor * Text("J"),
-                              where=[*lets.pairs, *other.pairs]))  # fmt: skip
+        cases.append(
+            identity(
+                f"the jump of curve {position} has the factor N_{position}",
+                right,
+                factor * Text("J"),
+                where=[*lets.pairs, *other.pairs],
+            )
+        )
     return Draft([cases], believed=(INDUCTION, "((t + g)/g)^p has the slope p/g where t is 0"))
 
 
@@ -387,12 +469,23 @@ def row_differences(_: Claim) -> Draft:
     """Return what becomes of the rows of a derivative: neither knot vector carries them, the union does."""
     half, third = Fraction(1, 2), Fraction(1, 3)
     lost: list[Statement] = [*sharp_continuity(own=False)]
-    for order, a, b in ((3, clamped(3), clamped(3, half)), (4, clamped(4, half), clamped(4, third)),
-                        (4, clamped(4, half), clamped(4, third, 2 * third))):  # fmt: skip
+    for order, a, b in (
+        (3, clamped(3), clamped(3, half)),
+        (4, clamped(4, half), clamped(4, third)),
+        (4, clamped(4, half), clamped(4, third, 2 * third)),
+    ):
         for n, (one, other) in enumerate(((a, b), (b, a)), start=1):
             nested = set(one) <= set(other)
-            lost.append(spaces(f"order {order}, {len(a)} and {len(b)} knots, way {n}", order, one, other, wanted=nested,
-                               own=order == CUBIC))  # fmt: skip
+            lost.append(
+                spaces(
+                    f"order {order}, {len(a)} and {len(b)} knots, way {n}",
+                    order,
+                    one,
+                    other,
+                    wanted=nested,
+                    own=order == CUBIC,
+                )
+            )
     forms: list[Statement] = [*derivative_steps(), *insertion()]
     label = "every order and knots: a spline form exists, by this sum"
     terms = [f"P_{i}*p*(N_{i}/d_{i} - N_{i + 1}/d_{i + 1})" for i in range(3)]
@@ -446,14 +539,24 @@ def different_vectors(claim: Claim) -> Draft:
     for figure, (a, b) in CONTACTS.items():
         middle = int(counts[figure])
         vectors = [pr.KNOTS[a]] * 3 + ["middle"] * middle + [pr.KNOTS[b]] * 3
-        same.append(different(f"{figure}: {len(set(vectors))} different vectors", printed, len(set(vectors)),
-                              where=((text(pr.m), str(5 + middle)),)))  # fmt: skip
+        same.append(
+            different(
+                f"{figure}: {len(set(vectors))} different vectors",
+                printed,
+                len(set(vectors)),
+                where=((text(pr.m), str(5 + middle)),),
+            )
+        )
     own: list[Statement] = [*partition()]
     for order in (2, 3, 4):
         for i in range(1, 6):
             vector = clamped(order, Fraction(i, 7))
             values = [basis_number(order, vector, j, Fraction(3, 7)) for j in range(len(vector) - order)]
-            own.append(identity(f"order {order}, knot {i}/7: functions at 3/7", total(x for x in values if x), 1, own=order == CUBIC))
+            own.append(
+                identity(
+                    f"order {order}, knot {i}/7: functions at 3/7", total(x for x in values if x), 1, own=order == CUBIC
+                )
+            )
     return Draft([same, own], believed=(INDUCTION,))
 
 
@@ -467,11 +570,16 @@ def same_knots(claim: Claim) -> Draft:
     third = Fraction(1, 3)
     polynomial, own, wanted = clamped(CUBIC), clamped(CUBIC, third, 2 * third), clamped(CUBIC, Fraction(1, 2))
     vector = claim.formulas[0].relation.rhs
-    return Draft([[
-        knots("the vector of the first patch", vector, "equal", other=pr.KNOTS["fig-5.first"]),
-        spaces("a plane with coordinates polynomial in v", CUBIC, polynomial, wanted),
-        spaces("any plane patch over {1/3, 2/3}", CUBIC, own, wanted, own=False, meets=False),
-    ]], believed=(SPACES,))  # fmt: skip
+    return Draft(
+        [
+            [
+                knots("the vector of the first patch", vector, "equal", other=pr.KNOTS["fig-5.first"]),
+                spaces("a plane with coordinates polynomial in v", CUBIC, polynomial, wanted),
+                spaces("any plane patch over {1/3, 2/3}", CUBIC, own, wanted, own=False, meets=False),
+            ]
+        ],
+        believed=(SPACES,),
+    )
 
 
 DRAFTS: dict[str, Callable[[Claim], Draft]] = {
