@@ -106,14 +106,18 @@ def instance(at: Sequence[tuple[str, str]], where: Sequence[tuple[str, str]]) ->
 
 def satisfied(condition: str, at: Mapping[str, Fraction]) -> bool:
     """Tell whether a condition such as "u_1 > 0" holds at an instance."""
-    for sign, holds in (
-        (">=", lambda a, b: a >= b),
-        ("<=", lambda a, b: a <= b),
-        ("!=", lambda a, b: a != b),
-        (">", lambda a, b: a > b),
-        ("<", lambda a, b: a < b),
-    ):
+    for sign, holds in _RELATIONS.items():
         if sign in condition:
             left, right = condition.split(sign)
             return bool(holds(value(left.strip(), at), value(right.strip(), at)))
     raise TextError(f"condition: found {condition!r}, expected one with >, >=, <, <= or !=")
+
+
+# Those of two characters first.
+_RELATIONS: dict[str, Callable[[Any, Any], Any]] = {
+    ">=": operator.ge,
+    "<=": operator.le,
+    "!=": operator.ne,
+    ">": operator.gt,
+    "<": operator.lt,
+}

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
+from functools import cache
 from itertools import pairwise
 from math import factorial
 from typing import Any
@@ -137,13 +138,17 @@ def basis_number(order: int, knots: Sequence[Fraction], i: int, x: Fraction) -> 
     >>> basis_number(2, [Fraction(t) for t in (0, 0, 1, 1)], 1, Fraction(1, 3))
     Fraction(1, 3)
     """
-    last = max(j for j in range(len(knots) - 1) if knots[j] < knots[j + 1])
+    return _number(order, tuple(knots), i, x)
+
+
+@cache
+def _number(order: int, knots: tuple[Fraction, ...], i: int, x: Fraction) -> Fraction:
     if order == 1:
-        closed = i == last and x == knots[i + 1]
+        closed = x == knots[-1] == knots[i + 1] and knots[i] < x
         return Fraction(int(knots[i] <= x < knots[i + 1] or closed))
 
     def share(above: Fraction, width: Fraction, j: int) -> Fraction:
-        return above / width * basis_number(order - 1, knots, j, x) if width else Fraction(0)
+        return above / width * _number(order - 1, knots, j, x) if width else Fraction(0)
 
     rising = share(x - knots[i], knots[i + order - 1] - knots[i], i)
     return rising + share(knots[i + order] - x, knots[i + order] - knots[i + 1], i + 1)

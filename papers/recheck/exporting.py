@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
+from functools import cache
 from itertools import chain
 from typing import Any
 
@@ -27,7 +28,7 @@ def identity(
     equal: bool = True,
     where: Where = (),
     conditions: Sequence[str] = (),
-    **flags: bool,
+    **flags: Any,
 ) -> Identity:
     """Return the statement that both sides are the same, or are not.
 
@@ -89,7 +90,7 @@ def positive(
     over: Sequence[Term] = (),
     where: Where = (),
     strict: bool = True,
-    **flags: bool,
+    **flags: Any,
 ) -> Positive:
     """Return the statement that an expression is positive, or not negative, for letters with these signs.
 
@@ -144,7 +145,7 @@ def _terms(polynomial: Any) -> list[Term]:
     ]
 
 
-def rank(label: str, matrix: Any, *, affirmed: bool = True, **flags: bool) -> Rank:
+def rank(label: str, matrix: Any, *, affirmed: bool = True, **flags: Any) -> Rank:
     """Return the statement of the rank of a matrix of rational numbers or functions."""
     matrix = sp.Matrix(matrix)
     entries = tuple(tuple(map(text, matrix.row(i))) for i in range(matrix.rows))
@@ -177,7 +178,7 @@ def rank(label: str, matrix: Any, *, affirmed: bool = True, **flags: bool) -> Ra
     )
 
 
-def contained(label: str, outer: Any, inner: Any, *, wanted: bool = True, **flags: bool) -> Contained:
+def contained(label: str, outer: Any, inner: Any, *, wanted: bool = True, **flags: Any) -> Contained:
     """Return the statement whether columns of numbers are combinations of others."""
     one, other = (_domain(x) for x in (outer, inner))
     texts = tuple(tuple(tuple(map(text, row)) for row in x.to_Matrix().tolist()) for x in (one, other))
@@ -202,7 +203,7 @@ def contained(label: str, outer: Any, inner: Any, *, wanted: bool = True, **flag
     raise NotExpressibleError(f"{label}: found neither a solution nor what separates the columns")
 
 
-def minimum(label: str, matrix: Any, **flags: bool) -> Minimum:
+def minimum(label: str, matrix: Any, **flags: Any) -> Minimum:
     """Return the statement that a symmetric matrix of numbers is positive definite."""
     rows = [[_rational(x.element) for x in row] for row in _elements(_domain(matrix))]
     size = len(rows)
@@ -270,15 +271,25 @@ def _read(pairs: Sequence[tuple[str, str]], texts: Iterable[str]) -> tuple[tuple
     found.update(dict.fromkeys(sorted(set().union(*(names(x) for x in texts)) - defined)))
     factors: dict[str, None] = {}
     for divisor in dict.fromkeys(chain.from_iterable(map(divisors, every))):
-        for part in sp.fraction(sp.cancel(_in_sympy(divisor, pairs))):
-            for factor, _ in sp.factor_list(part)[1]:
-                factors[text(factor)] = None
+        factors.update(dict.fromkeys(_irreducible(divisor, _needed(tuple(pairs), [divisor]))))
     # One and the same factor up to its sign stands once.
     once: list[str] = []
     for factor in factors:
-        if text(-sp.sympify(_in_sympy(factor, ()))) not in once:
+        if _negative(factor) not in once:
             once.append(factor)
     return tuple(found), tuple(once)
+
+
+@cache
+def _irreducible(divisor: str, pairs: tuple[tuple[str, str], ...]) -> tuple[str, ...]:
+    """Return the irreducible factors of a divisor, those of its own denominator too."""
+    parts = sp.fraction(sp.cancel(_in_sympy(divisor, pairs)))
+    return tuple(text(factor) for part in parts for factor, _ in sp.factor_list(part)[1])
+
+
+@cache
+def _negative(factor: str) -> str:
+    return text(-_in_sympy(factor, ()))
 
 
 def _in_sympy(expression: str, pairs: Sequence[tuple[str, str]]) -> Any:

@@ -84,7 +84,7 @@ def _solved(free: Vector, names: tuple[Any, Any]) -> Pairs:
     return tuple((text(name), str(value)) for name, value in zip(names, values, strict=True))
 
 
-def first_order(right: Any, **flags: bool) -> Iterator[Statement]:
+def first_order(right: Any, **flags: Any) -> Iterator[Statement]:
     """Yield that P_u = `right` for some p_1, q_1 exactly if the tangent planes are one, for any R and P."""
     pairs, _, along, normal, square = _frame()
     slope = [_at_coordinate(right, c) for c in range(3)]
@@ -103,7 +103,7 @@ def first_order(right: Any, **flags: bool) -> Iterator[Statement]:
         )
 
 
-def second_order(right: Any, **flags: bool) -> Iterator[Statement]:
+def second_order(right: Any, **flags: Any) -> Iterator[Statement]:
     """Yield that P_uu = `right` for some p_2, q_2 exactly if curvatures agree, for any R and P that satisfy (15)."""
     pairs, across, along, normal, square = _frame()
     steps = Text("p_1") * Text("du"), Text("q_1") * Text("du") + Text("dv")
@@ -196,7 +196,7 @@ def instances(order: int, condition: Any) -> Iterator[Statement]:
 
 
 def joined(
-    label: str, order: int, base: Sequence[Any], functions: Sequence[Any], condition: Any, *, meets: bool, **flags: bool
+    label: str, order: int, base: Sequence[Any], functions: Sequence[Any], condition: Any, *, meets: bool, **flags: Any
 ) -> Iterator[Statement]:
     """Yield whether a patch by the condition is regular, and that it touches the base to the order."""
     values = dict(zip((pr.p_1, pr.q_1, pr.p_2, pr.q_2), map(sp.sympify, functions), strict=True))

@@ -215,7 +215,7 @@ def figure_row(
     extra: Pairs = (),
     *,
     equal: bool = True,
-    **flags: bool,
+    **flags: Any,
 ) -> Iterator[Statement]:
     """Yield row 2 of a figure: k = k_r = 4, uniform u_i, by closed form and by the recursion."""
     relation = given(formula).relation

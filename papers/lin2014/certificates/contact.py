@@ -90,6 +90,7 @@ def induction() -> tuple[Statement, ...]:
     return tuple(found)
 
 
+@cache
 def closed_derivative(side: Side, of: str, d: int) -> Text:
     """Return a derivative of the blend or of the base into it, in closed form, by its rows."""
     degree, h, rows = (
@@ -97,6 +98,12 @@ def closed_derivative(side: Side, of: str, d: int) -> Text:
     )
     ends = end_derivatives(2, degree, h)
     return total(as_text(ends[d, i]) * as_text(row) for i, row in enumerate(rows) if ends[d, i] != 0)
+
+
+@cache
+def derived_rows(side: Side) -> sp.Matrix:
+    """Return the rows of `derivations`, for symbolic orders."""
+    return contact_rows(2, pr.k - 1, BLEND_H[:2], base_order(side) - 1, BASE_H)
 
 
 def letters(side: Side, mode: Mode = "all") -> Pairs:
@@ -128,7 +135,7 @@ def row_cases(
     *,
     equal: bool = True,
     conditions: Sequence[str] = (),
-    **flags: bool,
+    **flags: Any,
 ) -> Iterator[Statement]:
     """Yield what decides a condition for a row of the blend."""
     formula = given(formula)
@@ -136,7 +143,7 @@ def row_cases(
     if equal:
         yield from induction()
     conditions = (*_ASCENDING[side], *conditions)
-    own = {"own": not counted, **flags}
+    own: dict[str, Any] = {"own": not counted, **flags}
     last: Pairs = ((text(pr.u_m3), text(u_last)),) if counted else ()
     where = (*letters(side, mode), *last, *rows_before(side, row), (text(relation.lhs), text(relation.rhs)))
     label = "every order" + (", as if u_{m-3} were the last inner knot" if counted else "")
@@ -151,7 +158,7 @@ def row_cases(
         conditions=conditions,
         **own,
     )
-    derived = contact_rows(2, pr.k - 1, BLEND_H[:2], base_order(side) - 1, BASE_H)
+    derived = derived_rows(side)
     by_rows = total(as_text(derived[row, j]) * as_text(BASE_ROWS[side][j]) for j in range(row + 1))
     yield identity(
         f"{label}: the derived row", relation.rhs, by_rows, equal=equal, where=where, conditions=conditions, **own
@@ -185,7 +192,7 @@ def defined_case(
     equal: bool,
     conditions: Sequence[str] = (),
     counted: bool = False,
-    **flags: bool,
+    **flags: Any,
 ) -> Identity:
     """Return the derivative of one order of P, at two orders, against that of R(w_s - a u), or of S(t_s + b x).
 

@@ -68,7 +68,7 @@ def density(claim: Claim) -> Draft:
         ("linear, knot 1/2 (a roof)", energy.basis(2, half), False),
     ):
         gram = gram_matrix(2, space, space)
-        own = {"own": meets, "meets": meets}
+        own: dict[str, Any] = {"own": meets, "meets": meets}
         cases += gram_entries(label, 2, space, own=False) if meets else ()
         cases.append(
             rank(f"{label}: what costs nothing has dimension {2 if meets else 3}", gram, affirmed=meets, **own)
@@ -76,7 +76,7 @@ def density(claim: Claim) -> Draft:
     return Draft([cases], believed=(RECURRENCE, NO_ENERGY))
 
 
-def gram_entries(label: str, d: int, space: Any, **flags: bool) -> Iterator[Statement]:
+def gram_entries(label: str, d: int, space: Any, **flags: Any) -> Iterator[Statement]:
     """Yield entries of a derived Gram matrix against integrals of the recursion's polynomials."""
     gram = gram_matrix(d, space, space)
     knots = [as_fraction(knot) for knot in space.knots]

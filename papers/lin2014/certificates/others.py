@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from fractions import Fraction
 from typing import Any
 
 import sympy as sp
@@ -66,8 +65,9 @@ def quintic(_: Claim) -> Draft:
     cases += [
         positive(f"every degree from 6 on: entry {i} of the diagonal", end[i, i], nonnegative=("d",)) for i in range(3)
     ]
-    points = [(0, 0), (Fraction(1, 2), 0), (Fraction(5, 3), Fraction(1, 3)), (2, Fraction(1, 2)), (2, 1)]
-    x, y = ([Text(text(Fraction(p[c])), 2) for p in points] for c in range(2))
+    x, y = (
+        [Text(number, 2) for number in line] for line in (("0", "1/2", "5/3", "2", "2"), ("0", "0", "1/3", "1/2", "1"))
+    )
     quartic: list[Statement] = []
     for end_, place, tangent in ((0, (0, 0), (1, 0)), (1, (2, 1), (0, 1))):
         order = (0, 1, 2) if end_ == 0 else (4, 3, 2)

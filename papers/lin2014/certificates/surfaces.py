@@ -188,7 +188,7 @@ def either_order(_: Claim) -> Draft:
         ]
         first, second = triangle(one, k, across, by_rows, U, s), triangle(other, length, along, by_columns, V, t)
         label = f"orders {k}, {length}"
-        own = {"own": k == length == CUBIC}
+        own: dict[str, Any] = {"own": k == length == CUBIC}
         cases.append(identity(f"{label}: either order", first, second, where=[*one.pairs, *other.pairs], **own))
         sample = Sample(k, length, across, (along,) * rows)
         right = interpret(pr.EQ_1.relation.rhs, _meaning(sample, third, _AT[0]))
@@ -248,7 +248,7 @@ def _weight_sums() -> Iterator[Statement]:
                 for j in range(sample.sizes[i])
             ]
             label = f"orders {sample.k}, {sample.l} at {u}, {v}"
-            own = {"own": sample.k == sample.l == CUBIC}
+            own: dict[str, Any] = {"own": sample.k == sample.l == CUBIC}
             yield identity(f"{label}: weights sum to 1", total(x for x in factors if x), 1, **own)
 
 
@@ -285,14 +285,14 @@ def localness(_: Claim) -> Draft:
     """Return that N_i,k vanishes on span c unless i <= c < i + k."""
     cases: list[Statement] = []
     # N_i,k is made of functions i and i + 1 of order k - 1, which live on spans j .. j + k - 2.
-    for label, span in (("before its first knot", "i - 1 - d"), ("after its last knot", "i + k + d")):
+    for label, place in (("before its first knot", "i - 1 - d"), ("after its last knot", "i + k + d")):
         for j in ("i", "i + 1"):
             away = f"({j}) - c" if "before" in label else f"c - (({j}) + (k - 1) - 1)"
             cases.append(
                 positive(
-                    f"span {span}, {label}: function {j} of one order less vanishes",
+                    f"span {place}, {label}: function {j} of one order less vanishes",
                     Text(away, 1),
-                    where=[("c", span)],
+                    where=[("c", place)],
                     nonnegative=("d",),
                 )
             )
@@ -403,7 +403,7 @@ def derivative_steps() -> Iterator[Statement]:
     )
 
 
-def sharp_continuity(**flags: bool) -> Iterator[Statement]:
+def sharp_continuity(**flags: Any) -> Iterator[Statement]:
     """Yield that across an r-fold knot splines of degree p are C^(p-r), some no smoother."""
     for label, left, right, where in (
         ("kept from the right", "(near - x)/(near - t_i)", 1, (("t_i", "x"),)),
