@@ -88,6 +88,8 @@ class Text:
     def __pow__(self, power: int) -> Text:
         if power < 0:
             return Text(f"1/{(self**-power).at(3)}", 2)
+        if power == 1:
+            return self
         return Text(f"{self.at(4)}^{power}", 3)
 
 
@@ -166,8 +168,8 @@ def _letter(expression: Any) -> str:
 
 
 def _sum(expression: Any) -> Text:
-    # Positive terms first, as one writes them.
-    terms = sorted(expression.args, key=lambda term: term.could_extract_minus_sign())
+    # Positive terms first and numbers last, as one writes them.
+    terms = sorted(expression.args, key=lambda term: (term.could_extract_minus_sign(), bool(term.is_Number)))
     found = _written(terms[0])
     for term in terms[1:]:
         found = found - _written(-term) if term.could_extract_minus_sign() else found + _written(term)
