@@ -70,13 +70,15 @@ def verify_command(
 ) -> None:
     """Decide every claim of a paper anew; exit status 1 if a verdict is not the recorded one, 3 if one is missing."""
     from semispline.papers.ledger import paper_files
-    from semispline.papers.recheck import require_system
+    from semispline.papers.recheck import require_folder, require_system
     from semispline.papers.report import ledger_markdown, ledger_record, with_study_kept
     from semispline.solver.io import check_outputs, to_text, write_text
 
     check_outputs({"--json": None if json_file == "-" else json_file, "--markdown": markdown}, paper_files(paper))
     if recheck is not None:
         require_system(recheck)
+    if certificates is not None:
+        require_folder(certificates)
     ledger = decided(paper)
     second = _second_system(ledger, recheck, certificates) if recheck or certificates else None
     if json_file == "-":

@@ -10,7 +10,6 @@ from .definition import span_of as span_of
 from .definition import span_value as span_value
 from .definition import triangle as triangle
 from .draft import Draft as Draft
-from .draft import Drafts as Drafts
 from .draft import export_of as export_of
 from .exporting import contained as contained
 from .exporting import different as different
@@ -20,17 +19,16 @@ from .exporting import minimum as minimum
 from .exporting import not_zero as not_zero
 from .exporting import positive as positive
 from .exporting import rank as rank
+from .files import require_folder as require_folder
 from .files import write_certificates as write_certificates
 from .rechecking import Recheck as Recheck
 from .rechecking import exported as exported
 from .rechecking import rechecked as rechecked
 from .rechecking import require_system as require_system
-from .statements import Certificate as Certificate
 from .statements import Export as Export
 from .statements import Identity as Identity
 from .statements import Statement as Statement
 from .statements import Term as Term
-from .texts import NotExpressibleError as NotExpressibleError
 from .texts import Text as Text
 from .texts import as_text as as_text
 from .texts import lets as lets

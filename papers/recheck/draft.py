@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
-from semispline.papers.ledger import Claim, LedgerError, Paper, Verdict
+from semispline.papers.ledger import Claim, LedgerError, Paper
 from semispline.papers.recheck.statements import Certificate, Export, Reading, Statement
 
 
@@ -32,9 +32,14 @@ class Draft:
 Drafts = Mapping[str, Callable[[Claim], Draft]]
 
 
+# Records that are not decided: they cannot be false, or nothing in them can be computed.
+_UNDECIDED = ("not-checkable", "definition")
+UNWRITTEN = "no certificate has been written for this record"
+
+
 def is_decided(claim: Claim) -> bool:
     """Tell whether a record has something to recheck."""
-    return claim.verdict is not Verdict.NOT_CHECKABLE
+    return str(claim.verdict) not in _UNDECIDED
 
 
 def export_of(
@@ -43,23 +48,21 @@ def export_of(
     not_expressible: Mapping[str, str],
     controls: Callable[[], Iterable[Statement]] = tuple,
 ) -> Export:
-    """Return the export of a paper.
+    """Return the export of a paper; a decided record with neither a draft nor a reason has `UNWRITTEN` for one.
 
     Raises
     ------
     LedgerError
-        A draft does not fit its record, or a decided record has neither a draft nor a reason.
+        A draft does not fit its record, or stands beside a reason why there is none.
     """
     decided = [claim for claim in paper.claims if is_decided(claim)]
-    known = {claim.id for claim in decided}
-    for identifier in (*drafts, *not_expressible):
-        if identifier not in known:
-            raise LedgerError(f"certificate {identifier}: found no decided record of this id, expected one")
     certificates = [_certificate(claim, drafts[claim.id](claim)) for claim in decided if claim.id in drafts]
-    reasons = dict(not_expressible)
-    for claim in decided:
-        if (claim.id in drafts) == (claim.id in reasons):
-            raise LedgerError(f"certificate {claim.id}: expected either statements or a reason why there are none")
+    both = sorted(set(drafts) & set(not_expressible))
+    if both:
+        raise LedgerError(
+            f"certificate {both[0]}: found statements and a reason why there are none, expected one of them"
+        )
+    reasons = {c.id: not_expressible.get(c.id, UNWRITTEN) for c in decided if c.id not in drafts}
     return Export(paper.name, tuple(certificates), tuple(controls()), reasons)
 
 

@@ -22,6 +22,17 @@ from semispline.solver.errors import InputError
 CONTROLS = "controls"
 
 
+def require_folder(folder: str | Path) -> None:
+    """Refuse a file where a folder is asked for.
+
+    Raises
+    ------
+    InputError
+    """
+    if Path(folder).is_file():
+        raise InputError(f"certificates: found the file {folder}, expected a folder, new or old")
+
+
 def write_certificates(folder: str | Path, export: Export) -> list[Path]:
     """Write an export, and return what was written.
 

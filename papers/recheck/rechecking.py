@@ -84,9 +84,10 @@ class Recheck:
         Identities that several records share are counted once, and only those whose sides differ as text.
         """
         refused = self.refused or {}
-        exported, disputed = set(), set()
+        exported, disputed, same = set(), set(), 0
         for certificate in self.export.certificates:
             for number, case in enumerate(certificate.statements, start=1):
+                same += isinstance(case, Identity) and case.left == case.right
                 if isinstance(case, Identity) and case.left != case.right:
                     key = (case.left, case.right, case.where, case.equal)
                     exported.add(key)
@@ -97,6 +98,7 @@ class Recheck:
         return {
             "identities_exported": len(exported),
             "identities_agreed": len(exported - disputed) if asked else 0,
+            "identities_of_one_text": same,
             "statements_exported": sum(len(c.statements) for c in self.export.certificates),
             "rechecked": sum(self.is_whole(c.id) for c in self.export.certificates),
             "not_expressible": len(self.export.not_expressible)

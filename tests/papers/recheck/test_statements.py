@@ -8,7 +8,6 @@ import pytest
 import sympy as sp
 
 from semispline.papers.recheck import (
-    Certificate,
     Export,
     contained,
     different,
@@ -22,7 +21,7 @@ from semispline.papers.recheck import (
 )
 from semispline.papers.recheck.by_fractions import agrees
 from semispline.papers.recheck.files import read_certificates
-from semispline.papers.recheck.statements import Identity, Reading, Term, as_record, from_record
+from semispline.papers.recheck.statements import Certificate, Identity, Reading, Term, as_record, from_record
 from semispline.papers.recheck.verdicts import verdict_of
 
 X = sp.Symbol("x")
