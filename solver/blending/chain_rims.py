@@ -15,7 +15,8 @@ from itertools import product
 import numpy as np
 
 from semispline.solver.arrays import FloatArray
-from semispline.solver.blending.chain_joints import JoinedPieces, end_slopes, end_values
+from semispline.solver.blending.chain_coefficients import JoinedPieces
+from semispline.solver.blending.chain_joints import end_slopes, end_values
 from semispline.solver.blending.chain_runs import begun_at, run_back
 from semispline.solver.blending.chains import Chain
 from semispline.solver.blending.weights import SEPARABLE
@@ -44,6 +45,8 @@ def facing_rims(a: Chain, b: Chain, options: BlendOptions) -> tuple[Chain, Chain
     ]
     wanted = _stations(a)
     nearest = min(ways, key=lambda way: float(np.sum((_stations(way) - wanted) ** 2)))
+    if any(chain.is_steered(order) for chain, order in zip((a, nearest), options.orders, strict=True)):
+        return None
     pair = [chain.rim_pieces(order) for chain, order in zip((a, nearest), options.orders, strict=True)]
     return (a, nearest) if _answer(*pair) else None
 
