@@ -84,12 +84,15 @@ class Recheck:
         Identities that several records share are counted once, and only those whose sides differ as text.
         """
         refused = self.refused or {}
-        exported, disputed, same = set(), set(), 0
+        exported, disputed, same = set(), set(), set()
         for certificate in self.export.certificates:
             for number, case in enumerate(certificate.statements, start=1):
-                same += isinstance(case, Identity) and case.left == case.right
-                if isinstance(case, Identity) and case.left != case.right:
-                    key = (case.left, case.right, case.where, case.equal)
+                if not isinstance(case, Identity):
+                    continue
+                key = (case.left, case.right, case.where, case.equal)
+                if case.left == case.right:
+                    same.add(key)
+                else:
                     exported.add(key)
                     mark = f"{certificate.id} #{number}:"
                     if any(text.startswith(mark) for text in refused.get(certificate.id, ())):
@@ -98,7 +101,7 @@ class Recheck:
         return {
             "identities_exported": len(exported),
             "identities_agreed": len(exported - disputed) if asked else 0,
-            "identities_of_one_text": same,
+            "identities_of_one_text": len(same),
             "statements_exported": sum(len(c.statements) for c in self.export.certificates),
             "rechecked": sum(self.is_whole(c.id) for c in self.export.certificates),
             "not_expressible": len(self.export.not_expressible)
