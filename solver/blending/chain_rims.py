@@ -15,7 +15,8 @@ from itertools import product
 import numpy as np
 
 from semispline.solver.arrays import FloatArray
-from semispline.solver.blending.chain_joints import JoinedPieces, end_slopes, end_values
+from semispline.solver.blending.chain_coefficients import JoinedPieces
+from semispline.solver.blending.chain_joints import end_slopes, end_values
 from semispline.solver.blending.chain_runs import begun_at, run_back
 from semispline.solver.blending.chains import Chain
 from semispline.solver.blending.weights import SEPARABLE

@@ -61,9 +61,41 @@ class WantedBases:
 
     def gives_solid(self, out: str) -> bool:
         """Tell whether a solid comes back: one can be read and written, and a face of it is replaced."""
+        return self.replaced is not None and self.holds_solids(out)
+
+    def is_added(self, out: str) -> bool:
+        """Tell whether a 3dm file comes back with a fillet or an edge of it blended: it holds no new solid."""
+        from pathlib import Path
+
+        from semispline.solver.io import split_spec
+
+        files = [split_spec(spec)[0] for spec in self.specs]
+        if any(Path(x).suffix.lower() != ".3dm" for x in (*files, out)) or len(set(files)) > 1:
+            return False
+        return self.replaced is not None or None not in self.cuts
+
+    def holds_solids(self, out: str) -> bool:
+        """Tell whether a solid can be read and written."""
+        from semispline.solver.io import split_spec
         from semispline.solver.topology import can_hold_a_solid
 
-        return self.replaced is not None and can_hold_a_solid(self.a) and can_hold_a_solid(out, written=True)
+        return can_hold_a_solid(split_spec(self.a)[0]) and can_hold_a_solid(out, written=True)
+
+    def sharp_edge(self) -> tuple[str, int, str] | None:
+        """Return file, face and name of the sharp edge of a solid from which both contacts are cut; None without one.
+
+        Raises
+        ------
+        EdgeError, FileError, ComputationError
+        """
+        from semispline.solver.io import split_spec
+        from semispline.solver.topology import can_hold_a_solid, sharp_edge_between
+
+        if self.replaced is not None or self.b is None or None in self.cuts:
+            return None
+        if not can_hold_a_solid(split_spec(self.a)[0]):
+            return None
+        return sharp_edge_between((self.a, self.b), (self.edge_a, self.edge_b))
 
     def check(self) -> None:
         """Refuse what does not go together before a file is read.

@@ -6,16 +6,20 @@ import shlex
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from math import floor, log10
+from pathlib import Path
 
 from semispline.solver.errors import EdgeError
+from semispline.solver.io import OCC_SUFFIXES
 from semispline.solver.topology.between import Between
+from semispline.solver.topology.clearance import clearance
 from semispline.solver.topology.contact_words import beyond, contact_word, has_exact_bases, linked
 from semispline.solver.topology.end_faces import end_edges, going_on
 from semispline.solver.topology.face_runs import face_run, runs_on
-from semispline.solver.topology.half_edges import EdgeGraph
+from semispline.solver.topology.half_edges import NONE, EdgeGraph
 from semispline.solver.topology.place import Place, PlaceSide
 from semispline.solver.topology.relations import Relations
 from semispline.solver.topology.replacing import pair_of
+from semispline.solver.topology.sharp_chains import sharp_chain
 from semispline.solver.topology.solid_blends import can_hold_a_solid
 
 # A contact moves into its face by this share of the way to the next edge, where nobody says how far.
@@ -48,6 +52,10 @@ def with_commands(
     words = _words(graph, relations, place, betweens)
     if words is not None:
         return replace(place, commands=(_between_chains(graph.path, place, words),))
+    if place.kind == "sharp edge" and Path(graph.path).suffix.lower() in OCC_SUFFIXES:
+        command = _rounding(graph, relations, place)
+        # What cannot be a solid may be a blend all the same.
+        return replace(place, commands=(command,) if command else tuple(two_faces(graph.path, place, alone=True)))
     if not place.faces:
         return replace(place, commands=tuple(two_faces(graph.path, place)))
     commands = []
@@ -102,6 +110,21 @@ def _words(
     return contact_word(graph, relations, found[0]), contact_word(graph, relations, found[1])
 
 
+def _rounding(graph: EdgeGraph, relations: Relations, place: Place) -> str | None:
+    """Return the command that rounds a sharp edge with all that go on in it; None where no solid can come back."""
+    face, edge = place.a.face, place.a.edge
+    row = graph.uses.of_face(face).start + int(edge[1:])
+    try:
+        chain = sharp_chain(graph, relations, row, edge)
+    except EdgeError:
+        return None
+    if any(graph.uses.other[use] == NONE for use in chain.rows):
+        return None
+    least = min(clearance(graph, *pair) for pair in zip(chain.rows, chain.others, strict=True))
+    words = ["semispline", "blend", _safe(graph.path), "--round", f"{face}:{edge}", "--distance"]
+    return shlex.join([*words, f"{_two_digits(least * _OF_CLEARANCE):g}", "-o", f"round-{face}{edge}.step"])
+
+
 def _rows(graph: EdgeGraph, side: PlaceSide) -> list[int]:
     """Return the uses along a side."""
     return [graph.uses.of_face(face).start + int(edge[1:]) for face, edge in ((side.face, side.edge), *side.more)]
@@ -144,8 +167,11 @@ def _edges_to_name(graph: EdgeGraph, relations: Relations, between: Between) -> 
     return graph.uses.name(rows[0]), graph.uses.name(rows[1])
 
 
-def two_faces(path: str, place: Place) -> Iterator[str]:
-    """Yield the command of two edges; of a gap with as many on both sides, of each edge and the one that faces it."""
+def two_faces(path: str, place: Place, *, alone: bool = False) -> Iterator[str]:
+    """Yield the command of two edges; of a gap with as many on both sides, of each edge and the one that faces it.
+
+    `alone` asks for the blend as a surface, instead of the solid with it.
+    """
     sides = [[(side.face, side.edge), *side.more] for side in (place.a, place.b)]
     cuts: list[str] = []
     if place.kind == "sharp edge":
@@ -153,7 +179,7 @@ def two_faces(path: str, place: Place) -> Iterator[str]:
         cuts = ["--cut-a", distance, "--cut-b", distance]
     for a, b in zip(*sides, strict=True) if len(sides[0]) == len(sides[1]) else [(sides[0][0], sides[1][0])]:
         words = ["semispline", "blend", *(f"{_safe(path)}#{face}" for face, _ in (a, b))]
-        words += ["--edge-a", a[1], "--edge-b", b[1], *cuts]
+        words += ["--edge-a", a[1], "--edge-b", b[1], *cuts, *["--surfaces"] * alone]
         # Two faces may have several edges in common.
         out = "-".join([place.kind.partition(" ")[0], *(f"{face}{edge}" for face, edge in (a, b))])
         yield shlex.join([*words, "-o", f"{out}.step"])

@@ -89,7 +89,10 @@ def _add_along(
     on_face: Callable[[FloatArray], FloatArray],
 ) -> tuple[float, float]:
     def along(t: FloatArray) -> FloatArray:
-        return _nearest(border, points_of(edge, t), at_ends)
+        v = _nearest(border, points_of(edge, t))
+        for limit, end in zip(range_of(edge), at_ends, strict=True):
+            v = v if end is None else np.where(t == limit, end, v)
+        return v
 
     def places(t: FloatArray) -> FloatArray:
         return on_face(along(t))
@@ -97,8 +100,8 @@ def _add_along(
     def at_knots(t: FloatArray) -> FloatArray:
         v = along(t)
         inner = np.unique(border.knots)[1:-1]
-        if not len(inner):
-            return np.asarray(inner)
+        if len(inner) == 0:
+            return inner
         if v[-1] < v[0]:
             v, t = v[::-1], t[::-1]
         found = np.interp(inner, v, t)
@@ -279,7 +282,7 @@ def _distance(
     return own, best
 
 
-def _nearest(border: BSplineCurve, points: FloatArray, at_ends: tuple[float | None, ...]) -> FloatArray:
+def _nearest(border: BSplineCurve, points: FloatArray) -> FloatArray:
     """Return where on a curve the points nearest to others are, which run along it."""
     low, high = float(border.knots[0]), float(border.knots[-1])
     nodes = np.linspace(low, high, _NODES + 1)
@@ -296,7 +299,4 @@ def _nearest(border: BSplineCurve, points: FloatArray, at_ends: tuple[float | No
         if np.abs(moved - v).max() <= 1e-15 * (high - low):
             break
         v = moved
-    for k, end in zip((0, -1), at_ends, strict=True):
-        if end is not None:
-            v[k] = end
     return np.asarray(v)

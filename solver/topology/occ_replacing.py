@@ -152,7 +152,7 @@ def opening(shape: Any, number: int, contacts: tuple[Sequence[int], Sequence[int
 
 
 @dataclass(frozen=True, eq=False)
-class _Made:
+class Made:
     """An old edge and the one that takes its place, with the faces that have a curve of it.
 
     Attributes
@@ -185,7 +185,7 @@ def put_in(shape: Any, places: Sequence[Opening], news: Sequence[NewFace]) -> tu
 
     faces = parts(shape, "FACE")
     own = {place.number: new_face(new.surface) for place, new in zip(places, news, strict=True)}
-    made: list[_Made] = []
+    made: list[Made] = []
     borders = [_border(place, new, faces, own, made) for place, new in zip(places, news, strict=True)]
     for one in made:
         settle(one.edge, one.faces)
@@ -198,7 +198,7 @@ def put_in(shape: Any, places: Sequence[Opening], news: Sequence[NewFace]) -> tu
 
 
 def _border(
-    place: Opening, wanted: NewFace, faces: Sequence[Any], own: Mapping[int, Any], made: list[_Made]
+    place: Opening, wanted: NewFace, faces: Sequence[Any], own: Mapping[int, Any], made: list[Made]
 ) -> tuple[list[tuple[Any, bool]], bool]:
     """Return the border of a new face as the wire of the old one walks it, and whether its own normal points inwards.
 
@@ -213,8 +213,8 @@ def _border(
     else:
         a, b = wanted.a, wanted.b
     (u0, u1) = surface.domain[0]
-    of_a = _contact_edges(place.a, faces, new, geometry, surface, u0, a)
-    of_b = _contact_edges(place.b, faces, new, geometry, surface, u1, b[::-1])
+    of_a = contact_edges(place.a, faces, new, geometry, surface, u0, a)
+    of_b = contact_edges(place.b, faces, new, geometry, surface, u1, b[::-1])
     made += [*of_a, *of_b]
     used = [[(one.edge, is_reversed(one.old)) for one in side] for side in (of_a, of_b)]
     # Seen from outside the parameters run round the face where the first contact runs against v.
@@ -247,7 +247,7 @@ def change_of(places: Sequence[Opening]) -> Change:
     for place in places:
         properties = GProp_GProps()
         BRepGProp.SurfaceProperties_s(place.face, properties)
-        lines = [_line(rim) for rim in (place.a, place.b)]
+        lines = [rim_line(rim) for rim in (place.a, place.b)]
         length = float(np.mean([np.linalg.norm(np.diff(line, axis=0), axis=1).sum() for line in lines]))
         gap = float(np.linalg.norm(evenly(lines[0]) - evenly(lines[1])[::-1], axis=1).mean())
         volume += float(properties.Mass()) * min(length, gap)
@@ -266,14 +266,14 @@ def runs_against(place: Opening, surface: BSplineSurface) -> bool:
     (u0, u1), (v0, v1) = surface.domain
     # Both ends are one point: which way it goes is seen a quarter later.
     corners = surface.evaluate_grid([u0, u1], v0 + (v1 - v0) * np.array([0.25, 0.75]))
-    a, b = (evenly(_line(rim), 5)[[1, 3]] for rim in (place.a, place.b))
+    a, b = (evenly(rim_line(rim), 5)[[1, 3]] for rim in (place.a, place.b))
     b = b[::-1]
     along = np.linalg.norm(corners - np.array([a, b]), axis=2).sum()
     against = np.linalg.norm(corners[:, ::-1] - np.array([a, b]), axis=2).sum()
     return bool(against < along)
 
 
-def _line(rim: Rim) -> FloatArray:
+def rim_line(rim: Rim) -> FloatArray:
     """Return points along a rim, as the wire walks it."""
     pieces = []
     for edge in rim.edges:
@@ -304,9 +304,9 @@ def _between(last: int, first: int, count: int) -> list[int]:
     return [(last + 1 + k) % count for k in range((first - last - 1) % count)]
 
 
-def _contact_edges(
+def contact_edges(
     rim: Rim, faces: Sequence[Any], new: Any, geometry: Any, surface: BSplineSurface, u: float, v: tuple[float, float]
-) -> list[_Made]:
+) -> list[Made]:
     """Return what takes the place of each old edge of a contact."""
     border = iso_curve(surface, u=u)
     made = []
@@ -320,7 +320,7 @@ def _contact_edges(
             edge = border_edge(geometry.UIso(u), *places, ends(forward(old)))
             add_pcurve(edge, line_on(edge, (u, places[0]), (u, places[1])), new)
             add_by_feet(edge, face, first_parameters(old, face, ends(edge)[0]))
-        made.append(_Made(old, edge, [new, face]))
+        made.append(Made(old, edge, [new, face]))
     return made
 
 
@@ -334,24 +334,24 @@ def _end_edge(
     *,
     from_a: bool,
     is_kept: bool,
-) -> _Made:
+) -> Made:
     """Return what takes the place of the edge at an end: with its curve on the face beyond, unless that is new too."""
     (old,), (beyond,) = rim.edges, rim.faces
     if is_kept:
-        return _Made(old, copied_edge(old, faces[beyond]), [faces[beyond]], is_kept=True)
+        return Made(old, copied_edge(old, faces[beyond]), [faces[beyond]], is_kept=True)
     # The wire walks from contact to contact; the edge's own direction may be the other.
     backwards = is_reversed(old) == from_a
     (_, v), (_, other) = ends_at
     curve = geometry.VIso(v) if v == other else line_across(surface, ends_at)
     edge = end_edge(curve, ends(forward(old)), backwards=backwards)
     if beyond in own:
-        return _Made(old, edge, [])
+        return Made(old, edge, [])
     add_by_feet(edge, faces[beyond], first_parameters(old, faces[beyond], ends(edge)[0]))
-    return _Made(old, edge, [faces[beyond]])
+    return Made(old, edge, [faces[beyond]])
 
 
 def _add_across(
-    made: _Made,
+    made: Made,
     new: Any,
     surface: BSplineSurface,
     ends_at: tuple[tuple[float, float], tuple[float, float]],

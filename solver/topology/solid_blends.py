@@ -23,7 +23,7 @@ from semispline.solver.topology.panels import panels_of
 from semispline.solver.topology.relations import relate
 from semispline.solver.topology.resolving import Resolved
 from semispline.solver.topology.solid_gate import GateReport
-from semispline.solver.topology.solid_orders import NewFace, Outcome, Replacement, Rounding
+from semispline.solver.topology.solid_orders import Joining, NewFace, Outcome, Replacement, Rounding
 
 # Operating, measuring twice, writing and reading again take so many times as long as reading, at most.
 _TIMES = 12.0
@@ -179,7 +179,7 @@ def check_suffixes(path: str | Path, out: str | Path) -> None:
         raise FileError(f"{out}: no solid goes into it, expected .step or .brep; `write_surface` writes a blend")
 
 
-def operated(path: str | Path, order: Replacement | Rounding, suffix: str) -> Outcome:
+def operated(path: str | Path, order: Replacement | Rounding | Joining, suffix: str) -> Outcome:
     """Return what came of an order, carried out by a process of its own.
 
     Raises
@@ -196,7 +196,9 @@ def operated(path: str | Path, order: Replacement | Rounding, suffix: str) -> Ou
         )
     assert isinstance(outcome, Outcome)
     if isinstance(order, Rounding):
-        title = f"--round {order.face}:e{order.edge}"
+        title = "--round {}:e{}".format(*order.edges[0])
+    elif isinstance(order, Joining):
+        title = f"--from {path}#{order.face} --to {order.other_path or path}#{order.other}"
     else:
         title = f"--replace {','.join(str(x.face) for x in order.faces)}"
     for report, when in ((outcome.report, ""), (outcome.read_back, "written and read again, ")):

@@ -49,22 +49,52 @@ class Replacement:
 
 @dataclass(frozen=True, eq=False)
 class Rounding:
-    """A sharp edge to be rounded, and the surface that is put there.
+    """Sharp edges to be rounded together, one or more, and the surface that is put there.
 
     Attributes
     ----------
-    face, edge : int
-        N of `PATH#N`, and k of its edge "ek".
+    face : int
+        N of `PATH#N` of one of the faces beside them.
+    edges : tuple of (int, int)
+        N, and k of its edge "ek": as the faces on one side walk them, from one to the next.
     surface : BSplineSurface
-        u from that face to the one beyond the edge.
+        u from these faces to those beyond the edges.
+    cuts : tuple of float
+        Parameters v at which it is cut into faces.
+    closed : bool
+        The last edge ends where the first one begins.
     grows : bool
-        An inner edge: the volume has to become more.
+        Inner edges: the volume has to become more.
     """
 
     face: int
-    edge: int
+    edges: tuple[tuple[int, int], ...]
     surface: BSplineSurface
+    cuts: tuple[float, ...]
+    closed: bool
     grows: bool
+
+
+@dataclass(frozen=True, eq=False)
+class Joining:
+    """Two faces to be taken out, and the surfaces that join their outlines.
+
+    Attributes
+    ----------
+    face : int
+        Of the first file.
+    other_path : str or None
+        The second file; None where it is the same.
+    other : int
+        The face there.
+    surfaces : tuple of BSplineSurface
+        As `joined` of `occ_joining` has them, in the unit of the first file that names one.
+    """
+
+    face: int
+    other_path: str | None
+    other: int
+    surfaces: tuple[BSplineSurface, ...]
 
 
 @dataclass(frozen=True, eq=False)
