@@ -1,4 +1,4 @@
-"""Limits of the pieces of a chain, each from both sides: what is straight, what is cut, what rounding may make of it."""
+"""Limits of the pieces of a chain, each from both sides: what is straight, what is cut, what rounding may make."""
 
 import numpy as np
 import pytest
@@ -118,7 +118,7 @@ def test_splines_with_inner_knots_keep_their_weights(weights):
 
 
 def test_a_faster_end_doubles_the_degree_of_what_is_not_constant():
-    jets = np.concatenate([straight_jets(), straight_jets()[:1] + [1, 2, 3], np.zeros((1, 3, 3))])
+    jets = np.concatenate([straight_jets(), straight_jets()[:1] + np.array([1, 2, 3]), np.zeros((1, 3, 3))])
     before = piece(jets, degrees=(1, 0, 2, -1))
     after = with_faster_end(before, 3.0)
     assert after.degrees == (2, 0, 4, -1)
