@@ -88,9 +88,11 @@ class Chain:
         joined = joined_pieces(pieces, closed=self.closed, tolerance=self.tolerance, ends_on=self.ends_on)
         if lengths is not None:
             joined = _with_lengths(joined, lengths)
-        return self._strip(
-            joined, *(_as_conic(pieces, joined, closed=self.closed, tolerance=self.tolerance) or _assembled(joined))
-        )
+        conic = None
+        if self.ends_on == (None, None):
+            # One conic is run through anew, its ends as they are: what is steered stays in pieces.
+            conic = _as_conic(pieces, joined, closed=self.closed, tolerance=self.tolerance)
+        return self._strip(joined, *(conic or _assembled(joined)))
 
     def rim_pieces(self, order: int) -> JoinedPieces:
         """Return the pieces with nothing but their values made to agree; errors as `strip`."""
