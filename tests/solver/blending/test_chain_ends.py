@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from helpers.chains import arc, flanges, line, walls
+from helpers.chains import arc, circle, flanges, line, walls
 from semispline import chain
 from semispline.solver.blending.chain_bases import as_bases
 from semispline.solver.blending.chain_rims import facing_rims
@@ -34,7 +34,7 @@ def off(strip, normals):
 
 @pytest.mark.parametrize("cuts", [(0, 90), (0, 45, 90), (0, 20, 60, 90)])
 def test_arcs_of_one_circle_end_on_slanted_planes(cuts):
-    faces = walls([arc((0, 0), 2.0, a, b) for a, b in zip(cuts[:-1], cuts[1:], strict=True)])
+    faces = walls(circle(2.0, cuts))
     one = replace(chain(faces), ends_on=tuple(EndFace.plane(x) for x in SLANTED))
     # Coordinates of 2: roundings of them.
     assert off(one.strip(2), SLANTED) < 1e-13
