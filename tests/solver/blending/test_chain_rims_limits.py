@@ -7,8 +7,11 @@ import pytest
 
 from helpers.chains import arc, flanges, line, walls
 from semispline import chain
-from semispline.solver.blending.chain_rims import _answers, _AtJoint, _run_alike, facing_rims
+from semispline.solver.blending.chain_joints import JoinedPieces
+from semispline.solver.blending.chain_pieces import Piece
+from semispline.solver.blending.chain_rims import _answers, _AtJoint, _extent, _run_alike, facing_rims
 from semispline.solver.options import BlendOptions
+from semispline.solver.splines import Basis
 
 # A direction along, one across, and the one square to both; their coordinates are exact.
 ALONG, ACROSS, UP = np.array([[0.6, 0.8, 0.0], [-0.8, 0.6, 0.0], [0.0, 0.0, 1.0]])
@@ -114,6 +117,12 @@ def test_what_jumps_is_along_to_a_billionth(times, met, order, size):
     for beside in (UP, ACROSS):
         assert at_joint(jumps=[(order, times * 1e-9 * size * beside)]).is_plain is met
     assert at_joint(jumps=[(order, ALONG)]).is_plain
+
+
+def test_the_size_of_a_rim_is_that_of_its_points():
+    jets = np.array([[[3.0, 4, 0], [-7, 0, 0]], [[0, 0, 20], [0, 0, 20]]])
+    one = Piece(0, (0.0, 1.0), jets, Basis(1, np.array([0.0, 0, 1, 1])), (1, 0), np.zeros(2), 1.0)
+    assert _extent(JoinedPieces((one, one), np.ones(2), (), (None, None), (0, 0))) == 7
 
 
 def weighted(weights, across=0.0):
