@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from helpers.chains import arc, circle, flanges, line, walls
-from semispline import chain
+from helpers.chains import LINE, arc, circle, flanges, line, walls
+from semispline import Base, BSplineSurface, EdgeError, chain
 from semispline.solver.blending.chain_bases import as_bases
 from semispline.solver.blending.chain_rims import facing_rims
 from semispline.solver.blending.chain_runs import run_back
@@ -65,3 +65,15 @@ def test_a_chain_run_back_ends_on_the_same_faces():
     back = run_back(one)
     assert back.ends_on == one.ends_on[::-1]
     assert off(back.strip(2), SLANTED[::-1]) < 1e-13
+
+
+@pytest.mark.parametrize("still", [(0, 1, 1), (1, 1, 2)])
+def test_an_edge_that_stands_still_where_it_meets_the_next_is_refused(still):
+    """Two control points in one: the speeds of both faces cannot be made to agree."""
+    runs = [(0, 0.5, 1), still] if still[0] else [still, (1, 1.5, 2)]
+    faces = []
+    for xs in runs:
+        net = [[[x, 0, z] for x in xs] for z in (0, -1)]
+        faces.append(Base(BSplineSurface(1, 2, LINE, [0, 0, 0, 1, 1, 1], net), "u0"))
+    with pytest.raises(EdgeError, match="joint 1: the contact stands still there"):
+        chain(faces).strip(2)

@@ -121,7 +121,7 @@ def test_weights_of_the_contact_that_vanish_are_refused(least):
 def plain(order):
     values = np.zeros((2, 3, order + 1))
     values[:, 0, 0] = values[:, 1, 1] = 1.0
-    return Coefficients(values, np.zeros_like(values))
+    return Coefficients(values, np.zeros_like(values), 1.0, 0.0)
 
 
 @pytest.mark.parametrize(("times", "knots"), [(0.0, 0), (0.8, 0), (1.25, 1)])
