@@ -330,6 +330,11 @@ def _matching(
     by[_LAMBDA, 0] = wanted[0, 3] / derivatives[0, 0, 3] if rational else 1.0
     extent = float(np.abs(wanted[0]).max()) or 1.0
     per_u = float(np.linalg.norm(wanted[min(1, order)])) / extent
+    if per_u == 0:
+        raise EdgeError(
+            f"joint {joint}: a derivative across the contact vanishes there, expected faces that leave it; use faces "
+            "that have no pole at the joint"
+        )
     for j in range(1, order + 1):
         rest = wanted[j] - end_values(derivatives, by)[j]
         columns = {_W: by[_LAMBDA, 0] * derivatives[1, 0]} | ({_LAMBDA: derivatives[0, 0]} if rational else {})
