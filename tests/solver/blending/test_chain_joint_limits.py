@@ -134,6 +134,22 @@ def test_a_contact_slower_than_a_billionth_of_its_size_stands_still(times, refus
             _check_speeds(*pair, 3)
 
 
+def test_a_contact_of_no_length_stands_still():
+    with pytest.raises(EdgeError, match="joint 1: the contact stands still"):
+        _check_speeds(BEFORE, piece([(0, 0, 0), (0, 0, 0)]), 1)
+
+
+def test_a_crease_is_the_angle_between_normals():
+    """The second face turned about the first one's side edge, which is upright: it leans too."""
+    t = np.radians(30)
+    one = piece([(-1, 0, 0), (0, 0, 0)], DOWN, (0.3, 0, -2))
+    other = piece([(0, 0, 0), (np.cos(t), np.sin(t), 0)], (0.3, 0, -2), DOWN)
+    # Along (1, 0, 0) and (c, s, 0), across (0.3, 0, -2): normals (0, 1, 0) and (2 s, -2 c, 0.3 s) of any length.
+    n = np.array([2 * np.sin(t), -2 * np.cos(t), 0.3 * np.sin(t)])
+    expected = np.degrees(np.arccos(abs(n[1]) / np.linalg.norm(n)))
+    assert joined(one, other).joints[1].crease_degrees == pytest.approx(expected, rel=1e-12)
+
+
 def test_what_a_joint_says():
     joint = Joint((0.0, 0.0, 0.0), "smooth", 0.0, 0.0, (0.0,), 0.0, (0.0, 0.0))
     assert joint.apart == 0
