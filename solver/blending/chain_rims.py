@@ -115,8 +115,11 @@ def _at_joint(joined: JoinedPieces, k: int) -> _AtJoint:
             values = values[:, :3] / weight
         sides.append((values, slopes / joined.spans[piece]))
     (values, before), (_, after) = sides
-    extent = max(float(np.abs(piece.jets[0, :, :3]).max()) for piece in joined.pieces)
-    return _AtJoint(values, before, after, extent)
+    return _AtJoint(values, before, after, _extent(joined))
+
+
+def _extent(joined: JoinedPieces) -> float:
+    return max(float(np.abs(piece.jets[0, :, :3]).max()) for piece in joined.pieces)
 
 
 def _run_alike(one: FloatArray, other: FloatArray) -> bool:

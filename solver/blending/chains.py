@@ -301,11 +301,7 @@ def _as_conic(
     pieces: list[Piece], joined: JoinedPieces, *, closed: bool, tolerance: float
 ) -> tuple[FloatArray, Basis] | None:
     """Return pieces that are one conic together, joined continuously: `blend` runs through it by a smooth circle."""
-    if (
-        len(pieces) < 2
-        or pieces[0].jets.shape[2] == 3
-        or any(x is not None and x.kind != "smooth" for x in joined.joints)
-    ):
+    if pieces[0].jets.shape[2] == 3 or any(x is not None and x.kind != "smooth" for x in joined.joints):
         return None
     jets, along = assembled(only_continuous(pieces, joined, closed=closed, tolerance=tolerance))
     return None if recognised_conic(rows_of_jets(jets, 1.0), along) is None else (jets, along)
