@@ -29,6 +29,8 @@ def ledger_record(ledger: Ledger) -> dict[str, Any]:
                 "evidence": evidence_text(decision) or claim.reason,
                 "strength": strength_text(decision) or None,
                 "proved": decision.proved,
+                "consistent": decision.consistent,
+                "cause": claim.cause,
                 "condition": "; ".join(r.condition for r in decision.readings if r.condition),
                 "readings": [
                     {"reading": r.label, "verdict": str(r.verdict), "cases": r.cases, "true": r.true_case,
@@ -58,5 +60,10 @@ def ledger_record(ledger: Ledger) -> dict[str, Any]:
         "kind": "ledger",
         "paper": ledger.paper.name,
         "claims": claims,
+        "causes": [
+            {"key": cause.key, "title": cause.title, "text": cause.text, "misprint": cause.misprint,
+             "records": [decision.id for decision in decisions]}
+            for cause, decisions in ledger.causes()
+        ],
         "counts": ledger.counts(),
-    }
+    }  # fmt: skip
