@@ -49,6 +49,7 @@ CLAIMS: tuple[Claim, ...] = (
                       label="G2 by the conditions as printed, for all knots of the bases"),
               Reading((part(row_check("start", 2, "normal"), along_normal(pr.COND_3_1_SQUARES, "start")),),
                       label="the same with both distances squared, if the scan lost that"),
+              cause="second-derivative",
               remark="At R; for S see cond-3.2, for C2 by the printed conditions sec-3.parametric-c2: it fails too. "
               "With squares, G2 fails where the first two spans of the base across differ, with uniform u_i."),
     not_checkable("sec-0.validated", "Abstract", "The examples validate that the method is effective and efficient.",

@@ -155,6 +155,7 @@ CLAIMS = (
         Correction("The family is B_{j,l}(v; V_i), as in (1).", (Part(CURVE_CHECK, pr.EQ_2),)),
         _wrong_basis_counterexample,
         one_function_for_all,
+        cause="misprints",
         remark="One index misprinted, or misread by the scan: with j for i it is right, as in (1) and (2).",
     ),
     Claim(

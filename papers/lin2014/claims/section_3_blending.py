@@ -146,6 +146,7 @@ CLAIMS: tuple[Claim, ...] = (
               correction=Correction("The integral is over the surface: the area element |P_u x P_v| belongs to it.",
                                     (Part(_STRAIN_CHECK, TRUE_STRAIN),)),
               counterexample=_strain_counterexample, consequence=parameter_dependence,
+              cause="energy-for-quality",
               remark="(11) itself does depend on the parametrisation, and so does the blend of least energy."),
     ambiguous("sec-3.thin-plate", _ENERGY, "The thin-plate energy (11) approximates the strain energy.",
               Reading((part(Check(objective.isometric_cases, Strength.SYMBOLIC_ORDER,
@@ -153,6 +154,7 @@ CLAIMS: tuple[Claim, ...] = (
                       label="for a parametrisation that keeps lengths and angles"),
               Reading((part(proved(objective.planar_cases, "(11) of plane pieces, whose strain energy is zero")),),
                       label="for any parametrisation"),
+              cause="energy-for-quality",
               remark="No bound holds in general: the ratio is unbounded for plane pieces whose nets are not affine."),
     holds_if("eq-11", _ENERGY, "The thin-plate energy as the integral of |P_uu|^2 + 2|P_uv|^2 + |P_vv|^2.",
              "the surface is C1, that is, no inner knot has the full multiplicity of its degree",
@@ -168,6 +170,7 @@ CLAIMS: tuple[Claim, ...] = (
               Reading((part(objective.SHAPE_CHECK),),
                       label="alpha and beta unknown too, as G1 and G2 need: the minimum is a G1 blend",
                       condition="the energy over alpha^2, beta^2 is not least at zero"),
+              cause="energy-for-quality",
               remark="The printed problem lists the control points alone as unknowns."),
     holds("eq-13", _BLEND, "The blend is the surface (1) over [0, 1] x [v_s, v_e].",
           part(SURFACE_CHECK, pr.EQ_13)),
@@ -182,6 +185,7 @@ CLAIMS: tuple[Claim, ...] = (
              part(Check(construction.layout_cases, Strength.SYMBOLIC_ORDER,
                         "rows of the first and last curves for every k >= 4 and every m admitted, and for k = 2 to 7; "
                         "for smaller k an example is enough", proof=True), pr.M_BOUND),
+             cause="indices-for-cubics",
              remark="Six different rows need m >= 5, whatever k is. For k = 3 the bound admits m = 4, where curve 2 "
              "would need both knot vectors; for k > 4 it asks for more than is needed."),
     holds("sec-3.uniform-knots", _BLEND, "u_i = i / (m - k + 2) spaces the inner knots uniformly.",
@@ -203,6 +207,7 @@ CLAIMS: tuple[Claim, ...] = (
                Part(Check(fewer.nested_cases, Strength.SYMBOLIC_ORDER, "the minimum of a quadratic energy over one "
                           "more control point", proof=True), fewer.NESTED))),
           counterexample=fewer.fewer_counterexample, consequence=more_curves,
+          cause="energy-for-quality",
           remark="By the measure of the paper itself, a surface without a middle curve is the worse one."),
     ambiguous("sec-1.fairness", "Section 1",
               "Inserting knots until both contact curves share theirs worsens the fairness.",
@@ -214,6 +219,7 @@ CLAIMS: tuple[Claim, ...] = (
                                    "holds the smaller one; spline spaces over the printed pairs"))),
                       label="fairness as the least energy (11), the paper's measure of quality"),
               counterexample=_fairness_counterexample, consequence=union_knots,
+              cause="energy-for-quality",
               remark="No measure of fairness is named. Inserting a knot alone changes no surface; by (11) the best "
               "surface over more knots is never worse."),
     holds("sec-3.two-kinds", _BLEND, "With k = 4 the blend has no middle curve (m = 5), or just P_3 (m = 6).",
@@ -232,6 +238,7 @@ CLAIMS: tuple[Claim, ...] = (
                             pr.AVERAGED_KNOT),), label="complete pairs, the last knot dropped where n is odd"),
               Reading((part(Check(construction.sliding_cases, Strength.SYMBOLIC_ORDER, _AVERAGED, proof=True)),),
                       label="each knot with the next one"),
+              cause="knots-rule",
               remark="No range of i is printed. For Figs. 5, 8 and 9 n = 3: v_4 does not exist. Dropping the last knot "
               "makes the blend depend on the direction of v."),
     holds("sec-3.middle-ends", _MIDDLE, "l-fold v_s and v_e complete the averages to a clamped knot vector.",

@@ -193,6 +193,7 @@ CLAIMS = (
         (Reading((Part(row_check("end", 1), pr.COND_2_2),), condition="k = 4 (the last inner knot is u_{m-k+1})"),),
         Correction("The last inner knot of U has the index m-k+1.", (Part(row_check("end", 1), TRUE_2_2),)),
         partial(row_counterexample, "end", 1, pr.COND_2_2),
+        cause="indices-for-cubics",
         remark="For k < 4 the printed u_{m-3} is an earlier inner knot; for k > 4 it is past the inner knots, where U "
         "is 1 and row m-1 would fall on row m. " + _MISREAD + " " + _MINUS,
     ),
@@ -218,6 +219,7 @@ CLAIMS = (
         ),
         partial(normal_counterexample, "start", (pr.COND_3_1, pr.COND_3_1_SQUARES)),
         partial(measured_rows, "start", {2: pr.COND_3_1}, _SECOND_ORDER_TEXT),
+        cause="second-derivative",
         remark="G2 leaves the part of P_uu within the tangent plane free, by (16), so the part along the normal alone "
         "is judged. As printed it is that of the base times (w_{k_r+1} - w_s) / u_2: right for every base exactly "
         "where w_{k_r+1} - w_s = u_2. With squares it is right exactly where (w_{k_r} - w_s) / (w_{k_r+1} - w_s) "
@@ -248,6 +250,7 @@ CLAIMS = (
         ),
         partial(normal_counterexample, "end", (pr.COND_3_2, pr.COND_3_2_SQUARES)),
         partial(measured_rows, "end", {2: pr.COND_3_2}, _SECOND_ORDER_TEXT),
+        cause="second-derivative",
         remark="Two errors in one formula: that of (3.1), and for k other than 4 the index of (2.2). For k = 4 it is "
         "right for every base exactly where t_{k_s+1} - t_s = 1 - u_{m-k}; with squares exactly where (t_{k_s} - "
         "t_s) / (t_{k_s+1} - t_s) = (1 - u_{m-k+1}) / (1 - u_{m-k}), with uniform u_i where the first two spans "
@@ -266,6 +269,7 @@ CLAIMS = (
                          "tangent planes for any regular base and alpha; the implicit equation of a base; for "
                          "alpha = 0 and a singular base an example is enough")),
              counterexample=partial(row_counterexample, "end", 1, pr.COND_2_2, least_order=5),
+             cause="indices-for-cubics",
              remark="For k > 4 (2.2) puts row m-1 on row m, so that P_u = 0 at S; for k < 4 P_u is a multiple of S_t, "
              "by another factor than beta^2. At alpha = 0 rows 0 and 1 of the blend coincide and it has no tangent "
              "plane at the contact; nothing in the method keeps the search away from there (see sec-4.unconstrained)."),
@@ -284,6 +288,7 @@ CLAIMS = (
           counterexample=_no_g2,
           consequence=partial(measured_rows, "start", {1: pr.COND_2_1, 2: pr.COND_3_1},
                               "The made pair with rows 1 and 2 as printed, the rest as in the checked G2 blend"),
+          cause="second-derivative",
           remark="Three of the six fail, each alone: (3.1), and (3.2) likewise, as printed and with squares, and "
           "(2.2) for k other than 4; for k > 4 it puts row m-1 on row m, so that there is no tangent plane. When they "
           "suffice: k = 4 for (2.2), and what cond-3.1 and cond-3.2 say for (3.1) and (3.2)."),
@@ -293,6 +298,7 @@ CLAIMS = (
                       label="in the parameters w of R and u of P as they are, P_u = R_w"),
               Reading((part(direction_check(-1), PARAMETRIC_2_1),),
                       label="with R run backwards, P_u = -R_w"),
+              cause="sign-of-p1",
               remark="At S the parameters run the same way and P_u = S_t."),
     Claim("sec-3.parametric-c2", "Section 3, parametric continuity",
           "With alpha = beta = 1 the G2 conditions become C2 conditions.", Verdict.FAILS,
@@ -305,6 +311,7 @@ CLAIMS = (
                                  parametric=True),
           consequence=partial(measured_rows, "start", {2: pr.COND_3_1}, "The made pair's C2 blend, row 2 as printed",
                               "C2"),
+          cause="second-derivative",
           remark="With squares it fails too where they give G2, on a base whose first two spans across have one "
           "length: in the direction of R_w."),
 )  # fmt: skip

@@ -167,6 +167,7 @@ CLAIMS: tuple[Claim, ...] = (
           part(proved(objective.integrals_vanish_cases,
                       "end values of inner rows, every order and knots; integrals of B_i' and B_i'', orders 3 to 6")),
           correction=_TRUE_GRAM, counterexample=_gram_counterexample(pr.EQ_14), consequence=zero_system,
+          cause="linear-system",
           remark="B_i' and B_i'' of a row away from the ends integrate to zero, so that a_ij = c_ij = 0 for every "
           "unknown control point, whatever the knots: as printed, (14) says 0 = 0."),
     fails("sec-4.single-integrals", _WHERE,
@@ -174,11 +175,13 @@ CLAIMS: tuple[Claim, ...] = (
           part(_GRAM, pr.EQ_14_THIRD_TERM),
           correction=_TRUE_GRAM, counterexample=_gram_counterexample(pr.EQ_14_THIRD_TERM),
           consequence=single_integrals,
+          cause="linear-system",
           remark="Decided with C_vv^T C_vv as third term. A sum of three products of a column and a row has rank 3 at "
           "most; the rank needed is the number of unknown control points."),
     fails("sec-4.third-term", _WHERE, "The third term of A is C_uv^T C_vv, that of B is C_uv^T D_vv.",
           part(_GRAM, pr.EQ_14_PRODUCTS),
           correction=_TRUE_GRAM, counterexample=_gram_counterexample(pr.EQ_14_PRODUCTS), consequence=third_term,
+          cause="misprints",
           remark="Decided with products integrated last. C_vv^T C_vv and C_vv^T D_vv are right, as (11) shows: P_uv "
           "and P_vv do not meet there. With the printed term A is not symmetric. One letter of an index: it may be a "
           "misprint, or a misread of the scan."),
@@ -188,6 +191,7 @@ CLAIMS: tuple[Claim, ...] = (
                                 tuple(Part(_CVV, formula)
                                       for formula in TRUE_CVV)),
           counterexample=_cvv_counterexample, consequence=vector_lengths,
+          cause="misprints",
           remark="Misprints, or misreads by the scan: C_uu and C_uv beside it have the right indices."),
     holds("sec-4.g1-degree", _WHERE, "With the G1 conditions put in, the objective is of degree four.",
           part(objective.degree_check(1, True), pr.DEGREE_G1),
@@ -203,6 +207,7 @@ CLAIMS: tuple[Claim, ...] = (
     holds_if("sec-4.unconstrained", _WHERE, "With the G1 or G2 conditions put in, the problem has no constraint left.",
              "the energy over alpha^2, beta^2 is not least at zero",
              part(objective.SHAPE_CHECK),
+             cause="energy-for-quality",
              remark="alpha, beta = 0 must be kept out: for two parallel plates, joined by a turn of 180 degrees, the "
              "least energy lies there, where the blend has no tangent plane at either contact."),
     holds("sec-4.initial-value", _WHERE, "The C2 solution is an admissible start for the G2 search.",

@@ -111,6 +111,7 @@ CLAIMS = (
             {1: ROW_1_BY_17},
             "The made pair with row 1 by (17) and the first derivatives of the appendix",
         ),
+        cause="sign-of-p1",
         remark="The paper contradicts itself: (2.1), said to follow from (17), has the opposite sign, the right one. "
         "R lies on w >= w_s and P on u >= 0: with the sign of (17) the blend runs back over the base, a fold with "
         "one tangent plane, so that (15) holds and smoothness does not. Open CASCADE compares tangent planes and "
@@ -166,6 +167,7 @@ CLAIMS = (
             {2: pr.COND_3_1},
             "The made pair with row 2 by (3.1), which is (18) with these derivatives",
         ),
+        cause="second-derivative",
         remark="Right for order 2, where both sides vanish, and where u_1 = u_2 = 1, as without inner knots over "
         "[0, 1]. With squares it holds where u_1 = u_2, that is where the first inner knot is double or there is none.",
     ),
@@ -181,6 +183,7 @@ CLAIMS = (
           counterexample=partial(row_counterexample, "start", 1, ROW_1_BY_17),
           consequence=partial(measured_rows, "start", {1: ROW_1_BY_17},
                               "The made pair with the row that (17) gives"),
+          cause="sign-of-p1",
           remark="With a minus in (17), which the scan may have lost there and in p_1 = alpha^2, they do: that is the "
           "correction. As printed a fold, as for eq-17: Open CASCADE compares normals up to sign and does not see it; "
           "the normal, followed across the contact, turns by 180 degrees."),
@@ -189,6 +192,7 @@ CLAIMS = (
           remark="The step is right; its premise app-d2 is not, and so (3.1) is wrong."),
     holds_if("sec-A.similarly", _WHERE, "(1.2), (2.2), (3.2) follow like the others, at the other end.", "k = 4",
              *(part(mirror_check(row), formula) for row, formula in enumerate((pr.COND_1_2, pr.COND_2_2, pr.COND_3_2))),
+             cause="indices-for-cubics",
              remark="The last inner knot is u_{m-k+1}; u_{m-3} is that one for k = 4 only. The error of (3.1) is "
              "mirrored too."),
 )  # fmt: skip
