@@ -19,6 +19,7 @@ from semispline.papers.ledger import (
     Strength,
     ambiguous,
     count_check,
+    definition,
     fails,
     holds,
     holds_if,
@@ -158,12 +159,14 @@ CLAIMS: tuple[Claim, ...] = (
               remark="No bound holds in general: the ratio is unbounded for plane pieces whose nets are not affine."),
     holds_if("eq-11", _ENERGY, "The thin-plate energy as the integral of |P_uu|^2 + 2|P_uv|^2 + |P_vv|^2.",
              "the surface is C1, that is, no inner knot has the full multiplicity of its degree",
-             part(Check(energy.density_cases, Strength.SYMBOLIC_ORDER, "the thin-plate density; rotation of (u, v)",
-                        proof=True), pr.EQ_11),
+             part(Check(objective.density_cases, Strength.SYMBOLIC_ORDER, "the sum of squared principal curvatures "
+                        "of surfaces that keep lengths and angles; rotation of (u, v)", proof=True), pr.EQ_11),
              part(proved(objective.crease_cases,
                          "C1 splines that are lines on each span, every order and knots; null space of exact Gram "
                          "matrices; for a crease an example is enough")),
-             remark="Across a knot of full multiplicity a crease costs nothing, taken span by span."),
+             remark="As the name of an energy (11) could not be false. What can be: that it is the strain energy where "
+             "lengths and angles are kept, that turning (u, v) does not change it, and that zero energy means no "
+             "bend. Across a knot of full multiplicity a crease costs nothing, taken span by span."),
     ambiguous("eq-12", _ENERGY, "Minimise E over the control points under the continuity condition.",
               Reading((part(objective.minimum_check(2)),),
                       label="alpha and beta given: there is exactly one minimum"),
@@ -245,8 +248,7 @@ CLAIMS: tuple[Claim, ...] = (
           part(Check(construction.bezier_end_cases, Strength.SYMBOLIC_ORDER,
                      "where the domain starts and ends and values there, every order and count; end points by de "
                      "Boor's triangle", proof=True), CLAMP)),
-    holds("sec-3.sides", "Section 3, continuity conditions",
-          "(1.1), (2.1), (3.1) concern R and P, (1.2), (2.2), (3.2) concern S and P.",
-          part(proved(construction.side_cases,
-                      "letters of the six printed formulas, which are all that the claim is on", Strength.RATIONAL))),
+    definition("sec-3.sides", "Section 3, continuity conditions",
+               "(1.1), (2.1), (3.1) concern R and P, (1.2), (2.2), (3.2) concern S and P.",
+               "the conditions at R and those at S; whether each of them is right is decided in cond-1.1 to cond-3.2"),
 )  # fmt: skip

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from functools import partial
 
 import sympy as sp
 from sympy import Eq
@@ -17,7 +18,9 @@ from semispline.papers.ledger import (
     Formula,
     Meaning,
     Part,
+    Reading,
     Strength,
+    ambiguous,
     difference_case,
     fails,
     given,
@@ -30,9 +33,17 @@ from semispline.papers.ledger import (
 )
 from semispline.papers.lin2014 import printed as pr
 from semispline.papers.lin2014.checks import construction, energy, objective
-from semispline.papers.lin2014.checks.contact_rows import BASE_ROWS, ROWS, Side, knots_as_spans
+from semispline.papers.lin2014.checks.contact_counterexamples import row_counterexample
+from semispline.papers.lin2014.checks.contact_rows import BASE_ROWS, ROWS, Side, knots_as_spans, row_check
 from semispline.papers.lin2014.checks.measured_energy import single_integrals, third_term, vector_lengths, zero_system
-from semispline.papers.lin2014.claims.section_3_conditions import TRUE_2_2, TRUE_3_1, TRUE_3_2
+from semispline.papers.lin2014.claims.section_3_conditions import (
+    PARAMETRIC_2_1,
+    PARAMETRIC_3_1,
+    PARAMETRIC_3_1_SQUARES,
+    TRUE_2_2,
+    TRUE_3_1,
+    TRUE_3_2,
+)
 
 _WHERE = "Section 4"
 _GRAM = objective.GRAM_CHECK
@@ -210,10 +221,23 @@ CLAIMS: tuple[Claim, ...] = (
              cause="energy-for-quality",
              remark="alpha, beta = 0 must be kept out: for two parallel plates, joined by a turn of 180 degrees, the "
              "least energy lies there, where the blend has no tangent plane at either contact."),
-    holds("sec-4.initial-value", _WHERE, "The C2 solution is an admissible start for the G2 search.",
-          part(Check(_initial_cases, Strength.SYMBOLIC_ORDER,
-                     "C2 rows solved from end derivatives, put into the corrected G2 conditions, every order and knots",
-                     proof=True), SHAPE_ONE)),
+    ambiguous("sec-4.initial-value", _WHERE, "The C2 solution is a blend among which the G2 search may start.",
+              Reading((part(row_check("start", 1, "parametric"), PARAMETRIC_2_1),
+                       part(row_check("start", 2, "parametric"), PARAMETRIC_3_1)),
+                      label="a surface that is C2, and the G2 conditions as printed, alpha = beta = 1"),
+              Reading((part(row_check("start", 1, "parametric"), PARAMETRIC_2_1),
+                       part(row_check("start", 2, "parametric"), PARAMETRIC_3_1_SQUARES)),
+                      label="the same with both distances in (3.1) squared, if the scan lost that"),
+              Reading((part(Check(_initial_cases, Strength.SYMBOLIC_ORDER,
+                                  "C2 rows solved from end derivatives, put into the corrected G2 conditions, every "
+                                  "order and knots", proof=True), SHAPE_ONE),),
+                      label="a surface that is C2, and the corrected conditions, alpha = beta = 1"),
+              counterexample=partial(row_counterexample, "start", 2, PARAMETRIC_3_1, PARAMETRIC_3_1_SQUARES,
+                                     parametric=True),
+              cause="second-derivative",
+              remark="The paper's own program does start within its problem: its C2 solution is by definition what its "
+              "G2 conditions give with alpha = beta = 1. How good that start is depends on the units of w and t, which "
+              "(2.1) multiplies by alpha^2; from there the search found the least energy wherever the study ran it."),
     not_checkable("sec-4.fminunc", _WHERE, "fminunc is a BFGS quasi-Newton method with a cubic line search.",
                   "a statement on a version of another program, which is not here"),
     not_checkable("sec-4.few-steps", _WHERE, "Started there, fminunc needs several steps to reach a local minimum.",

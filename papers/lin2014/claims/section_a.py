@@ -27,9 +27,11 @@ from semispline.papers.lin2014.checks.geometric_continuity import (
     derived_row_cases,
     derived_row_probe,
     general_check,
+    join_cases,
     special_check,
     special_counterexample,
     substitution_cases,
+    tangent_plane_cases,
 )
 from semispline.papers.lin2014.checks.measured_rows import measured_rows
 
@@ -69,6 +71,21 @@ _REGULAR = "R is regular along the contact and p_1 has no zero (and p_1 < 0, if 
 _WHERE = "Appendix"
 
 
+_TANGENT_PLANES = Check(
+    tangent_plane_cases,
+    Strength.SYMBOLIC_ORDER,
+    "(15) with p_1 = alpha^2; tangent planes for any regular base; for alpha = 0 and a singular base an example is "
+    "enough",
+    proof=True,
+)
+_JOIN = Check(
+    join_cases,
+    Strength.SYMBOLIC_ORDER,
+    "on which side of the contact P_u points, any base and p_1, q_1; where a blend of a bent base lies",
+    proof=True,
+)
+
+
 def _derived(order: int) -> Check:
     cases, probe = partial(derived_row_cases, order), partial(derived_row_probe, order)
     return Check(cases, Strength.SYMBOLIC_ORDER, "solving for the row", proof=True, probe=probe)
@@ -85,7 +102,7 @@ CLAIMS = (
         remark="Where p_1 vanishes P has no tangent plane, although the equation holds; where R_w vanishes smooth "
         "continuations exist that satisfy no such equation. The equation does not see the sign of p_1: a fold "
         "(p_1 > 0 when both surfaces lie on the positive side of their parameters) satisfies it too, as tangent planes "
-        "alone are compared; eq-17 is judged by the join.",
+        "alone are compared; eq-17 is decided both ways.",
     ),
     Claim(
         "eq-16",
@@ -100,10 +117,17 @@ CLAIMS = (
     Claim(
         "eq-17",
         _WHERE,
-        "The blend leaves the base smoothly with P_u = +alpha^2 R_w at u = 0, w = w_s.",
-        Verdict.FAILS,
-        (Reading((Part(special_check(1), pr.EQ_17),)),),
-        Correction("The blend leaves R backwards, as (2.1) does: p_1 = -alpha^2.", (Part(special_check(1), TRUE_17),)),
+        "With p_1 = alpha^2 the surfaces are joined by P_u = +alpha^2 R_w at u = 0, w = w_s.",
+        Verdict.AMBIGUOUS,
+        (
+            Reading(
+                (Part(_TANGENT_PLANES, pr.EQ_17),),
+                label="one tangent plane along the contact, which is all that (15) asks",
+                condition="alpha is not zero and R is regular along the contact",
+            ),
+            Reading((Part(_JOIN, pr.EQ_17),), label="a blend that goes on from R on the other side of the contact"),
+        ),
+        Correction("The blend leaves R backwards, as (2.1) does: p_1 = -alpha^2.", (Part(_JOIN, TRUE_17),)),
         partial(special_counterexample, 1, pr.EQ_17),
         partial(
             measured_rows,
@@ -112,13 +136,13 @@ CLAIMS = (
             "The made pair with row 1 by (17) and the first derivatives of the appendix",
         ),
         cause="sign-of-p1",
-        remark="The paper contradicts itself: (2.1), said to follow from (17), has the opposite sign, the right one. "
-        "R lies on w >= w_s and P on u >= 0: with the sign of (17) the blend runs back over the base, a fold with "
-        "one tangent plane, so that (15) holds and smoothness does not. Open CASCADE compares tangent planes and "
-        "curvatures with normals up to sign: it does not see a fold, so that its verdict stands beside a normal that "
-        "turns by 180 degrees. The scan loses minus signs elsewhere, in (2.1) to (3.2). Here it would have to lose "
-        "one in (17) and another in p_1 = alpha^2, which agree as they stand; with both, the formula is the corrected "
-        "one.",
+        remark="By (15) alone nothing is wrong: tangent planes do not see the sign. But the paper contradicts itself: "
+        "(2.1), said to follow from (17), has the opposite sign, the right one (sec-A.17-gives-2.1). R lies on "
+        "w >= w_s and P on u >= 0: with the sign of (17) the blend runs back over the base, a fold. Open CASCADE "
+        "compares tangent planes and curvatures with normals up to sign: it does not see a fold, so that its verdict "
+        "stands beside a normal that turns by 180 degrees. The scan loses minus signs elsewhere, in (2.1) to (3.2). "
+        "Here it would have to lose one in (17) and another in p_1 = alpha^2, which agree as they stand; with both, "
+        "the formula is the corrected one.",
     ),
     Claim(
         "eq-18",

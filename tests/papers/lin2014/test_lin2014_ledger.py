@@ -27,7 +27,7 @@ KNOWN = {
     "eq-14": "fails",
     "eq-15": "holds-if",
     "eq-16": "holds-if",
-    "eq-17": "fails",
+    "eq-17": "ambiguous",
     "eq-18": "holds",
     "cond-1.1": "holds",
     "cond-1.2": "holds",

@@ -115,7 +115,6 @@ PERTURBED = {
     ("sec-1.fairness", 1): [(energy, "middle_knot_energies", lambda: (sp.Integer(1), sp.Integer(2)))],
     ("sec-1.fairness", 2): [(construction, "union", first_of)],
     ("sec-3.averaging", 0): [(construction, "merged", lambda name: (Fraction(3, 4), Fraction(1, 2), Fraction(1, 4)))],
-    ("sec-3.sides", 0): [(pr, "COND_2_1", pr.COND_2_2)],
     ("sec-3.sufficient-g1", 0): [
         (geometric_continuity, "tangent_coordinates", lambda vector: (1, 1)),
         (geometric_continuity, "_regular", lambda patch: True),
