@@ -36,8 +36,9 @@ from semispline.papers.lin2014.checks.contact_rows import (
     w_kr1,
 )
 from semispline.papers.lin2014.checks.geometric_continuity import shape_parameter_cases, special_contact_cases
-from semispline.papers.lin2014.checks.measured_rows import measured_rows
+from semispline.papers.lin2014.checks.measured_rows import measured_rows, rewritten_base
 from semispline.papers.lin2014.checks.objective import direction_check
+from semispline.papers.lin2014.checks.one_surface import one_surface_check, one_surface_counterexample
 from semispline.papers.lin2014.checks.rows_along_normal import (
     EXCESS_3_1,
     EXCESS_3_1_SQUARES,
@@ -220,9 +221,10 @@ CLAIMS = (
         partial(normal_counterexample, "start", (pr.COND_3_1, pr.COND_3_1_SQUARES)),
         partial(measured_rows, "start", {2: pr.COND_3_1}, _SECOND_ORDER_TEXT),
         cause="second-derivative",
-        remark="G2 leaves the part of P_uu within the tangent plane free, by (16), so the part along the normal alone "
-        "is judged. As printed it is that of the base times (w_{k_r+1} - w_s) / u_2: right for every base exactly "
-        "where w_{k_r+1} - w_s = u_2. With squares it is right exactly where (w_{k_r} - w_s) / (w_{k_r+1} - w_s) "
+        remark="Not even a condition on the surfaces: it depends on the units of w, and with squares on knots inserted "
+        "into the base (sec-3.one-surface). G2 leaves the part of P_uu within the tangent plane free, by (16), so the "
+        "part along the normal alone is judged. As printed it is that of the base times (w_{k_r+1} - w_s) / u_2: "
+        "right for every base exactly where w_{k_r+1} - w_s = u_2. With squares it is right exactly where (w_{k_r} - w_s) / (w_{k_r+1} - w_s) "
         "= u_1 / u_2: with the paper's uniform u_i, where the first two spans of the base across the contact have "
         "one length. Either reading is right, too, where R_ww has no part along the normal, as for k_r = 2 or a "
         "base that is straight across. Why both fail: W is given, the paper asks neither equation of it, and in its "
@@ -273,6 +275,24 @@ CLAIMS = (
              remark="For k > 4 (2.2) puts row m-1 on row m, so that P_u = 0 at S; for k < 4 P_u is a multiple of S_t, "
              "by another factor than beta^2. At alpha = 0 rows 0 and 1 of the blend coincide and it has no tangent "
              "plane at the contact; nothing in the method keeps the search away from there (see sec-4.unconstrained)."),
+    Claim("sec-3.one-surface", _WHERE,
+          "(3.1) is a condition on two surfaces: it gives one row 2, up to the tangent plane, however the base is "
+          "written.", Verdict.FAILS,
+          (Reading((part(one_surface_check(flat=True), along_normal(pr.COND_3_1, "start")),),
+                   label="u_1 and w_{k_r} - w_s as printed"),
+           Reading((part(one_surface_check(flat=True), along_normal(pr.COND_3_1_SQUARES, "start")),),
+                   label="both squared, if the scan lost that")),
+          correction=Correction("With each second difference one of divided differences it does.",
+                                (Part(one_surface_check(flat=False), TRUE_3_1),)),
+          counterexample=one_surface_counterexample,
+          consequence=partial(rewritten_base, {1: pr.COND_2_1, 2: pr.COND_3_1}),
+          cause="second-derivative",
+          remark="From the text alone, in three lines. Count w in units in which it is c times as large: R, as a "
+          "surface, and by (2.1) row 1 stay if alpha^2 is c times as large too; row 2 by (3.1) then moves by c - 1 "
+          "times its part in R_0 - 2 R_1 + R_2, since alpha^4 is c^2 times as large and w_{k_r} - w_s just c times; "
+          "but rows 0 and 1 and the surface R fix what G2 asks of row 2 along the normal. Squares, if the scan lost "
+          "them, pass this. They do not pass a knot inserted into the first span across, which leaves R as it is too, "
+          "as the paper says of knot insertion: w_{k_r} - w_s becomes smaller, and row 2 moves."),
     Claim("sec-3.sufficient-g2", _WHERE, "(1.1) to (3.2) together suffice for G2.", Verdict.FAILS,
           (Reading((*_PRINTED_FIRST_ROWS, _normal_part("start", pr.COND_3_1), _normal_part("end", pr.COND_3_2)),
                    label="as printed"),

@@ -87,6 +87,7 @@ def test_no_claim_of_sections_2_to_4_rests_on_instances_without_a_reason():
         ("sec-3.parametric-c2", [False, False]),
         ("sec-4.initial-value", [False, False, True]),
         ("eq-17", [True, False]),
+        ("sec-3.one-surface", [False, False]),
     ],
 )
 def test_each_reading_of_a_claim(name, holds):
