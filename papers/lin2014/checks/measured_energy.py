@@ -12,6 +12,7 @@ from semispline.papers.ledger import Consequence
 from semispline.papers.lin2014.checks.energy import printed_system
 from semispline.papers.lin2014.checks.measured_rows import made_blend
 from semispline.papers.lin2014.examples.made_pair import made_pair
+from semispline.papers.lin2014.examples.stand_ins import cylinders
 from semispline.solver.arrays import FloatArray
 from semispline.solver.blending import BlendResult, blend, thin_plate_energy
 from semispline.solver.judge import local_geometry, surface_points
@@ -75,6 +76,17 @@ def union_knots() -> Consequence:
         f"energy (11) on the union of knots, {refined.surface.n_control_points} control points": refined.energy,
     }
     return Consequence("C2 blends of the made pair, the middle curve by the paper's rule and on all knots", measured)
+
+
+def other_direction() -> Consequence:
+    """Blend the cylinders of Fig. 8 with the middle knot that the rule gives in one direction of v and in the other."""
+    there, back = (blend(*cylinders(), continuity="C2", alpha="energy", middle_knots=[[knot]]) for knot in (0.4, 0.6))
+    measured = {
+        "energy (11), middle knot 0.4": there.energy,
+        "energy (11), middle knot 0.6, as from the other end": back.energy,
+        "largest displacement": _largest_change(there.surface, back.surface),
+    }
+    return Consequence("C2 blends of the cylinders with the knots of Fig. 8, the last knot dropped", measured)
 
 
 def zero_system() -> Consequence:

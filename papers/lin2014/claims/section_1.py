@@ -8,6 +8,7 @@ from semispline.papers.ledger import (
     Case,
     Check,
     Claim,
+    Correction,
     Reading,
     Strength,
     ambiguous,
@@ -20,6 +21,7 @@ from semispline.papers.ledger import (
 )
 from semispline.papers.lin2014 import printed as pr
 from semispline.papers.lin2014.checks import construction, hartmann, other_methods
+from semispline.papers.lin2014.checks import converted_blends as converted
 from semispline.papers.lin2014.checks import printed_numbers as numbers
 from semispline.papers.lin2014.checks.contact_rows import row_check
 from semispline.papers.lin2014.checks.counts import knot_count_instances
@@ -62,6 +64,25 @@ CLAIMS: tuple[Claim, ...] = (
                       Strength.RATIONAL)),
           remark="To each curve as many as the other one has knots that it lacks: none to a curve whose knots contain "
           "the other's. How many are lots is not said."),
+    ambiguous("sec-1.after-conversion", "Sections 1 and 2",
+              "The blend, which can be exchanged as a B-spline surface, does without the knots that direct insertion "
+              "adds.",
+              Reading((part(Check(converted.saved_cases, Strength.SYMBOLIC_ORDER, "control points counted for every "
+                                  "order and number of knots", proof=True), converted.SAVED_OWN),),
+                      label="as a semi-structured surface, rows on their own knots"),
+              Reading((part(Check(converted.no_more_cases, Strength.RATIONAL, "inner knots of all rows and of both "
+                                  "contact curves, printed knots: one counterexample is enough", proof=True)),),
+                      label="as a classical surface, once it is converted"),
+              correction=Correction("With a middle curve the converted blend has one inner knot more than both contact "
+                                    "curves together for each pair of the rule: more as soon as there are two "
+                                    "different inner knots, whether knots are shared or the vectors equal. Without one "
+                                    "it has as many.",
+                                    (part(converted.CONVERTED_CHECK, converted.CONVERTED),)),
+              counterexample=converted.converted_counterexample, consequence=converted.saving_consequence,
+              cause="knots-rule",
+              remark="The paper says that conversion is easy, and never that it keeps the saving. Averages belong to "
+              "neither base. What becomes of an unpaired knot decides for Figs. 5, 8 and 9: averaging all three gives "
+              "a knot that is there already, and then the converted blend has as many knots as direct insertion."),
     holds("sec-1.knot-insertion", "Section 1", "Knot insertion makes the knots of both contact curves identical.",
           part(proved(construction.nested_space_cases,
                       "knot insertion by induction on the order, every order and knots; spline spaces over the "

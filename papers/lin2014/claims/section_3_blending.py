@@ -31,11 +31,17 @@ from semispline.papers.ledger import (
 )
 from semispline.papers.lin2014 import printed as pr
 from semispline.papers.lin2014.checks import construction, energy, objective
+from semispline.papers.lin2014.checks import converted_blends as converted
 from semispline.papers.lin2014.checks import fewer_control_points as fewer
 from semispline.papers.lin2014.checks.contact_rows import row_check
 from semispline.papers.lin2014.checks.counts import domain_instances, inner_knots_count, knot_count_instances
 from semispline.papers.lin2014.checks.definitions import SURFACE_CHECK, base_check
-from semispline.papers.lin2014.checks.measured_energy import more_curves, parameter_dependence, union_knots
+from semispline.papers.lin2014.checks.measured_energy import (
+    more_curves,
+    other_direction,
+    parameter_dependence,
+    union_knots,
+)
 
 _BASES = "Section 3, base surfaces"
 _ENERGY = "Section 3, energy"
@@ -96,6 +102,7 @@ def _fairness_counterexample() -> Counterexample:
 _INSIDE = "the domain by the supports of functions, every order and count; knots strictly inside clamped vectors"
 _AVERAGED = "the rule for every n and i, indices against v_1 .. v_n; on the printed knot vectors as well"
 
+_MIRRORED = "the rule for v_1 .. v_n and for 1 - v_n .. 1 - v_1, every n and i"
 _STRIPS = "least energy (11) of strips with C2 contact, exactly"
 
 CLAIMS: tuple[Claim, ...] = (
@@ -244,6 +251,23 @@ CLAIMS: tuple[Claim, ...] = (
               cause="knots-rule",
               remark="No range of i is printed. For Figs. 5, 8 and 9 n = 3: v_4 does not exist. Dropping the last knot "
               "makes the blend depend on the direction of v."),
+    ambiguous("sec-3.averaging-direction", _MIDDLE,
+              "The knots of P_3 follow from those of the two contact curves, whichever way v runs.",
+              Reading((part(Check(converted.mirrored_pair_cases, Strength.SYMBOLIC_ORDER, _MIRRORED, proof=True),
+                            pr.AVERAGED_KNOT),),
+                      label="pairs from v_1 on, and the last knot of an odd number dropped, kept or averaged with v_e"),
+              Reading((part(proved(lambda: converted.mirrored_neighbour_cases(None), _MIRRORED)),),
+                      label="each knot with the next one"),
+              counterexample=converted.mirrored_counterexample, consequence=other_direction, cause="knots-rule",
+              remark="Pairs agree exactly where n is even. In Figs. 5, 8 and 9 n = 3: read from the other end the "
+              "blend is another one. Our own examples pair from both ends, so that the middle three make one mean."),
+    holds_if("sec-3.averaging-few", _MIDDLE, "The rule gives P_3 inner knots.", "V_n has two knots or more",
+             part(question(converted.few_knots_cases, "the rule on vectors with no, one and more knots, shared ones "
+                           "and equal vectors among them", Strength.RATIONAL)),
+             cause="knots-rule",
+             remark="With n = 0 or 1 there are no adjacent knots, and P_3 is one polynomial piece whatever the bases "
+             "do. For equal vectors the averages are still new: the blend of two bases that one classical surface "
+             "could join directly gets knots that neither has."),
     holds("sec-3.middle-ends", _MIDDLE, "l-fold v_s and v_e complete the averages to a clamped knot vector.",
           part(Check(construction.bezier_end_cases, Strength.SYMBOLIC_ORDER,
                      "where the domain starts and ends and values there, every order and count; end points by de "

@@ -47,6 +47,7 @@ def reading_holds(reading):
 BY_INSTANCES = {
     "fig-1.counts": ["seven printed numbers"],
     "sec-2.different-vectors": ["one counterexample is enough", "one example is enough"],
+    "sec-3.averaging-few": ["the rule on vectors with no, one and more knots"],
     "sec-3.fewer-better": ["least energy (11) of strips"],
     "sec-1.fairness": ["counted in the printed pairs", "one counterexample is enough"],
     "eq-12": ["checked on plates"],
@@ -79,6 +80,7 @@ def test_no_claim_of_sections_2_to_4_rests_on_instances_without_a_reason():
         ("sec-3.u-numbering", [True, False]),
         ("sec-1.fairness", [True, False]),
         ("sec-3.averaging", [False, True, True]),
+        ("sec-3.averaging-direction", [False, True]),
         ("sec-3.parametric-c1", [False, True]),
         ("sec-2.different-vectors", [False, True]),
         ("cond-3.1", [False, False]),
