@@ -226,10 +226,11 @@ CLAIMS = (
         "part along the normal alone is judged. As printed it is that of the base times (w_{k_r+1} - w_s) / u_2: "
         "right for every base exactly where w_{k_r+1} - w_s = u_2. With squares it is right exactly where "
         "(w_{k_r} - w_s) / (w_{k_r+1} - w_s) = u_1 / u_2: with the paper's uniform u_i, where the first two spans of "
-        "the base across the contact have one length. Either reading is right, too, where R_ww has no part along the normal, as for k_r = 2 or a "
-        "base that is straight across. Why both fail: W is given, the paper asks neither equation of it, and in its "
-        "own setting a base with inner knots across may meet neither: with w_{k_r} - w_s = 1, w_{k_r+1} - w_s = 3 and "
-        "uniform u_i the blend has 3 / u_2 times, with squares 3/2 times, what the base has along the normal. "
+        "the base across the contact have one length. Either reading is right, too, where R_ww has no part along the "
+        "normal, as for k_r = 2 or a base that is straight across. Why both fail: W is given, the paper asks neither "
+        "equation of it, and in its own setting a base with inner knots across may meet neither: with w_{k_r} - w_s "
+        "= 1, w_{k_r+1} - w_s = 3 and uniform u_i the blend has 3 / u_2 times, with squares 3/2 times, what the base "
+        "has along the normal. "
         + _MINUS,
     ),
     Claim(
