@@ -21,6 +21,7 @@ from semispline.papers.lin2014.checks import (
     energy,
     fewer_control_points,
     geometric_continuity,
+    many_rows,
     objective,
     printed_pairs,
     representation,
@@ -36,7 +37,15 @@ RECORDS = (claims_2_definition, claims_3_blending, claims_3_conditions, claims_4
 # Whatever remembers what it has computed.
 MODULES = (
     *(derivations_counts, exact, spline_facts, spline_spaces, construction, contact_rows, counts, definitions, energy),
-    *(fewer_control_points, geometric_continuity, objective, printed_pairs, representation, rows_along_normal),
+    *(
+        fewer_control_points,
+        geometric_continuity,
+        many_rows,
+        objective,
+        printed_pairs,
+        representation,
+        rows_along_normal,
+    ),
 )
 CLAIMS = {claim.id: claim for module in RECORDS for claim in module.CLAIMS}
 
@@ -112,6 +121,9 @@ PERTURBED = {
     ("eq-12", 0): [SADDLE],
     ("eq-12", 1): [PLATES],
     ("sec-3.three-curves", 0): [(construction, "contact_rows", lambda *_: sp.eye(3))],
+    ("sec-3.fewer-better", 0): [(many_rows, "contained", lambda *_: True)],
+    ("sec-3.minimum-over-rows", 0): [SADDLE],
+    ("sec-3.minimum-over-rows", 1): [(many_rows, "_lacks", lambda data: (0, 0))],
     ("sec-1.fairness", 0): [(construction, "PRINTED_PAIRS", {"one": ("fig-5.first", "fig-5.first")})],
     ("sec-1.fairness", 1): [(energy, "middle_knot_energies", lambda: (sp.Integer(1), sp.Integer(2)))],
     ("sec-1.fairness", 2): [(construction, "union", first_of)],
