@@ -195,6 +195,8 @@ def _conditional_lines(claim: Claim, decision: Decision) -> Iterable[str]:
         yield f"Holds if {reading.condition}: true for {reading.true_case}, false for {reading.false_case}."
     if decision.counterexample:
         yield f"Smallest counterexample otherwise: {decision.counterexample}."
+    if decision.consequence:
+        yield f"On a surface: {consequence_text(decision.consequence)}"
     if claim.correction:
         yield f"In general: {claim.correction.statement} {_formulas(claim.corrected_formulas)}".rstrip()
 

@@ -33,6 +33,7 @@ from semispline.papers.ledger import (
 )
 from semispline.papers.lin2014 import printed as pr
 from semispline.papers.lin2014.checks import construction, energy, objective
+from semispline.papers.lin2014.checks import facing_bases as facing
 from semispline.papers.lin2014.checks.contact_counterexamples import row_counterexample
 from semispline.papers.lin2014.checks.contact_rows import BASE_ROWS, ROWS, Side, knots_as_spans, row_check
 from semispline.papers.lin2014.checks.measured_energy import single_integrals, third_term, vector_lengths, zero_system
@@ -220,7 +221,18 @@ CLAIMS: tuple[Claim, ...] = (
              part(objective.SHAPE_CHECK),
              cause="energy-for-quality",
              remark="alpha, beta = 0 must be kept out: for two parallel plates, joined by a turn of 180 degrees, the "
-             "least energy lies there, where the blend has no tangent plane at either contact."),
+             "least energy lies there, where the blend has no tangent plane at either contact. It may lie there "
+             "between bases that face each other too: sec-4.facing."),
+    holds_if("sec-4.facing", _WHERE,
+             "Between bases that face each other the search ends at a blend with tangent planes, alpha, beta not zero.",
+             "39 cos theta > 25 cos phi cos(theta - phi), and the same with theta and phi exchanged, these being the "
+             "angles that the ways out of R and into S make with the chord (straight bases of unit speed)",
+             part(facing.FACING_CHECK, facing.BEST_ALPHA),
+             counterexample=facing.facing_counterexample, consequence=facing.facing_shares, cause="energy-for-quality",
+             remark="Facing: both angles are acute. With equal angles, in an arch or an S, the condition always holds; "
+             "it fails first where one angle is half of the other, from the cosine 25/53 on, 62 degrees. There (11), "
+             "over all alpha^2, is least where the blend would leave a base backwards, so that over alpha it is least "
+             "at alpha = 0."),
     ambiguous("sec-4.initial-value", _WHERE, "The C2 solution is a blend among which the G2 search may start.",
               Reading((part(row_check("start", 1, "parametric"), PARAMETRIC_2_1),
                        part(row_check("start", 2, "parametric"), PARAMETRIC_3_1)),

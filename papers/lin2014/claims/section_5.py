@@ -29,6 +29,7 @@ from semispline.papers.ledger import (
 )
 from semispline.papers.lin2014 import printed as pr
 from semispline.papers.lin2014 import printed_figures as printed
+from semispline.papers.lin2014.checks import closed_seam as seam
 from semispline.papers.lin2014.checks import conditions_in_figures as conditions
 from semispline.papers.lin2014.checks import curvature_pictures as pictures
 from semispline.papers.lin2014.checks import hartmann
@@ -275,6 +276,18 @@ CLAIMS: tuple[Claim, ...] = (
         "said to be so, is straight across: then either reading of (3.1) gives G2, since only the second derivative "
         "along the normal matters, and it is zero whatever multiple of the base's is taken. So this figure says "
         "nothing for or against (3.1)."),
+    ambiguous("fig-10.seam", "Fig. 10", "Blended from complete cylinders, the surface closes where v_s and v_e meet.",
+              Reading((part(Check(seam.closing_cases, Strength.SYMBOLIC_ORDER, "rows are combinations of the base's "
+                                  "rows with factors that do not depend on v, every order and knots", proof=True),
+                            seam.JUMP_OF_ROW_1),),
+                      label="without a middle curve, as the figure has it, if both bases close"),
+              Reading((part(proved(seam.free_middle_cases, "least energy between two curves that close with two "
+                                   "derivatives, exactly: one counterexample is enough", Strength.RATIONAL)),),
+                      label="with a middle curve over knots of its own, found by least (11) alone"),
+              consequence=seam.seam_gap, cause="energy-for-quality",
+              remark="Without a middle curve the blend closes with every derivative with which both bases do, for any "
+              "alpha, beta. With one (11) closes nothing, not even the position: the ends of P_3 have to be held "
+              "together. Whether the paper's bases close is not printed."),
     not_checkable("fig-10.iterations", "Fig. 10", "fminunc needs 6 iterations.", _ITERATIONS),
     holds("fig-11.counts", "Fig. 11", "The contact curves have 10 control points on the cone, 64 on the free form.",
           part(consistent(numbers.cone_cases, "Table 1, 4 x 10 and 5 x 64"), printed.CONE_COUNTS_11)),

@@ -15,12 +15,15 @@ from semispline.papers.ledger import (
     Reading,
     Strength,
     Verdict,
+    ambiguous,
     fails,
     holds,
     holds_if,
     part,
+    proved,
 )
 from semispline.papers.lin2014 import printed as pr
+from semispline.papers.lin2014.checks import special_choice as special
 from semispline.papers.lin2014.checks.contact_counterexamples import derivative_counterexample, row_counterexample
 from semispline.papers.lin2014.checks.contact_rows import derivative_check, mirror_check, w_kr1
 from semispline.papers.lin2014.checks.geometric_continuity import (
@@ -29,6 +32,7 @@ from semispline.papers.lin2014.checks.geometric_continuity import (
     general_check,
     join_cases,
     special_check,
+    special_contact_cases,
     special_counterexample,
     substitution_cases,
     tangent_plane_cases,
@@ -195,6 +199,19 @@ CLAIMS = (
         remark="Right for order 2, where both sides vanish, and where u_1 = u_2 = 1, as without inner knots over "
         "[0, 1]. With squares it holds where u_1 = u_2, that is where the first inner knot is double or there is none.",
     ),
+    ambiguous("sec-A.special-choice", _WHERE,
+              "(15) and (16) come to (17) and (18), with p_1 = -alpha^2, alpha constant and q_1 = p_2 = q_2 = 0.",
+              Reading((part(proved(partial(special_contact_cases, 2), "tangent planes and second fundamental forms for "
+                                   "any regular base, alpha not zero")),),
+                      label="as one choice that suffices"),
+              Reading((part(proved(special.only_special_cases, "blends with contact of order 2, judged by the implicit "
+                                   "equation of the base: one counterexample is enough", Strength.RATIONAL)),),
+                      label="as all that they allow"),
+              consequence=special.special_choice_cost,
+              remark="The paper calls its conditions sufficient, and says no more. What the choice leaves out: p_1 and "
+              "q_1 that vary along the contact, where alpha, beta are two numbers, and p_2, a free function that moves "
+              "row 2 along R_w. By (11) that costs little; by the fairness of the shape p_2 is worth more, and the "
+              "default of this package searches it."),
     holds("sec-A.substitution", _WHERE, "p_1 = alpha^2, q_1 = p_2 = q_2 = 0 turn (15), (16) into (17), (18).",
           part(Check(partial(substitution_cases, 1), Strength.SYMBOLIC_ORDER, "substitution", proof=True), pr.EQ_17),
           part(Check(partial(substitution_cases, 2), Strength.SYMBOLIC_ORDER, "substitution", proof=True), pr.EQ_18),

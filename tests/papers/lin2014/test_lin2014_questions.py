@@ -23,6 +23,7 @@ from semispline.papers.lin2014.checks import (
     geometric_continuity,
     many_rows,
     objective,
+    order_of_evaluation,
     printed_pairs,
     representation,
     rows_along_normal,
@@ -80,6 +81,11 @@ def first_of(order, *vectors):
     return vectors[0]
 
 
+def repeated_last(order, knots, points, x):
+    """Insert a knot and repeat the last control point, instead of cutting corners."""
+    return sorted([*knots, x]), [*points, points[-1]]
+
+
 SADDLE = (objective, "thin_plate_density", saddle)
 # Least at a = gap - 3/2, so that plates that are close do not join.
 PLATES = (
@@ -94,6 +100,8 @@ PERTURBED = {
     ("sec-2.different-vectors", 0): [(Sample, "weights", lambda *_: [Fraction(2)])],
     ("sec-1.generalisation", 0): [BENT],
     ("sec-2.evaluation-classical", 0): [BENT],
+    ("sec-2.evaluation-order", 0): [(order_of_evaluation, "de_boor", lambda *_: 0), (Sample, "value", lambda *_: 0)],
+    ("sec-2.evaluation-order", 1): [(order_of_evaluation, "inserted", repeated_last)],
     ("sec-2.convex-hull", 0): [
         (spline_samples, "spline_basis", doubled_basis),
         (representation, "partition_residuals", lambda *_: [sp.Poly(1, sp.Symbol("x"))]),
@@ -151,6 +159,13 @@ PERTURBED = {
         (objective, "end_derivatives", lambda *_: sp.ones(3)),
     ],
     ("sec-4.unconstrained", 0): [PLATES],
+}
+PERTURBED |= {
+    ("sec-A.special-choice", 0): [
+        (geometric_continuity, "tangent_coordinates", lambda vector: (1, 1)),
+        (geometric_continuity, "special_conditions", lambda order: (0, *[sp.Symbol("R_w")] * order)),
+    ],
+    ("sec-A.special-choice", 1): [(geometric_continuity, "_instances", lambda: iter(()))],
 }
 # Its object is the list of parts of its own record.
 BY_HAND = {("sec-3.sufficient-g2", 0)}
