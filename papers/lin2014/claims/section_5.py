@@ -145,6 +145,8 @@ def _g2(identifier: str, where: str, statement: str, m: int, side: Side = "end",
 
 
 CLAIMS: tuple[Claim, ...] = (
+    not_checkable("sec-5.machine", "Section 5", "In which languages the method was written, on which machine it ran.",
+                  "the program and the machine are not here"),
     holds("sec-5.bicubic", "Section 5", "All bases are bicubic: four rows and columns at least.",
           part(consistent(numbers.bicubic_cases, "ends of the printed vectors, sizes in Table 1"), printed.BICUBIC)),
     ambiguous("sec-5.cylinders", "Section 5", "The bases of Figs. 8 to 10 are cylinders, and bicubic.",
