@@ -43,8 +43,7 @@ from semispline.papers.lin2014.printed import CUBIC
 # as a condition says, as one example has them, or at constant speed (R_ww = 0); for the others the one along the
 # normal, on bases that are curved across, with any knots or with spans as a condition says, or straight.
 Kind = Literal[
-    *("any", "step", "step of squares", "example", "constant speed"),
-    *("curved", "spans of U", "equal spans", "straight"),
+    "any", "step", "step of squares", "example", "constant speed", "curved", "spans of U", "equal spans", "straight"
 ]
 
 _BLEND = {"start": (pr.P_0, pr.P_1, pr.P_2), "end": (pr.P_m, pr.P_m1, pr.P_m2)}
