@@ -11,7 +11,8 @@ from numpy.typing import ArrayLike
 
 from semispline.solver.arrays import FloatArray
 from semispline.solver.blending.band_contact import BandContact
-from semispline.solver.blending.chain_joints import CLOSED, KINK, Joint
+from semispline.solver.blending.chain_coefficients import CLOSED, Joint
+from semispline.solver.blending.chain_joints import KINK
 from semispline.solver.blending.chains import Chain, Strip
 from semispline.solver.errors import ContactError
 from semispline.solver.judge import (
@@ -142,6 +143,7 @@ def chain_contact(
     which: str,
     wanted: Continuity,
     limits: Limits | Literal["auto"],
+    whole: Contact,
 ) -> ChainContact:
     """Measure how a blend meets each face of a chain, and refuse what misses its limits.
 
@@ -156,6 +158,8 @@ def chain_contact(
     wanted : str
     limits : {"auto", "exact", "cad"}
         "auto" is exact, but where the faces meet within a tolerance only.
+    whole : Contact
+        Of the strip and the blend: it says what rounding does where faces are small beside the chain.
 
     Raises
     ------
@@ -176,8 +180,13 @@ def chain_contact(
         if kind == "cad":
             contact = in_cad_limits(contact, edge_length(face))
         name = chain.names[edge]
-        if lacking := [*untold(contact, wanted), *shortfalls(contact, wanted)]:
-            raise ContactError(f"contact {which}: edge {edge} ({name}) of the chain: {'; '.join(map(str, lacking))}")
+        misses = [f"{measure} is {value:.3g}, expected at most {limit:.3g}" for measure, value, limit in
+                  shortfalls(contact, wanted)]  # fmt: skip
+        if lacking := [*untold(contact, wanted), *misses]:
+            raise ContactError(
+                f"contact {which}: edge {edge} ({name}) of the chain: {'; '.join(lacking)} for {wanted}"
+                + _remedy(whole, wanted)
+            )
         found.append(FaceOfChain(name, span, contact))
     along = strip.surface
     return ChainContact(
@@ -190,6 +199,13 @@ def chain_contact(
         degree=along.degree_v,
         control_points=along.control_points.shape[1],
     )
+
+
+def _remedy(whole: Contact, wanted: Continuity) -> str:
+    hidden = untold(whole, wanted)
+    if not hidden:
+        return ""
+    return f"; over the whole chain {hidden[0]}: ask for a lower continuity, or take faces that reach further inwards"
 
 
 def told_apart(

@@ -15,11 +15,10 @@ from itertools import product
 import numpy as np
 
 from semispline.solver.arrays import FloatArray
-from semispline.solver.blending.chain_joints import JoinedPieces, end_slopes, end_values
-from semispline.solver.blending.chain_pieces import cartesian_slope
+from semispline.solver.blending.chain_coefficients import JoinedPieces
+from semispline.solver.blending.chain_joints import end_slopes, end_values
 from semispline.solver.blending.chain_runs import begun_at, run_back
 from semispline.solver.blending.chains import Chain
-from semispline.solver.blending.end_faces import steered
 from semispline.solver.blending.weights import SEPARABLE
 from semispline.solver.options import BlendOptions
 
@@ -46,9 +45,10 @@ def facing_rims(a: Chain, b: Chain, options: BlendOptions) -> tuple[Chain, Chain
     ]
     wanted = _stations(a)
     nearest = min(ways, key=lambda way: float(np.sum((_stations(way) - wanted) ** 2)))
+    if any(chain.is_steered(order) for chain, order in zip((a, nearest), options.orders, strict=True)):
+        return None
     pair = [chain.rim_pieces(order) for chain, order in zip((a, nearest), options.orders, strict=True)]
-    rest = all(_rest_on_end_faces(*x) for x in zip((a, nearest), pair, strict=True))
-    return (a, nearest) if rest and _answer(*pair) else None
+    return (a, nearest) if _answer(*pair) else None
 
 
 def _stations(chain: Chain) -> FloatArray:
@@ -56,22 +56,6 @@ def _stations(chain: Chain) -> FloatArray:
     ends = [base.derivative(np.array(base.range_along), 0, 0) for base in chain.edges]
     ways = [pair[::-1] if back else pair for pair, back in zip(ends, chain.turned, strict=True)]
     return np.array([*(way[0] for way in ways), ways[-1][1]])
-
-
-def _rest_on_end_faces(chain: Chain, joined: JoinedPieces) -> bool:
-    """Tell whether the lines across both ends lie on the faces that they are to lie on, without being bent there."""
-    for end, face in enumerate(chain.ends_on):
-        if face is None:
-            continue
-        derivatives, by = joined.pieces[-end].at_ends()[:, :, end], joined.coefficients[-end].values[end]
-        along, across = (
-            cartesian_slope(derivatives[0, 0], x) for x in (derivatives[0, 1], by[1, 1] * derivatives[1, 0])
-        )
-        extent = _extent(joined)
-        expected = extent * (np.linalg.norm(across) / extent) ** np.arange(by.shape[1])
-        if (np.abs(steered(derivatives, by, face)[2]) * np.linalg.norm(along) > _SQUARE * expected).any():
-            return False
-    return True
 
 
 def _answer(a: JoinedPieces, b: JoinedPieces) -> bool:
@@ -128,11 +112,8 @@ def _at_joint(joined: JoinedPieces, k: int) -> _AtJoint:
             values = values[:, :3] / weight
         sides.append((values, slopes / joined.spans[piece]))
     (values, before), (_, after) = sides
-    return _AtJoint(values, before, after, _extent(joined))
-
-
-def _extent(joined: JoinedPieces) -> float:
-    return max(float(np.abs(piece.jets[0, :, :3]).max()) for piece in joined.pieces)
+    extent = max(float(np.abs(piece.jets[0, :, :3]).max()) for piece in joined.pieces)
+    return _AtJoint(values, before, after, extent)
 
 
 def _run_alike(one: FloatArray, other: FloatArray) -> bool:

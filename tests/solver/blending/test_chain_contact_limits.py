@@ -9,6 +9,7 @@ import pytest
 from helpers.chains import LINE, box, circle, line, moved, walls
 from helpers.rational import cylinder
 from semispline import Base, BSplineSurface, blend, chain
+from semispline.solver.blending.chain_coefficients import Joint
 from semispline.solver.blending.chain_contact import (
     ChainContact,
     _at_a_knot,
@@ -19,7 +20,6 @@ from semispline.solver.blending.chain_contact import (
     told_apart,
 )
 from semispline.solver.blending.chain_faces import split_places
-from semispline.solver.blending.chain_joints import Joint
 from semispline.solver.blending.chain_runs import _corners, _stations
 from semispline.solver.judge import Crease
 from semispline.solver.splines import BSplineCurve, boundary_curve

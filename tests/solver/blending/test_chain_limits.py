@@ -8,9 +8,9 @@ import pytest
 from helpers.chains import LINE, box, circle, walls
 from helpers.chains import line as straight
 from semispline import Base, BSplineSurface, EdgeError, OptionError, chain
-from semispline.solver.blending.chain_joints import Coefficients, JoinedPieces, Joint
+from semispline.solver.blending.chain_coefficients import Coefficients, JoinedPieces, Joint
 from semispline.solver.blending.chain_pieces import Piece
-from semispline.solver.blending.chains import _assembled, _degree, _positive_rows
+from semispline.solver.blending.chain_rows import _degree, assembled, positive_rows
 from semispline.solver.blending.end_faces import EndFace
 from semispline.solver.splines import Basis, basis_matrix
 
@@ -105,7 +105,7 @@ def test_weights_of_a_strip_keep_a_quarter_of_the_least_on_the_contact(fall, wid
     """Over the width h the second row has the weights 1 -+ h `fall`: their mean does not change across."""
     jets = np.zeros((2, 2, 4))
     jets[0, :, 0], jets[0, :, 3], jets[1, :, 3] = [0, 1], 1, [-fall, fall]
-    rows, found = _positive_rows(jets, Basis(1, np.array([0.0, 0, 1, 1])), 1.0)
+    rows, found = positive_rows(jets, Basis(1, np.array([0.0, 0, 1, 1])), 1.0)
     assert found == width
     np.testing.assert_allclose(rows[:, :, 3], [[1, 1], [1 - width * fall, 1 + width * fall]], rtol=1e-14)
 
@@ -115,7 +115,7 @@ def test_weights_of_the_contact_that_vanish_are_refused(least):
     jets = np.zeros((2, 3, 4))
     jets[0, :, 0], jets[0, :, 3] = [0, 0.5, 1], [1, least, 1]
     with pytest.raises(EdgeError, match="cannot be made smooth and positive"):
-        _positive_rows(jets, Basis(2, np.array([0.0, 0, 0, 1, 1, 1])), 1.0)
+        positive_rows(jets, Basis(2, np.array([0.0, 0, 0, 1, 1, 1])), 1.0)
 
 
 def plain(order):
@@ -142,7 +142,7 @@ def test_a_joint_of_one_spline_leaves_no_knot_unless_it_changes_a_part_in_1e12(t
         )
     joint = Joint((1.0, 0.25, 0.0), "smooth", 0.0, 0.0, (0.0, 0.0), 0.0, (0.0, 0.0))
     joined = JoinedPieces(tuple(pieces), np.ones(2), (plain(1), plain(1)), (None, joint), (0, 1))
-    _, along = _assembled(joined)
+    _, along = assembled(joined)
     assert along.degree == 3
     assert np.count_nonzero(along.knots == 1) == knots
 

@@ -8,8 +8,8 @@ from helpers.chains import line as profile_line
 from semispline import Base, BSplineSurface
 from semispline.solver.blending.chain_pieces import (
     Piece,
-    _standard,
     read_pieces,
+    standard,
     with_equal_ends,
     with_faster_end,
 )
@@ -43,17 +43,17 @@ def straight_jets(across=1.0, bend=(0.0, 0.0)):
     ],
 )
 def test_straight_is_linear_to_a_part_in_1e12(across, bend):
-    within = _standard(piece(straight_jets(across, np.multiply(bend, 0.8))))
+    within = standard(piece(straight_jets(across, np.multiply(bend, 0.8))))
     assert within.is_straight
     assert within.jets.shape == (2, 2, 3)
-    beyond = _standard(piece(straight_jets(across, np.multiply(bend, 1.25))))
+    beyond = standard(piece(straight_jets(across, np.multiply(bend, 1.25))))
     assert not beyond.is_straight
     assert beyond.degrees == (2, 2)
 
 
 def test_degrees_of_what_is_linear_constant_and_nothing():
     jets = np.concatenate([straight_jets(), np.zeros((1, 3, 3))])
-    assert _standard(piece(jets)).degrees == (1, 0, -1)
+    assert standard(piece(jets)).degrees == (1, 0, -1)
 
 
 @pytest.mark.parametrize(("times", "straight"), [(0.0, True), (0.5, True), (2.0, False), (1e6, False)])
@@ -62,7 +62,7 @@ def test_weights_are_even_to_a_part_in_1e12(times, straight):
     jets = np.concatenate([straight_jets(), np.zeros((2, 3, 1))], axis=2)
     jets[0, :, 3] = weights
     # The points stay on a line, and their homogeneous coordinates too, to what straight ones may be off.
-    assert _standard(piece(jets)).is_straight is straight
+    assert standard(piece(jets)).is_straight is straight
 
 
 def test_a_face_is_cut_at_knots_of_full_multiplicity_alone():
