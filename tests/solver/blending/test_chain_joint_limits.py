@@ -23,7 +23,6 @@ from semispline.solver.blending.chain_pieces import Piece, read_pieces
 from semispline.solver.splines import Basis
 
 LINE, QUADRATIC = Basis(1, np.array([0.0, 0, 1, 1])), Basis(2, np.array([0.0, 0, 0, 1, 1, 1]))
-LAMBDA, W, Q = range(3)
 DOWN = (0.0, 0.0, -1.0)
 BOTH_SIDES = [(0.8, True), (1.25, False)]
 
