@@ -7,7 +7,7 @@ import pytest
 
 from helpers.chains import rounded_square, strips, walls, with_net
 from semispline import Base, BSplineSurface, EdgeError, chain
-from semispline.solver.blending.chain_coefficients import Coefficients, Joint
+from semispline.solver.blending.chain_coefficients import LAMBDA, Coefficients, Joint, Q, W
 from semispline.solver.blending.chain_joints import (
     _beyond_rounding,
     _check_speeds,

@@ -7,7 +7,7 @@ import pytest
 
 from helpers.chains import arc, flanges, line, walls
 from semispline import chain
-from semispline.solver.blending.chain_coefficients import JoinedPieces
+from semispline.solver.blending.chain_coefficients import Coefficients, JoinedPieces
 from semispline.solver.blending.chain_pieces import Piece
 from semispline.solver.blending.chain_rims import _answers, _at_joint, _AtJoint, _run_alike, facing_rims
 from semispline.solver.options import BlendOptions
