@@ -62,22 +62,31 @@ def with_commands(
     for face in place.faces:
         between = betweens[face]
         ends = end_edges(graph, face, (between.a.uses, between.b.uses))
-        keeps = bool(going_on(graph, relations, ends))
+        sewn = _is_sewn(graph, [face])
+        keeps = sewn and bool(going_on(graph, relations, ends))
         names = _edges_to_name(graph, relations, between)
-        commands.append(replacing(graph.path, [face], names, keep_ends=keeps))
+        alone = can_hold_a_solid(graph.path) and not sewn
+        commands.append(replacing(graph.path, [face], names, keep_ends=keeps, alone=alone))
     return replace(place, commands=tuple(commands))
 
 
 def _of_run(graph: EdgeGraph, relations: Relations, place: Place, chains: Sequence[Sequence[int]]) -> str | None:
-    """Return the command that replaces a chain, or the one that a fillet belongs to; None where none does."""
+    """Return the command that replaces a chain, or the one that a fillet belongs to; None where none can."""
     (faces,) = [list(chain) for chain in chains if set(place.faces) <= set(chain)][:1] or [list(place.faces)]
     try:
         run = face_run(graph, relations, faces)
     except EdgeError:
         return None
-    if run.is_plain:
+    if run.is_plain or not _is_sewn(graph, run.faces):
         return None
     return replacing(graph.path, run.faces, keep_ends=runs_on(graph, relations, run))
+
+
+def _is_sewn(graph: EdgeGraph, faces: Sequence[int]) -> bool:
+    """Tell whether each edge of some faces is one of another face too, or a seam: else no solid comes back."""
+    uses = graph.uses
+    rows = [row for face in faces for row in range(*uses.of_face(face).indices(len(uses)))]
+    return all(uses.other[row] != NONE or uses.twin[row] != NONE or uses.seam[row] for row in rows)
 
 
 def _words(
@@ -138,8 +147,17 @@ def _between_chains(path: str, place: Place, words: tuple[str, str]) -> str:
     return shlex.join(["semispline", "blend", file, file, "--edge-a", words[0], "--edge-b", words[1], "-o", out])
 
 
-def replacing(path: str, faces: Sequence[int], edges: tuple[str, str] | None = None, *, keep_ends: bool = False) -> str:
+def replacing(
+    path: str,
+    faces: Sequence[int],
+    edges: tuple[str, str] | None = None,
+    *,
+    keep_ends: bool = False,
+    alone: bool = False,
+) -> str:
     """Return the command that blends the faces beyond some, from one edge of the first to another where they are named.
+
+    `alone` asks for the blend as a surface, instead of the solid with it.
 
     Examples
     --------
@@ -151,7 +169,7 @@ def replacing(path: str, faces: Sequence[int], edges: tuple[str, str] | None = N
     words = ["semispline", "blend", _safe(path), "--replace", ",".join(map(str, faces))]
     if edges is not None:
         words += ["--edge-a", edges[0], "--edge-b", edges[1]]
-    words += ["--keep-ends"] * (keep_ends and can_hold_a_solid(path))
+    words += ["--keep-ends"] * (keep_ends and can_hold_a_solid(path)) + ["--surfaces"] * alone
     return shlex.join([*words, "-o", f"blend-{faces[0]}.step"])
 
 

@@ -84,6 +84,10 @@ def test_commands_name_file_and_edges_for_a_shell(name):
             assert words[:2] == ["semispline", "blend"]
             assert words[-2] == "-o"
             path = f"./{name}" if name.startswith("-") else name
+            if place.faces and words[3] != "--replace":
+                # A chain that ends where a face was taken out: between its edges, no solid comes back.
+                assert words[2:4] == [path, path]
+                continue
             if place.faces:
                 assert words[2:4] == [path, "--replace"]
                 numbers = {int(word) for word in words[4].split(",")}
