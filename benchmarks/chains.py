@@ -27,12 +27,15 @@ blend as one contact: one surface, without a crease where the faces have none, i
   many.
 - Where a line meets an arc, curvature along the contact jumps. The blend inherits it, and it fades out to the other
   side.
-- A chain that is one conic, such as a cylinder in three arcs, is run through by one smooth circle.
+- A chain that is one conic, such as a cylinder in three arcs, is run through by one smooth circle. Beside lines, arcs
+  that are parts of one conic are one arc again, up to a half circle, and lines one line: each true face is measured
+  over its own range all the same.
+- Faces that are small beside the chain are told by their own rounding, not by that of all of it.
 - Rims whose joints answer each other one to one, as around a rounded edge, are taken as they are: straight stretches
   of the blend are extruded, its corners revolved.
-- Limits: G4 onto flat bands that are small beside the whole chain is refused, since rounding alone may hide it; an arc
-  that is cut in two beside lines is two pieces, exact in contact, with a jump of curvature of its own parametrisation;
-  edges below 1e-4 of the chain leave creases up to 1e-8 degree.
+- Limits: what coordinates of a face have lost in its file, as far from the origin, no blend brings back: a contact that
+  rounding alone may hide is refused by its face, with the number; edges below 1e-4 of the chain leave creases up to
+  1e-8 degree.
 """
 
 
@@ -52,6 +55,15 @@ def rounded_rectangle(x: float, y: float, radius: float, z: float) -> list[BSpli
     for one, following in zip(arcs, arcs[1:] + arcs[:1], strict=True):
         ends = [one.control_points[-1], following.control_points[0]]
         found += [one, BSplineCurve(1, [0, 0, 1, 1], ends)]
+    return found
+
+
+def cut_arcs(x: float, y: float, radius: float, z: float) -> list[BSplineCurve]:
+    """Return the same, each arc cut in two at a third of it."""
+    centres, found = [(x, y), (-x, y), (-x, -y), (x, -y)], []
+    for k, (centre, line) in enumerate(zip(centres, rounded_rectangle(x, y, radius, z)[1::2], strict=True)):
+        start, third = k * pi / 2, pi / 6
+        found += [arc(centre, radius, start, z, third), arc(centre, radius, start + third, z, 2 * third), line]
     return found
 
 
@@ -75,7 +87,8 @@ def families() -> Iterator[tuple[str, Chain, Base | Chain]]:
     tube = extruded(circle(1.5, 5.0, 4), 2.0)
     profile = rounded_rectangle(3.0, 2.0, 1.0, 0.0)
     yield "prism of 4 planes, 4 arcs; tube", extruded(profile, -2.0), tube
-    yield "the same, drafted by .2; tube", between(profile, rounded_rectangle(3.0, 2.0, 1.4, -2.0)), tube
+    yield "the same, its arcs cut in two; tube", extruded(cut_arcs(3.0, 2.0, 1.0, 0.0), -2.0), tube
+    yield "the same whole, drafted by .2; tube", between(profile, rounded_rectangle(3.0, 2.0, 1.4, -2.0)), tube
     yield "plate outside of it; tube", between(profile, rounded_rectangle(3.0, 2.0, 2.5, 0.0)), tube
     wall = extruded(rounded_rectangle(3.0, 2.0, 2.0, 0.0), -2.0)
     top = between(rounded_rectangle(3.0, 2.0, 1.0, 1.0), rounded_rectangle(3.0, 2.0, 0.5, 1.0))

@@ -1,7 +1,7 @@
 from .solver.blending.band_contact import BandContact as BandContact
+from .solver.blending.chain_coefficients import Joint as Joint
 from .solver.blending.chain_contact import ChainContact as ChainContact
 from .solver.blending.chain_faces import faces_of_blend as faces_of_blend
-from .solver.blending.chain_joints import Joint as Joint
 from .solver.blending.chains import Chain as Chain
 from .solver.blending.chains import chain as chain
 from .solver.blending.measured_energy import thin_plate_energy as thin_plate_energy
@@ -141,6 +141,7 @@ from .solver.topology.resolving import resolve_edge as resolve_edge
 from .solver.topology.solid_blends import SolidBlend as SolidBlend
 from .solver.topology.solid_blends import replace_face as replace_face
 from .solver.topology.solid_gate import GateReport as GateReport
+from .solver.topology.solid_joins import join_faces as join_faces
 from .solver.topology.solid_rounds import round_edge as round_edge
 
 __version__: str

@@ -22,6 +22,7 @@ from .loading import collected as collected
 from .loading import paper_files as paper_files
 from .loading import paper_names as paper_names
 from .mutation import explained as explained
+from .mutation import mutants as mutants
 from .number_lists import Knots as Knots
 from .number_lists import Numbers as Numbers
 from .number_lists import inner_moves as inner_moves
@@ -36,12 +37,14 @@ from .questions import unconditional as unconditional
 from .records import Case as Case
 from .records import Cause as Cause
 from .records import Check as Check
+from .records import CheckFailedError as CheckFailedError
 from .records import Claim as Claim
 from .records import Consequence as Consequence
 from .records import Correction as Correction
 from .records import Counterexample as Counterexample
 from .records import Formula as Formula
 from .records import LedgerError as LedgerError
+from .records import Paper as Paper
 from .records import Part as Part
 from .records import Reading as Reading
 from .records import Strength as Strength

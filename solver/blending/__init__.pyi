@@ -3,12 +3,15 @@ from .chain_contact import ChainContact as ChainContact
 from .chain_contact import stretches_along as stretches_along
 from .chain_faces import Split as Split
 from .chain_faces import faces_of_blend as faces_of_blend
+from .chain_faces import split_places as split_places
 from .chain_joints import EndFaces as EndFaces
+from .chain_rims import facing_rims as facing_rims
 from .chains import Chain as Chain
 from .chains import chain as chain
 from .end_curves import end_on_face as end_on_face
 from .end_curves import face_at as face_at
 from .end_faces import EndFace as EndFace
+from .kept_ends import end_on_curve as end_on_curve
 from .linear_alpha import LinearInV as LinearInV
 from .measured_energy import thin_plate_energy as thin_plate_energy
 from .nlp import ConstrainedProblem as ConstrainedProblem

@@ -6,8 +6,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import cast
 
+from semispline.solver.blending.chain_coefficients import Joint
 from semispline.solver.blending.chain_contact import chain_contact
-from semispline.solver.blending.chain_joints import Joint
 from semispline.solver.blending.chain_rims import facing_rims
 from semispline.solver.blending.chain_runs import facing_chains
 from semispline.solver.blending.chains import Chain, Strip, order_of_contact
@@ -48,6 +48,15 @@ class StatedBases:
         """The planes in which chain a ends, seen along a."""
         faces = (None, None) if self.chains[0] is None else self.chains[0].ends_on
         return tuple(HeldEnd(k, face.normal) for k, face in enumerate(faces) if face is not None and face.is_flat)
+
+    @property
+    def shown(self) -> tuple[Base, Base]:
+        """Both bases as wide as the faces are: what the blend may run into."""
+        a, b = (
+            base if strip is None else Base(strip.shown, "u0")
+            for base, strip in zip((self.a, self.b), self.strips, strict=True)
+        )
+        return a, b
 
     @property
     def joints(self) -> tuple[Joint, ...]:
@@ -115,8 +124,10 @@ def on_chains(result: BlendResult, stated: StatedBases) -> BlendResult:
     contacts = [
         None
         if one is None or strip is None
-        else chain_contact(one, strip, result.surface, which, wanted, stated.options.limits)
-        for one, strip, which, wanted in zip(stated.chains, stated.strips, "ab", result.continuity, strict=True)
+        else chain_contact(one, strip, result.surface, which, wanted, stated.options.limits, whole)
+        for one, strip, which, wanted, whole in zip(
+            stated.chains, stated.strips, "ab", result.continuity, (result.contact_a, result.contact_b), strict=True
+        )
     ]
     if contacts == [None, None]:
         return result

@@ -11,7 +11,8 @@ from numpy.typing import ArrayLike
 
 from semispline.solver.arrays import FloatArray
 from semispline.solver.blending.band_contact import BandContact
-from semispline.solver.blending.chain_joints import CLOSED, KINK, Joint
+from semispline.solver.blending.chain_coefficients import CLOSED, Joint
+from semispline.solver.blending.chain_joints import KINK
 from semispline.solver.blending.chains import Chain, Strip
 from semispline.solver.errors import ContactError
 from semispline.solver.judge import (
@@ -142,6 +143,7 @@ def chain_contact(
     which: str,
     wanted: Continuity,
     limits: Limits | Literal["auto"],
+    whole: Contact,
 ) -> ChainContact:
     """Measure how a blend meets each face of a chain, and refuse what misses its limits.
 
@@ -156,6 +158,8 @@ def chain_contact(
     wanted : str
     limits : {"auto", "exact", "cad"}
         "auto" is exact, but where the faces meet within a tolerance only.
+    whole : Contact
+        Of the strip and the blend: it says what rounding does where faces are small beside the chain.
 
     Raises
     ------
@@ -176,8 +180,13 @@ def chain_contact(
         if kind == "cad":
             contact = in_cad_limits(contact, edge_length(face))
         name = chain.names[edge]
-        if lacking := [*untold(contact, wanted), *shortfalls(contact, wanted)]:
-            raise ContactError(f"contact {which}: edge {edge} ({name}) of the chain: {'; '.join(map(str, lacking))}")
+        misses = [f"{measure} is {value:.3g}, expected at most {limit:.3g}" for measure, value, limit in
+                  shortfalls(contact, wanted)]  # fmt: skip
+        if lacking := [*untold(contact, wanted), *misses]:
+            raise ContactError(
+                f"contact {which}: edge {edge} ({name}) of the chain: {'; '.join(lacking)} for {wanted}"
+                + _remedy(whole, wanted)
+            )
         found.append(FaceOfChain(name, span, contact))
     along = strip.surface
     return ChainContact(
@@ -190,6 +199,13 @@ def chain_contact(
         degree=along.degree_v,
         control_points=along.control_points.shape[1],
     )
+
+
+def _remedy(whole: Contact, wanted: Continuity) -> str:
+    hidden = untold(whole, wanted)
+    if not hidden:
+        return ""
+    return f"; over the whole chain {hidden[0]}: ask for a lower continuity, or take faces that reach further inwards"
 
 
 def told_apart(
@@ -248,12 +264,12 @@ def stretches_along(
 def _part(base: Base, edge: BSplineCurve, ends: FloatArray, middle: FloatArray) -> tuple[float, float]:
     """Return the range of an edge between two points on it that goes through a third one."""
     start, end = base.range_along
-    low, high = sorted(_snapped(_parameter(edge, x), start, end) for x in ends)
+    places = sorted(_snapped(_parameter(edge, x), start, end) for x in ends)
     if not is_closed(base):
-        return low, high
+        return places[0], places[1]
     # A point on the seam is both of its ends.
-    inner, at = [x for x in (low, high) if start < x < end], _parameter(edge, middle)
-    return max([start, *(x for x in inner if x < at)]), min([end, *(x for x in inner if x > at)])
+    at = _parameter(edge, middle)
+    return max([start, *(x for x in places if x < at)]), min([end, *(x for x in places if x > at)])
 
 
 def _parameter(curve: BSplineCurve, point: ArrayLike) -> float:

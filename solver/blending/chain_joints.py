@@ -16,158 +16,39 @@ from typing import TypeAlias
 import numpy as np
 
 from semispline.solver.arrays import FloatArray
+from semispline.solver.blending.chain_coefficients import (
+    CLOSED,
+    LAMBDA,
+    Coefficients,
+    JoinedPieces,
+    Joint,
+    Q,
+    W,
+)
 from semispline.solver.blending.chain_pieces import Piece, cartesian_slope, with_equal_ends, with_faster_end
 from semispline.solver.blending.end_faces import EndFace, steered
-from semispline.solver.blending.reparametrisation import Reparametrisation, bernstein, composed, slopes_along
+from semispline.solver.blending.reparametrisation import Reparametrisation, composed, slopes_along
 from semispline.solver.errors import EdgeError
+from semispline.solver.splines import basis_matrix
 
-# What is left of a condition, relative to what it compares, where it counts as met.
-CLOSED = 1e-8
 # Angles in degrees: contacts that turn by more have a corner; by more than the second, a kink that is no one's wish.
 CORNER, KINK = 1.0, 1e-6
-# Curvatures at both sides that differ by this, over the larger one, jump.
-BENT = 1e-6
 # Ends that lie apart by less than this part of their coordinates are one point.
 _MOVED = 1e-13
-# What rounding leaves of it asks for nothing.
+# What rounding leaves of it asks for nothing; nor what noise of the file does, as seen where derivatives across do not
+# agree either: so many times that, and so much at most, a crease of 2e-9 degree.
 _ROUNDING = 1e-13
+_OF_NOISE, _MOST_NOISE = 10.0, 4e-11
+# A contact that is slower than this part of its size stands still: the judge sees no normal there.
+_STILL = 1e-9
+_INSIDE = np.linspace(0.0, 1.0, 9)
 # Speeds of a closed chain that come back to the first one, and weights that are flat, to this.
 _SAME = 1e-9
-_LAMBDA, _W, _Q = range(3)
 EndFaces: TypeAlias = tuple[EndFace | None, EndFace | None]
 
 
-@dataclass(frozen=True, eq=False)
-class Coefficients:
-    """lambda, w and q along a piece: cubic in v.
-
-    But for q on a piece with inner knots: it brings in derivatives of R along v, which are less smooth there. It fades
-    out to third order within the first and the last span.
-
-    Attributes
-    ----------
-    values, slopes : ndarray, shape (2, 3, order + 1)
-        At the start and the end; of lambda, w and q; by order in u.
-    first, last : float
-        Where the first span ends and the last one begins, the piece being [0, 1].
-    """
-
-    values: FloatArray
-    slopes: FloatArray
-    first: float = 1.0
-    last: float = 0.0
-
-    def at(self, low: float, high: float, t: FloatArray) -> FloatArray:
-        """Return them at places t in [0, 1] of the span from `low` to `high`, shape (3, order + 1, T)."""
-        places = low + (high - low) * t
-        found = np.asarray(np.tensordot(self.bezier, bernstein(3, places), axes=(0, 1)))
-        if self.first < 1:
-            found[_Q] = self._fading(0, places / self.first, self.first) if high <= self.first else 0.0
-            if low >= self.last:
-                found[_Q] = self._fading(1, (1 - places) / (1 - self.last), self.last - 1)
-        return found
-
-    def _fading(self, end: int, s: FloatArray, span: float) -> FloatArray:
-        value, slope = self.values[end, _Q, :, None], self.slopes[end, _Q, :, None]
-        return np.asarray((1 - s) ** 3 * (value + (slope * span + 3 * value) * s))
-
-    @property
-    def bezier(self) -> FloatArray:
-        """Their Bezier points, shape (4, 3, order + 1)."""
-        (one, other), (rise, fall) = self.values, self.slopes
-        return np.stack([one, one + rise / 3, other - fall / 3, other])
-
-    @property
-    def degrees(self) -> FloatArray:
-        """Degrees in v, shape (3, order + 1); -inf for zero."""
-        (one, other), (rise, fall) = self.values, self.slopes
-        size = np.maximum(np.abs(self.values).max(axis=0), np.abs(self.slopes).max(axis=0))
-        within = _SAME * 1e-3 * size
-        change = other - one
-        cubic = np.abs(rise + fall - 2 * change) > within
-        quadratic = np.abs(rise - change) > within
-        linear = np.abs(change) > within
-        found = np.where(cubic, 3.0, np.where(quadratic, 2.0, np.where(linear, 1.0, 0.0)))
-        found = np.where(size > 0, found, -np.inf)
-        if self.first < 1:
-            found[_Q] = np.where(size[_Q] > 0, 4.0, -np.inf)
-        return found
-
-
-@dataclass(frozen=True, eq=False)
-class Joint:
-    """Where two faces of a chain meet.
-
-    Attributes
-    ----------
-    point : (float, float, float)
-    kind : {"smooth", "creased", "corner"}
-        "smooth": the strip is C1 there. "creased": the faces themselves are. "corner": the contact turns.
-    turn_degrees : float
-        Between the tangents of the contact.
-    crease_degrees : float
-        Between the tangent planes of the faces.
-    residuals : tuple of float
-        Of the derivatives along v, by order in u: what is left, relative to what they compare.
-    moved : float
-        How far apart the edges end, beyond rounding; each was moved by half of it.
-    curvatures : (float, float)
-        Of the contact, before and after.
-    apart : float
-        By how much derivatives across differ, relative to themselves, that nothing makes agree: the faces meet within a
-        tolerance. The strip takes their mean.
-    """
-
-    point: tuple[float, float, float]
-    kind: str
-    turn_degrees: float
-    crease_degrees: float
-    residuals: tuple[float, ...]
-    moved: float
-    curvatures: tuple[float, float]
-    apart: float = 0.0
-
-    @property
-    def is_exact(self) -> bool:
-        """Whether the faces meet to rounding."""
-        return self.moved == 0 and self.apart <= CLOSED
-
-    def moved_by(self, offset: FloatArray) -> Joint:
-        """Return the joint in other coordinates."""
-        x, y, z = (np.array(self.point) + offset).tolist()
-        return replace(self, point=(x, y, z))
-
-    @property
-    def bends(self) -> bool:
-        """Whether the contact's own curvature jumps."""
-        return bool(abs(self.curvatures[1] - self.curvatures[0]) > BENT * max(self.curvatures))
-
-
-@dataclass(frozen=True, eq=False)
-class JoinedPieces:
-    """Pieces, the spans that each gets, what runs through each, and what is found at the joints.
-
-    Joint k is where piece k begins; of an open chain there is no joint 0.
-
-    Attributes
-    ----------
-    pieces : tuple of Piece
-    spans : ndarray, shape (K,)
-    coefficients : tuple of Coefficients
-    joints : tuple of Joint or None
-    continuity : tuple of int
-        Along, at each joint, of what comes out.
-    """
-
-    pieces: tuple[Piece, ...]
-    spans: FloatArray
-    coefficients: tuple[Coefficients, ...]
-    joints: tuple[Joint | None, ...]
-    continuity: tuple[int, ...]
-
-
 def joined_pieces(
-    pieces: list[Piece], *, closed: bool, tolerance: float = 0.0, ends_on: EndFaces = (None, None)
+    pieces: list[Piece], *, closed: bool, tolerance: float, ends_on: EndFaces = (None, None)
 ) -> JoinedPieces:
     """Return what makes the pieces one strip.
 
@@ -183,10 +64,13 @@ def joined_pieces(
     Raises
     ------
     EdgeError
-        A contact that runs along an end face; or at a joint the faces do not meet along one curve that leaves the
-        contact, or lie on different sides.
+        A contact that runs along an end face, or stands still at a joint; or there the faces do not meet along one
+        curve that leaves the contact, or lie on different sides.
     """
     turns = [_turn(pieces[k - 1], pieces[k]) if k or closed else None for k in range(len(pieces))]
+    for k, turn in enumerate(turns):
+        if turn is not None:
+            _check_speeds(pieces[k - 1], pieces[k], k)
     smooth = [turn is not None and turn <= CORNER for turn in turns]
     pieces = _of_even_weights(pieces, closed=closed, tolerance=tolerance)
     if closed and all(smooth):
@@ -198,12 +82,13 @@ def joined_pieces(
     _steer(ends, found, ends_on)
     joints: list[Joint | None] = [None] * len(pieces)
     straight = [piece.is_straight for piece in pieces]
+    noise = max(_ROUNDING, min(_OF_NOISE * max(apart), _MOST_NOISE))
     for k, turn in enumerate(turns):
         if turn is not None:
             rounding = (
                 pieces[k - 1].rounding_of_slopes()[1] / spans[k - 1] + pieces[k].rounding_of_slopes()[0] / spans[k]
             )
-            joint = _with_slopes(ends, spans, found, straight, k, turn, rounding)
+            joint = _with_slopes(ends, spans, found, straight, k, turn, rounding, noise)
             joints[k] = replace(joint, apart=apart[k])
     continuity = tuple(int(joint is not None and joint.kind == "smooth") for joint in joints)
     return JoinedPieces(tuple(pieces), spans, tuple(found), tuple(joints), continuity)
@@ -246,6 +131,18 @@ def _turn(before: Piece, after: Piece) -> float:
     return _degrees(cartesian_slope(one[0, 1], one[1, 1]), cartesian_slope(other[0, 0], other[1, 0]))
 
 
+def _check_speeds(before: Piece, after: Piece, joint: int) -> None:
+    for piece, end in ((before, 1), (after, 0)):
+        # Of points on it: control points of half circles lie at infinity.
+        inside = (basis_matrix(piece.along.degree, piece.along.knots, _INSIDE) @ piece.jets[0]).tolist()
+        speed, size = piece.end_speeds()[end], float(np.ptp([_place(np.array(x)) for x in inside], axis=0).max())
+        if speed <= _STILL * size:
+            raise EdgeError(
+                f"joint {joint}: the contact stands still there, its derivative is {speed:.1e} where it is {size:.3g} "
+                "long; use a face with another parameter along its edge"
+            )
+
+
 def _degrees(one: FloatArray, other: FloatArray) -> float:
     return float(np.degrees(np.arctan2(np.linalg.norm(np.cross(one, other)), one @ other)))
 
@@ -271,8 +168,8 @@ def _with_values(
     """
     order = pieces[0].order
     start = np.zeros((3, order + 1))
-    start[_LAMBDA, 0] = 1.0
-    start[_W, 1] = 1.0
+    start[LAMBDA, 0] = 1.0
+    start[W, 1] = 1.0
     found, apart = [], [0.0] * len(pieces)
     for k in range(len(pieces)):
         if k:
@@ -312,24 +209,29 @@ def _matching(
     """
     order, rational = len(wanted) - 1, wanted.shape[1] == 4
     by, apart = np.zeros((3, order + 1)), 0.0
-    by[_LAMBDA, 0] = wanted[0, 3] / derivatives[0, 0, 3] if rational else 1.0
+    by[LAMBDA, 0] = wanted[0, 3] / derivatives[0, 0, 3] if rational else 1.0
     extent = float(np.abs(wanted[0]).max()) or 1.0
     per_u = float(np.linalg.norm(wanted[min(1, order)])) / extent
+    if per_u == 0:
+        raise EdgeError(
+            f"joint {joint}: a derivative across the contact vanishes there, expected faces that leave it; use faces "
+            "that have no pole at the joint"
+        )
     for j in range(1, order + 1):
         rest = wanted[j] - end_values(derivatives, by)[j]
-        columns = {_W: by[_LAMBDA, 0] * derivatives[1, 0]} | ({_LAMBDA: derivatives[0, 0]} if rational else {})
+        columns = {W: by[LAMBDA, 0] * derivatives[1, 0]} | ({LAMBDA: derivatives[0, 0]} if rational else {})
         solved, left = _solved(list(columns.values()), rest)
         for name, value in zip(columns, solved, strict=True):
             by[name, j] = value
         scale = max(float(np.linalg.norm(wanted[j])), extent * per_u**j)
         apart = max(apart, left / scale)
         # A face that is off by the tolerance along its width is turned by that much.
-        if left > max(CLOSED * scale, tolerance * (by[_W, 1] / width) ** j):
+        if left > max(CLOSED * scale, tolerance * (by[W, 1] / width) ** j):
             raise EdgeError(
                 f"joint {joint}: derivatives of order {j} across the contact differ by {left / scale:.1e} of "
                 f"themselves, expected {CLOSED:g}; both faces have to leave the contact along one curve there"
             )
-        if j == 1 and by[_W, 1] <= 0:
+        if j == 1 and by[W, 1] <= 0:
             raise EdgeError(f"joint {joint}: the faces lie on different sides of the chain, expected one side")
     return by, apart
 
@@ -360,7 +262,7 @@ def _flatten_weights(
         flat[-1, 1] |= flat[-1, 0]
     for k, end in zip(*np.nonzero(flat), strict=True):
         own = found[k]
-        own.slopes[end, _LAMBDA, 0] = -slopes[k, end] * spans[k] * own.values[end, _LAMBDA, 0]
+        own.slopes[end, LAMBDA, 0] = -slopes[k, end] * spans[k] * own.values[end, LAMBDA, 0]
 
 
 def _steer(ends: list[FloatArray], found: list[Coefficients], ends_on: EndFaces) -> None:
@@ -371,11 +273,11 @@ def _steer(ends: list[FloatArray], found: list[Coefficients], ends_on: EndFaces)
             own.values[end] = steered(ends[-end][:, :, end], own.values[end], face)
     first, last = found[0], found[-1]
     if first is last:
-        change = first.values[1, _Q] - first.values[0, _Q]
-        first.slopes[:, _Q] = change
+        change = first.values[1, Q] - first.values[0, Q]
+        first.slopes[:, Q] = change
     else:
-        first.slopes[0, _Q] = -2 * first.values[0, _Q]
-        last.slopes[1, _Q] = 2 * last.values[1, _Q]
+        first.slopes[0, Q] = -2 * first.values[0, Q]
+        last.slopes[1, Q] = 2 * last.values[1, Q]
 
 
 def _with_slopes(
@@ -386,6 +288,7 @@ def _with_slopes(
     k: int,
     turn: float,
     rounding: FloatArray,
+    noise: float,
 ) -> Joint:
     """Make the derivatives along v agree at joint k, as far as they can; the slopes are set in `found`."""
     left, right = ends[k - 1][:, :, 1], ends[k][:, :, 0]
@@ -399,11 +302,12 @@ def _with_slopes(
     residuals = []
     for j in range(order + 1):
         left_over = _left_over(left, right, one, other, spans[[k - 1, k]], j)
-        if j and turn <= CORNER and left_over.relative > max(_ROUNDING, rounding[j] / left_over.scale):
+        if j and turn <= CORNER and left_over.relative > max(noise, rounding[j] / left_over.scale):
+            least = noise * left_over.scale
             if share:
-                _take(other, 0, right, spans[k], share * left_over.rest, j)
+                _take(other, 0, right, spans[k], share * left_over.rest, j, least)
             if share < 1:
-                _take(one, 1, left, spans[k - 1], (share - 1) * left_over.rest, j)
+                _take(one, 1, left, spans[k - 1], (share - 1) * left_over.rest, j, least)
             left_over = _left_over(left, right, one, other, spans[[k - 1, k]], j)
         residuals.append(left_over.relative)
     smooth = turn <= KINK and max(residuals) <= CLOSED
@@ -446,21 +350,23 @@ def _left_over(
         float(np.linalg.norm(before[order])),
         float(np.linalg.norm(after[order])),
         float(np.linalg.norm(values[order])) / float(spans.min()),
-        along * (float(np.linalg.norm(values[1])) / along) ** order if along else 0.0,
+        along * (float(np.linalg.norm(values[1])) / along) ** order,
     )
     return _LeftOver(rest, scale or 1.0)
 
 
-def _take(piece: Coefficients, end: int, derivatives: FloatArray, span: float, wanted: FloatArray, order: int) -> None:
-    """Set the slopes of one order at an end of a piece so that the derivative along v changes as wanted."""
-    lam = piece.values[end, _LAMBDA, 0]
-    columns = {_W: lam * derivatives[1, 0] / span, _Q: lam * derivatives[0, 1] / span}
+def _take(
+    piece: Coefficients, end: int, derivatives: FloatArray, span: float, wanted: FloatArray, order: int, least: float
+) -> None:
+    """Set the slopes of one order at an end so that the derivative along v changes as wanted, but for the `least`."""
+    lam = piece.values[end, LAMBDA, 0]
+    columns = {W: lam * derivatives[1, 0] / span, Q: lam * derivatives[0, 1] / span}
     if derivatives.shape[-1] == 4:
-        columns[_LAMBDA] = derivatives[0, 0] / span
+        columns[LAMBDA] = derivatives[0, 0] / span
     solved, _ = _solved(list(columns.values()), wanted)
     for (name, column), value in zip(columns.items(), solved, strict=True):
-        # A slope of rounding would cost the degree of a cubic.
-        if abs(value) * np.linalg.norm(column) > _ROUNDING * np.linalg.norm(wanted):
+        # A slope of noise would cost the degree of a cubic.
+        if abs(value) * np.linalg.norm(column) > max(_ROUNDING * np.linalg.norm(wanted), least):
             piece.slopes[end, name, order] += value
 
 
@@ -477,7 +383,7 @@ def _curvature(derivatives: FloatArray) -> float:
         second = (second[:3] - second[3] * position - 2 * first[3] * slope) / point[3]
         first = slope
     speed = float(np.linalg.norm(first))
-    return float(np.linalg.norm(np.cross(first, second))) / speed**3 if speed else 0.0
+    return float(np.linalg.norm(np.cross(first, second))) / speed**3
 
 
 def _beyond_rounding(one: FloatArray, other: FloatArray) -> float:

@@ -123,7 +123,7 @@ def read_pieces(bases: tuple[Base, ...], turned: tuple[bool, ...], order: int, o
             jets, knots = jets[:, ::-1], reversed_knots(knots)
         for piece, basis, ends in _split(jets, Basis(side.along.degree, knots)):
             own = tuple(float(base.range_along[0] + base.range_along[1] - x) if back else float(x) for x in ends)
-            found.append(_standard(Piece(k, own, piece, basis, (), rounding, width)))  # type: ignore[arg-type]
+            found.append(standard(Piece(k, own, piece, basis, (), rounding, width)))  # type: ignore[arg-type]
     return found
 
 
@@ -142,7 +142,7 @@ def _split(jets: FloatArray, along: Basis) -> list[tuple[FloatArray, Basis, tupl
     return found
 
 
-def _standard(piece: Piece) -> Piece:
+def standard(piece: Piece) -> Piece:
     """Return the piece with weights of means 1, 0, 0, .. across; and how high its degrees really are."""
     jets = piece.jets
     if jets.shape[2] == 4:

@@ -49,7 +49,7 @@ def begun_at(chain: Chain, k: int) -> Chain:
 def run_back(chain: Chain) -> Chain:
     """Return the chain run through the other way."""
     turned = tuple(not back for back in chain.turned[::-1])
-    return replace(chain, edges=chain.edges[::-1], turned=turned, names=chain.names[::-1])
+    return replace(chain, edges=chain.edges[::-1], turned=turned, names=chain.names[::-1], ends_on=chain.ends_on[::-1])
 
 
 def _corners(chain: Chain) -> list[int]:

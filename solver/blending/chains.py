@@ -8,39 +8,23 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from semispline.solver.arrays import FloatArray
-from semispline.solver.blending.chain_joints import (
-    Coefficients,
-    EndFaces,
-    JoinedPieces,
-    Joint,
-    joined_pieces,
-    only_continuous,
-)
-from semispline.solver.blending.chain_pieces import Piece, normalised_jets, read_pieces
+from semispline.solver.blending.chain_coefficients import JoinedPieces, Joint
+from semispline.solver.blending.chain_joints import EndFaces, joined_pieces, only_continuous
+from semispline.solver.blending.chain_merging import merged_pieces
+from semispline.solver.blending.chain_pieces import Piece, read_pieces
+from semispline.solver.blending.chain_rows import assembled, positive_rows, rows_of_jets, well_told_width
 from semispline.solver.blending.conics import recognised_conic
-from semispline.solver.blending.reparametrisation import (
-    Reparametrisation,
-    bezier_derivatives,
-    bezier_points,
-    chebyshev_places,
-    composed,
-    elevation,
-)
-from semispline.solver.blending.spans import bezier_pieces, joined_spans
-from semispline.solver.blending.weights import rows_from_derivatives
 from semispline.solver.errors import EdgeError, OptionError
 from semispline.solver.judge import Base, edge_length, is_closed, local_origin, model_size
 from semispline.solver.options import Continuity
-from semispline.solver.splines import Basis, BSplineSurface, basis_matrix, boundary_curve, closest_point, euclidean
+from semispline.solver.splines import Basis, BSplineSurface, boundary_curve, closest_point, euclidean
 
 # Ends of edges nearer than this, of the size of the faces, are one point, unless a file says otherwise.
 _MEET = 1e-7
-_MOST_DEGREE = 25
-_INNER_ORDER = 2
-# Of the contact: weights of the strip's other rows stay above it.
-_LEAST_WEIGHT = 0.25
-# A knot that is not needed changes no value by more than this, relative to its order.
-_NO_KNOT = 1e-12
+# Less than this, of q over the length of a span, is rounding: lines across do not lean.
+_LEANS = 1e-12
+# Times its width a face could be wider before its rows are taken further apart than it has them.
+_SMALL = 4.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,11 +70,21 @@ class Chain:
         """
         pieces = self._pieces(order)
         joined = joined_pieces(pieces, closed=self.closed, tolerance=self.tolerance, ends_on=self.ends_on)
+        # A circle run through anew would leave the faces at its ends.
+        conic = None
+        if not _is_steered(joined):
+            conic = _as_conic(pieces, joined, closed=self.closed, tolerance=self.tolerance)
+        if conic:
+            return self._strip(joined if lengths is None else _with_lengths(joined, lengths), *conic)
+        merged = merged_pieces(pieces, joined, closed=self.closed)
+        if len(merged.pieces) < len(pieces):
+            joined = joined_pieces(
+                list(merged.pieces), closed=self.closed, tolerance=self.tolerance, ends_on=self.ends_on
+            )
         if lengths is not None:
             joined = _with_lengths(joined, lengths)
-        return self._strip(
-            joined, *(_as_conic(pieces, joined, closed=self.closed, tolerance=self.tolerance) or _assembled(joined))
-        )
+        strip = self._strip(joined, *assembled(joined))
+        return replace(strip, begins=pieces[merged.first].edge).with_joints(merged.inside, self.origin)
 
     def rim_pieces(self, order: int) -> JoinedPieces:
         """Return the pieces with nothing but their values made to agree; errors as `strip`."""
@@ -102,26 +96,42 @@ class Chain:
         """Return a base of which rows are only continuous at joints, with spans as given; errors as `strip`."""
         joined = self.rim_pieces(order)
         joined = joined if spans is None else replace(joined, spans=spans)
-        return self._strip(joined, *_assembled(joined))
+        return self._strip(joined, *assembled(joined))
+
+    def is_steered(self, order: int) -> bool:
+        """Tell whether its lines across have to be bent at its ends, to lie on the faces there; errors as `strip`."""
+        if self.closed or self.ends_on == (None, None):
+            return False
+        return _is_steered(
+            joined_pieces(self._pieces(order), closed=False, tolerance=self.tolerance, ends_on=self.ends_on)
+        )
 
     @property
-    def _origin(self) -> FloatArray:
+    def origin(self) -> FloatArray:
+        """The point that is subtracted from all others while its strip is made."""
         return local_origin(*(base.surface for base in self.edges))
 
     def _pieces(self, order: int) -> list[Piece]:
-        return read_pieces(self.edges, self.turned, max(order, 1), self._origin)
+        return read_pieces(self.edges, self.turned, max(order, 1), self.origin)
 
     def _strip(self, joined: JoinedPieces, jets: FloatArray, along: Basis) -> Strip:
         first = self.edges[0]
         low, high = first.surface.domain["uv".index(first.side[0])]
-        rows, width = _positive_rows(jets, along, high - low)
+        wide = well_told_width(jets)
+        shown, surface = (
+            self._surface(jets, along, width)
+            for width in (high - low, wide if wide > _SMALL * (high - low) else high - low)
+        )
+        cuts = np.concatenate([[0.0], np.cumsum(joined.spans)])
+        joints = tuple(joint if joint is None else joint.moved_by(self.origin) for joint in joined.joints)
+        return Strip(surface, shown, self.edges, self.turned, joined.spans, tuple(cuts.tolist()), joints)
+
+    def _surface(self, jets: FloatArray, along: Basis, width: float) -> BSplineSurface:
+        rows, width = positive_rows(jets, along, width)
         points, weights = euclidean(rows)
         degree = len(jets) - 1
         knots = np.repeat([0.0, width], degree + 1)
-        surface = BSplineSurface(degree, along.degree, knots, along.knots, points + self._origin, weights)
-        cuts = np.concatenate([[0.0], np.cumsum(joined.spans)])
-        joints = tuple(joint if joint is None else joint.moved_by(self._origin) for joint in joined.joints)
-        return Strip(surface, self.edges, self.turned, joined.spans, tuple(cuts.tolist()), joints)
+        return BSplineSurface(degree, along.degree, knots, along.knots, points + self.origin, weights)
 
 
 @dataclass(frozen=True, eq=False)
@@ -131,7 +141,9 @@ class Strip:
     Attributes
     ----------
     surface : BSplineSurface
-        Met at u0.
+        Met at u0. It may reach further than the faces: rows that lie close together would lose derivatives by rounding.
+    shown : BSplineSurface
+        The part of it that is about as wide as the first face.
     edges : tuple of Base
     turned : tuple of bool
         Of the chain.
@@ -141,14 +153,29 @@ class Strip:
         Where the pieces begin along the base, and where the last one ends.
     joints : tuple of Joint or None
         At each but the last of `cuts`; None at the start of an open chain.
+    begins : int
+        The edge with which it begins.
     """
 
     surface: BSplineSurface
+    shown: BSplineSurface
     edges: tuple[Base, ...]
     turned: tuple[bool, ...]
     spans: FloatArray
     cuts: tuple[float, ...]
     joints: tuple[Joint | None, ...]
+    begins: int = 0
+
+    def with_joints(self, joints: Sequence[Joint], origin: FloatArray) -> Strip:
+        """Return the strip with joints more, that lie inside of its pieces; counted from `origin`."""
+        if not joints:
+            return self
+        moved = [joint.moved_by(origin) for joint in joints]
+        edge = boundary_curve(self.surface, "u0")
+        places = [float(np.ravel(closest_point(edge, joint.point).parameters)[0]) for joint in moved]
+        known = [*zip(self.cuts, self.joints, strict=False), *zip(places, moved, strict=True)]
+        found = sorted(known, key=lambda one: one[0])
+        return replace(self, cuts=(*(at for at, _ in found), self.cuts[-1]), joints=tuple(joint for _, joint in found))
 
     def place(self, x: float) -> float:
         """Return the parameter along the strip of a place on the chain: x = k + s is the share s of edge k.
@@ -164,7 +191,7 @@ class Strip:
         k = min(int(x), count - 1)
         start, end = self.edges[k].range_along
         at = end - (x - k) * (end - start) if self.turned[k] else start + (x - k) * (end - start)
-        if x in (0, count):
+        if x in (0, count) and self.begins == 0:
             return self.cuts[0] if x == 0 else self.cuts[-1]
         point = self.edges[k].derivative(np.array([at]), 0, 0)[0]
         return float(np.ravel(closest_point(boundary_curve(self.surface, "u0"), point).parameters)[0])
@@ -263,150 +290,18 @@ def _with_lengths(joined: JoinedPieces, lengths: Sequence[float]) -> JoinedPiece
     return replace(joined, spans=joined.spans * factors[runs])
 
 
+def _is_steered(joined: JoinedPieces) -> bool:
+    """Tell whether the lines across a free end lean along the contact, so that they lie on an end face."""
+    ends = (joined.coefficients[0].values[0], joined.coefficients[-1].values[1])
+    is_open = joined.joints[0] is None
+    return is_open and any(float(np.abs(values[2, 1:]).max(initial=0.0)) > _LEANS for values in ends)
+
+
 def _as_conic(
     pieces: list[Piece], joined: JoinedPieces, *, closed: bool, tolerance: float
 ) -> tuple[FloatArray, Basis] | None:
     """Return pieces that are one conic together, joined continuously: `blend` runs through it by a smooth circle."""
-    if (
-        len(pieces) < 2
-        or pieces[0].jets.shape[2] == 3
-        or any(x is not None and x.kind != "smooth" for x in joined.joints)
-    ):
+    if pieces[0].jets.shape[2] == 3 or any(x is not None and x.kind != "smooth" for x in joined.joints):
         return None
-    jets, along = _assembled(only_continuous(pieces, joined, closed=closed, tolerance=tolerance))
-    return None if recognised_conic(_rows(jets, 1.0), along) is None else (jets, along)
-
-
-def _positive_rows(jets: FloatArray, along: Basis, width: float) -> tuple[FloatArray, float]:
-    """Return the control rows of a strip, and how wide it is in u: as asked, or less where weights would vanish.
-
-    Raises
-    ------
-    EdgeError
-        The weights of the contact itself are not positive.
-    """
-    if jets.shape[2] == 3:
-        return _rows(jets, width), width
-    jets = normalised_jets(jets, along)
-    least = _LEAST_WEIGHT * float(jets[0, :, 3].min())
-    if least <= 0:
-        raise EdgeError(
-            "chain: its weights cannot be made smooth and positive; use bases with more even weights along their "
-            "edges, or blend the edges one by one"
-        )
-    while (rows := _rows(jets, width))[..., 3].min() < least:
-        width /= 2
-    return rows, width
-
-
-def _rows(jets: FloatArray, width: float) -> FloatArray:
-    """Return control rows from the edge inwards, of a surface of the degree of the order over [0, width]."""
-    order = len(jets) - 1
-    return np.asarray(np.einsum("kd,dnc->knc", rows_from_derivatives(order, order, (width,) * order), jets))
-
-
-def _assembled(joined: JoinedPieces) -> tuple[FloatArray, Basis]:
-    """Return derivatives by u along the whole chain, shape (order + 1, n, d), and their basis."""
-    parts = [bezier_pieces(piece.jets, piece.along) for piece in joined.pieces]
-    degree = max(_degree(piece, own) for piece, own in zip(joined.pieces, joined.coefficients, strict=True))
-    if degree > _MOST_DEGREE:
-        raise EdgeError(
-            f"chain: degree {degree} along, expected at most {_MOST_DEGREE}; ask for a lower order of contact"
-        )
-    t = chebyshev_places(degree + 1)
-    places: list[float] = [0.0]
-    points: list[FloatArray] = []
-    smooth: list[int] = []
-    for piece, own, span, continuity, (breaks, spans) in zip(
-        joined.pieces, joined.coefficients, joined.spans.tolist(), joined.continuity, parts, strict=True
-    ):
-        start = places[-1]
-        if points:
-            smooth.append(continuity)
-        counts = [int(np.sum(piece.along.knots == x)) for x in breaks[1:-1]]
-        smooth += [min(piece.along.degree - count, _INNER_ORDER) for count in counts]
-        for low, high, bezier in zip(breaks[:-1].tolist(), breaks[1:].tolist(), spans, strict=True):
-            places.append(start + span * high)
-            if _is_plain(own):
-                points.append(elevation(piece.along.degree, degree) @ bezier * own.values[0, 0, 0])
-                continue
-            by = Reparametrisation.of(own.at(low, high, t))
-            values = composed(bezier_derivatives(bezier, high - low, t, len(bezier) - 1), by)
-            points.append(bezier_points(values))
-    if (seam := joined.joints[0]) is not None and not seam.is_exact:
-        _close(points, np.diff(places), joined.continuity[0])
-    found, along = joined_spans(points, np.array(places), smooth)
-    for at in _cut_splines(joined, places):
-        # Where one spline was cut it comes back as smooth as it was.
-        for order in range(_INNER_ORDER, degree + 1):
-            smoother = [order if k == at else x for k, x in enumerate(smooth)]
-            fewer, basis = joined_spans(points, np.array(places), smoother)
-            if _change(fewer, basis, found, along) > _NO_KNOT:
-                break
-            smooth, found, along = smoother, fewer, basis
-    if seam is not None:
-        # To the last bit: kernels make both ends of a closed surface one, and it would not be read as it was written.
-        found[:, -1] = found[:, 0]
-    return found, along
-
-
-def _close(points: list[FloatArray], widths: FloatArray, continuity: int) -> None:
-    """Let the last span end where the first one begins, faces that meet within a tolerance only: as at inner joints."""
-    before, after = points[-1][:, -2], points[0][:, 1]
-    if continuity:
-        common = (widths[0] * before + widths[-1] * after) / (widths[0] + widths[-1])
-    else:
-        common = (points[-1][:, -1] + points[0][:, 0]) / 2
-    points[-1], points[0] = points[-1].copy(), points[0].copy()
-    points[-1][:, -1] = points[0][:, 0] = common
-
-
-def _cut_splines(joined: JoinedPieces, places: Sequence[float]) -> list[int]:
-    """Return which inner places are joints of which neither side is bent by what runs through it."""
-    cuts = np.cumsum(joined.spans)[:-1]
-    bent = [own.slopes.any() or (own.values[0] != own.values[1]).any() for own in joined.coefficients]
-    inner = np.array(places[1:-1])
-    return [
-        int(np.abs(inner - cut).argmin())
-        for k, cut in enumerate(cuts.tolist())
-        if joined.continuity[k + 1] and not bent[k] and not bent[k + 1]
-    ]
-
-
-def _change(one: FloatArray, one_basis: Basis, other: FloatArray, other_basis: Basis) -> float:
-    """Return by how much jets differ, relative to what each order may be."""
-    t = np.linspace(one_basis.knots[0], one_basis.knots[-1], 8 * one_basis.size + 1)
-    values = [
-        np.stack([basis_matrix(basis.degree, basis.knots, t) @ row for row in jets])
-        for jets, basis in ((one, one_basis), (other, other_basis))
-    ]
-    sizes = np.abs(values[1]).max(axis=(1, 2))
-    extent = float(np.ptp(values[1][0], axis=0).max())
-    expected = extent * (sizes[1] / extent) ** np.arange(len(sizes))
-    return float((np.abs(values[0] - values[1]).max(axis=(1, 2)) / np.maximum(sizes, expected)).max())
-
-
-def _is_plain(own: Coefficients) -> bool:
-    """Tell whether nothing but a constant factor runs through a piece."""
-    plain = np.zeros_like(own.values[0])
-    plain[0, 0], plain[1, 1] = own.values[0, 0, 0], 1.0
-    return not own.slopes.any() and bool((own.values == plain).all())
-
-
-def _degree(piece: Piece, own: Coefficients) -> int:
-    """Return the degree of the strip along a piece."""
-    lam, w, q = own.degrees
-    result = np.full(piece.order + 1, -np.inf)
-    shifted = lam
-    for b in range(piece.order + 1):
-        power = shifted
-        for degree in piece.degrees[: piece.order + 1 - b]:
-            if b <= degree:
-                result = np.maximum(result, power + degree - b)
-            power = _degree_of_product(power, w)
-        shifted = _degree_of_product(shifted, q)
-    return int(result.max())
-
-
-def _degree_of_product(a: FloatArray, b: FloatArray) -> FloatArray:
-    return np.array([max(a[i] + b[k - i] for i in range(k + 1)) for k in range(len(a))])
+    jets, along = assembled(only_continuous(pieces, joined, closed=closed, tolerance=tolerance))
+    return None if recognised_conic(rows_of_jets(jets, 1.0), along) is None else (jets, along)

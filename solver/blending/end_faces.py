@@ -20,6 +20,8 @@ from semispline.solver.errors import EdgeError
 
 # Sine of the angle at which a contact may meet an end face at least.
 _GRAZING = 0.05
+# What leaves a face by less, of its own size, stays on it.
+_ON_FACE = 1e-12
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,7 +100,10 @@ def steered(derivatives: FloatArray, by: FloatArray, face: EndFace) -> FloatArra
         curve = _cartesian(composed(derivatives[:, :, None], Reparametrisation.of(found))[:, 0])
         # Derivative of order j of the condition along the curve: of what bends only products of lower ones.
         bent = sum(comb(j - 1, i) * curve[j - 1 - i] @ face.bending @ curve[i + 1] for i in range(j - 1))
-        found[2, j] += (bent - face.normal @ curve[j]) / (face.normal @ along)
+        off = bent - face.normal @ curve[j]
+        # Rounding alone would raise the degree along.
+        if abs(off) > _ON_FACE * max(float(np.linalg.norm(curve[j])), float(np.linalg.norm(curve[1]))):
+            found[2, j] += off / (face.normal @ along)
     return found
 
 

@@ -176,7 +176,7 @@ def _judged(stated: StatedBases, solved: _Solved, seconds: float) -> BlendResult
     chosen, problem, energy = layout.options, layout.problem, solved.energy.value
     rounding = measure_energy_rounding(problem, found, surface, frame, energy)
     # What came out, judged by code that knows nothing of the above.
-    contact_a, contact_b = _checked_contacts(a, b, surface, chosen, matched, found)
+    contact_a, contact_b = _checked_contacts(stated, surface, chosen, matched, found)
     if found.certificate is not None:
         check_certificate(found.certificate)
     seam = _seam(surface, problem)
@@ -184,7 +184,7 @@ def _judged(stated: StatedBases, solved: _Solved, seconds: float) -> BlendResult
     # Cures leave rows that are C1: there curvature may jump.
     creases = measure_creases(surface, c1_lines=problem.is_cured or problem.is_rational)
     own, inherited = told_apart(creases, surface, stated.joints)
-    shape = _measured_shape(surface, a, b, chosen)
+    shape = _measured_shape(surface, *stated.shown, chosen)
     warnings = (
         shape_warnings(shape, regularity, own, options=chosen, cures=problem.cures, inherited=inherited)
         + bound_warnings(problem, layout.found)
@@ -332,15 +332,17 @@ def _surface(
 
 
 def _checked_contacts(
-    a: Base,
-    b: Base,
+    stated: StatedBases,
     surface: SemiStructuredSurface,
     options: BlendOptions,
     matched: Correspondence,
     found: Found,
 ) -> tuple[Contact, Contact]:
-    """Let the referee measure both contacts, and refuse a result that misses its limits."""
-    continuity = options.continuities
+    """Let the referee measure both contacts, and refuse a result that misses its limits.
+
+    A chain is refused by its faces, each over its own range: a short face beside a long chain rounds as it does alone.
+    """
+    a, b, continuity = stated.a, stated.b, options.continuities
     order = max(2, *options.orders)
     contact_a = measure_contact(a, Base(surface, "u0"), correspondence=Correspondence(flipped=False), order=order)
     contact_b = measure_contact(Base(surface, "u1"), b, correspondence=matched, order=order)
@@ -362,6 +364,8 @@ def _checked_contacts(
                 f"contact {name}: the blend is degenerate where it meets the base, its shape parameter is "
                 f"{shape:.1e}; {strained or 'try a larger alpha, or a box that begins higher'}"
             )
+        if stated.chains[index] is not None:
+            continue
         hidden = untold(contact, wanted)
         if hidden:
             shown = shape if wanted[0] == "G" else None

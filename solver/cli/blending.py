@@ -14,8 +14,17 @@ from typing import TYPE_CHECKING, Annotated, Any, cast, get_args
 
 import typer
 
-from semispline.solver.cli.solids import WantedEdge, no_solid, write_rounded, write_solid
-from semispline.solver.cli.wanted_bases import WantedBases
+from semispline.solver.cli.solids import (
+    SolidOutputs,
+    WantedEdge,
+    WantedJoin,
+    no_solid,
+    write_added,
+    write_joined,
+    write_rounded,
+    write_solid,
+)
+from semispline.solver.cli.wanted_bases import WantedBases, face_numbers
 from semispline.solver.cli.words import (
     EDGE_HELP,
     SURFACE_HELP,
@@ -50,27 +59,51 @@ _CUT_HELP = (
 @reports_errors
 @takes_blend_options
 def blend_command(
-    a: Annotated[str, typer.Argument(metavar="A", help=f"{SURFACE_HELP} With --replace and --round the file alone.")],
     out: Annotated[str, typer.Option("-o", "--out", metavar="OUT", help="File to write; the suffix says the format.")],
     options: BlendOptions,
+    a: Annotated[
+        str | None,
+        typer.Argument(
+            metavar="[A]",
+            help=f"{SURFACE_HELP} With --replace and --round the file alone; none with --from and --to.",
+        ),
+    ] = None,
     b: Annotated[str | None, typer.Argument(metavar="[B]", help="The same for the other surface.")] = None,
     edge_a: Annotated[str | None, typer.Option(metavar="EDGE", help=EDGE_HELP.format("A, or of FACE"))] = None,
     edge_b: Annotated[str | None, typer.Option(metavar="EDGE", help=EDGE_HELP.format("B, or another of FACE"))] = None,
     replace_face: Annotated[
-        int | None,
+        str | None,
         typer.Option(
             "--replace",
-            metavar="FACE",
-            min=0,
-            help="Take this face out of its solid and put a blend of its neighbours in.",
+            metavar="FACE[,FACE..]",
+            help="Take this face out of its solid and put a blend of its neighbours in; several that go on into each "
+            "other together.",
         ),
     ] = None,
+    keep_ends: Annotated[
+        bool,
+        typer.Option(
+            "--keep-ends", help="Keep end edges over which FACE goes on into others: contact falls to G1 near them."
+        ),
+    ] = False,
     round_edge: Annotated[
         str | None,
         typer.Option("--round", metavar="FACE:EDGE", help="Round this sharp edge, as 12:e3: the solid comes back."),
     ] = None,
     distance: Annotated[
         float | None, typer.Option(metavar="D", help="How far from the edge --round begins, along both faces.")
+    ] = None,
+    from_face: Annotated[
+        str | None,
+        typer.Option(
+            "--from",
+            metavar="FILE#FACE",
+            help="Take this planar face off its solid and join its outline to that of --to: one solid comes back.",
+        ),
+    ] = None,
+    to_face: Annotated[
+        str | None,
+        typer.Option("--to", metavar="FILE#FACE", help="The other, of this file or of another; FILE:FACE will do."),
     ] = None,
     cut_a: Annotated[str | None, typer.Option(metavar="D", help=_CUT_HELP.format("A"))] = None,
     cut_b: Annotated[str | None, typer.Option(metavar="D", help=_CUT_HELP.format("B"))] = None,
@@ -88,26 +121,64 @@ def blend_command(
         ),
     ] = "corners",
     report: Annotated[str | None, typer.Option(metavar="FILE", help="JSON with all that is known of it.")] = None,
+    plots: Annotated[
+        str | None, typer.Option(metavar="DIR", help="Draw the solid with its new faces red, into solid.png there.")
+    ] = None,
 ) -> None:
     """Join an edge of A and an edge of B by a semi-structured surface of fairest shape, or as the options say."""
-    from semispline.solver.io import check_surface_output, face_warnings
+    from semispline.solver.io import check_surface_output
 
+    if from_face is not None or to_face is not None:
+        join = WantedJoin(from_face, to_face, (a, b, edge_a, edge_b, replace_face, round_edge, distance, cut_a, cut_b))
+        join.check(out)
+        check_outputs({"--out": out, "--report": report}, join.specs)
+        write_joined(join, SolidOutputs(out, report, plots), options, split_name(split))
+        return
+    if a is None:
+        raise OptionError("blend: A missing, expected a surface or a file; with --from and --to there is none")
     if round_edge is not None or distance is not None:
         wanted_edge = WantedEdge(a, round_edge, distance, (b, edge_a, edge_b, replace_face, cut_a, cut_b))
         wanted_edge.check(out)
         check_outputs({"--out": out, "--report": report}, [a])
-        write_rounded(wanted_edge, out, options, report)
+        write_rounded(wanted_edge, SolidOutputs(out, report, plots), options)
         return
-    wanted = WantedBases(a, b, edge_a, edge_b, replace_face, (cut_a, cut_b))
+    wanted = WantedBases(a, b, edge_a, edge_b, face_numbers(replace_face), (cut_a, cut_b))
     wanted.check()
+    if keep_ends and (surfaces or with_bases or not wanted.gives_solid(out)):
+        raise OptionError(
+            "--keep-ends: found it where no solid comes back, expected --replace from STEP or BREP to such"
+        )
     if surfaces and with_bases:
         raise OptionError("--surfaces: found it together with --with-bases, expected one of them")
     at = split_name(split)
     check_surface_output(out, 3 if with_bases else 1)
     check_outputs({"--out": out, "--report": report}, wanted.specs)
-    if not (surfaces or with_bases) and wanted.gives_solid(out):
-        write_solid(wanted, out, options, report)
+    sharp = None if surfaces or with_bases else wanted.sharp_edge()
+    if not (surfaces or with_bases) and (wanted.gives_solid(out) or (sharp and wanted.holds_solids(out))):
+        write_solid(wanted, sharp, SolidOutputs(out, report, plots), options, keep_ends=keep_ends)
         return
+    if plots is not None:
+        raise OptionError(
+            "--plots: found it without a solid, expected --replace, --round or cuts of a solid's edge; "
+            f"`semispline show {out} -o PNG` draws surfaces"
+        )
+    _write_blends(wanted, out, options, at, report, alone=surfaces, with_bases=with_bases, is_sharp=sharp is not None)
+
+
+def _write_blends(
+    wanted: WantedBases,
+    out: str,
+    options: BlendOptions,
+    at: Split,
+    report: str | None,
+    *,
+    alone: bool,
+    with_bases: bool,
+    is_sharp: bool,
+) -> None:
+    """Write blends as surfaces, alone or with their bases, and the report; say why no solid came back."""
+    from semispline.solver.io import face_warnings, split_spec
+
     with progress("reading"):
         ends, said = wanted.resolved()
     trims = face_warnings(*edges_of(ends), strict=options.strict)
@@ -122,19 +193,24 @@ def blend_command(
     results[0] = replace(results[0], warnings=(*trims, *results[0].warnings))
     record = reports_record(results) | {"a": ends[0].spec, "b": ends[1].spec} | asked(ends) | wanted.record
     whole = Path(out).suffix.lower() == ".json"
+    # Of a 3dm file no solid comes back: what would be in it is added to a copy.
+    added = wanted.is_added(out) and not alone
     of_parts = [
         [
             *((result.surface,) if whole else faces_of_blend(result, at)),
-            *(base.surface for side in pair if with_bases for base in side.bases),
+            *(base.surface for side in pair if with_bases or added for base in side.bases),
         ]
         for result, pair in zip(results, pairs, strict=True)
     ]
-    _write(files, of_parts, ends[0].loaded.unit, report, record)
+    if added:
+        write_added(ends[0].spec, out, [x for part in of_parts for x in part], report, record)
+    else:
+        _write(files, of_parts, ends[0].loaded.unit, report, record)
     if said:
         typer.echo(said)
     print_resolved(ends)
-    if replace_face is not None and not (surfaces or with_bases):
-        typer.echo(no_solid(a, out))
+    if (wanted.replaced is not None or is_sharp or added) and not (alone or with_bases):
+        typer.echo(no_solid(split_spec(wanted.a)[0], out, added=added))
     for k, result in enumerate(results):
         if len(results) > 1:
             typer.echo(f"part {k + 1} of {len(results)}, in {files[k] if len(files) > 1 else out}:")

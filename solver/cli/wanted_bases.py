@@ -16,6 +16,28 @@ if TYPE_CHECKING:
     from semispline.solver.topology import Resolved
 
 
+def face_numbers(word: str | None) -> tuple[int, ...] | None:
+    """Return the faces that are to be replaced, "12" or "12,13,15"; None where nothing was said.
+
+    Raises
+    ------
+    OptionError
+
+    Examples
+    --------
+    >>> face_numbers("12,13,15")
+    (12, 13, 15)
+    """
+    if word is None:
+        return None
+    parts = [part.strip() for part in word.split(",")]
+    if not all(part.isascii() and part.isdecimal() for part in parts):
+        raise OptionError(
+            f"--replace: found {word!r}, expected a face, 12, or several that go on into each other, 12,13"
+        )
+    return tuple(map(int, parts))
+
+
 @dataclass(frozen=True)
 class WantedBases:
     """What was said of the bases on the command line."""
@@ -24,7 +46,7 @@ class WantedBases:
     b: str | None
     edge_a: str | None
     edge_b: str | None
-    replaced: int | None
+    replaced: tuple[int, ...] | None
     cuts: tuple[str | None, str | None] = (None, None)
 
     @property
@@ -35,13 +57,45 @@ class WantedBases:
     @property
     def record(self) -> dict[str, Any]:
         """What a report holds of it, beside the edges."""
-        return {} if self.replaced is None else {"replaced": self.replaced}
+        return {} if self.replaced is None else {"replaced": list(self.replaced)}
 
     def gives_solid(self, out: str) -> bool:
         """Tell whether a solid comes back: one can be read and written, and a face of it is replaced."""
+        return self.replaced is not None and self.holds_solids(out)
+
+    def is_added(self, out: str) -> bool:
+        """Tell whether a 3dm file comes back with a fillet or an edge of it blended: it holds no new solid."""
+        from pathlib import Path
+
+        from semispline.solver.io import split_spec
+
+        files = [split_spec(spec)[0] for spec in self.specs]
+        if any(Path(x).suffix.lower() != ".3dm" for x in (*files, out)) or len(set(files)) > 1:
+            return False
+        return self.replaced is not None or None not in self.cuts
+
+    def holds_solids(self, out: str) -> bool:
+        """Tell whether a solid can be read and written."""
+        from semispline.solver.io import split_spec
         from semispline.solver.topology import can_hold_a_solid
 
-        return self.replaced is not None and can_hold_a_solid(self.a) and can_hold_a_solid(out, written=True)
+        return can_hold_a_solid(split_spec(self.a)[0]) and can_hold_a_solid(out, written=True)
+
+    def sharp_edge(self) -> tuple[str, int, str] | None:
+        """Return file, face and name of the sharp edge of a solid from which both contacts are cut; None without one.
+
+        Raises
+        ------
+        EdgeError, FileError, ComputationError
+        """
+        from semispline.solver.io import split_spec
+        from semispline.solver.topology import can_hold_a_solid, sharp_edge_between
+
+        if self.replaced is not None or self.b is None or None in self.cuts:
+            return None
+        if not can_hold_a_solid(split_spec(self.a)[0]):
+            return None
+        return sharp_edge_between((self.a, self.b), (self.edge_a, self.edge_b))
 
     def check(self) -> None:
         """Refuse what does not go together before a file is read.
@@ -74,11 +128,11 @@ class WantedBases:
         ------
         EdgeError, FileError, ComputationError
         """
-        from semispline.solver.topology import moved_edges, replaced_pair, resolve_edges
+        from semispline.solver.topology import moved_edges, replaced_run, resolve_edges
 
         if self.replaced is not None:
-            pair = replaced_pair(self.a, self.replaced, self.edge_a, self.edge_b)
-            return [pair.a, pair.b], pair.said
+            run = replaced_run(self.a, self.replaced, self.edge_a, self.edge_b)
+            return [run.a, run.b], run.said
         assert self.b is not None
         if self.cuts != (None, None):
             return moved_edges((self.a, self.b), (self.edge_a, self.edge_b), self.cuts), ""
@@ -90,6 +144,8 @@ class WantedBases:
         from semispline.solver.io import split_spec
         from semispline.solver.topology import is_near, is_of_a_face
 
+        assert self.replaced is not None
+        face = self.replaced[0]
         if self.cuts != (None, None):
             raise OptionError("--replace: found it together with --cut-a or --cut-b, expected one of them")
         if self.b is not None:
@@ -100,20 +156,18 @@ class WantedBases:
                 f"--replace: found {self.a!r}, expected the file alone, {path!r}: --replace says which face"
             )
         if (self.edge_a is None) != (self.edge_b is None):
-            raise OptionError(
-                f"--edge-a and --edge-b: found one of them, expected none or two edges of face {self.replaced}"
-            )
+            raise OptionError(f"--edge-a and --edge-b: found one of them, expected none or two edges of face {face}")
         for name, word in (("--edge-a", self.edge_a), ("--edge-b", self.edge_b)):
             if word is not None and is_near(word):
                 raise OptionError(
-                    f"{name}: found {word!r} together with --replace, expected an edge of face {self.replaced}, as "
+                    f"{name}: found {word!r} together with --replace, expected an edge of face {face}, as "
                     "e1; two points say themselves which face lies between: FILE FILE --edge-a near=x,y,z "
                     "--edge-b near=x,y,z"
                 )
             if word is not None and not is_of_a_face(word):
                 raise OptionError(
-                    f"{name}: found {word!r}, expected an edge of face {self.replaced}, as e1: "
-                    f"`semispline list {path} --edges {self.replaced}` lists them"
+                    f"{name}: found {word!r}, expected an edge of face {face}, as e1: "
+                    f"`semispline list {path} --edges {face}` lists them"
                 )
 
     def _check_cuts(self) -> None:

@@ -41,6 +41,7 @@ from .occ_writing import step_text as step_text
 from .rhino import RhinoFace as RhinoFace
 from .rhino import curve_evaluator as curve_evaluator
 from .rhino import open_3dm as open_3dm
+from .rhino_adding import with_surfaces as with_surfaces
 from .surface_files import OCC_SUFFIXES as OCC_SUFFIXES
 from .surface_files import LoadedSurface as LoadedSurface
 from .surface_files import approximation_warning as approximation_warning

@@ -168,12 +168,13 @@ def write_3dm(path: Path, surfaces: Sequence[BSplineSurface], unit: str) -> None
     name = next(name for name, known in _UNITS.items() if known == unit)
     file.Settings.ModelUnitSystem = getattr(rhino3dm.UnitSystem, name)
     for surface in surfaces:
-        file.Objects.AddSurface(_nurbs_surface(rhino3dm, surface))
+        file.Objects.AddSurface(nurbs_surface(rhino3dm, surface))
     if not file.Write(str(path), 0):
         raise FileError("3dm: openNURBS could not write the file; check the disk, or try .json or .step")
 
 
-def _nurbs_surface(rhino3dm: Any, surface: BSplineSurface) -> Any:
+def nurbs_surface(rhino3dm: Any, surface: BSplineSurface) -> Any:
+    """Return a surface as openNURBS has it."""
     n_u, n_v = surface.control_points.shape[:2]
     rational = surface.weights is not None
     spline = rhino3dm.NurbsSurface.Create(3, rational, surface.degree_u + 1, surface.degree_v + 1, n_u, n_v)

@@ -45,6 +45,7 @@ from .operations import bounding_box as bounding_box
 from .operations import clamped_surface as clamped_surface
 from .operations import insert_knots as insert_knots
 from .operations import map_domain as map_domain
+from .operations import restrict_v as restrict_v
 from .operations import reverse_u as reverse_u
 from .operations import reverse_v as reverse_v
 from .operations import split_v as split_v

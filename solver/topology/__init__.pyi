@@ -15,6 +15,7 @@ from .edge_blends import blend_edges as blend_edges
 from .edge_listing import edge_lines as edge_lines
 from .edge_listing import edges_record as edges_record
 from .edge_moving import moved_edges as moved_edges
+from .edge_moving import sharp_edge_between as sharp_edge_between
 from .face_edges import FaceEdge as FaceEdge
 from .face_edges import FaceEdges as FaceEdges
 from .face_edges import ResolvedEdge as ResolvedEdge
@@ -23,6 +24,8 @@ from .face_edges import is_of_a_face as is_of_a_face
 from .face_edges import list_edges as list_edges
 from .face_meshes import EdgeLine as EdgeLine
 from .face_meshes import FaceMesh as FaceMesh
+from .face_runs import ReplacedRun as ReplacedRun
+from .face_runs import replaced_run as replaced_run
 from .free_contact import FreeContact as FreeContact
 from .free_contact import measure_free_contact as measure_free_contact
 from .listing import place_lines as place_lines
@@ -40,4 +43,8 @@ from .resolving import resolve_edges as resolve_edges
 from .solid_blends import SolidBlend as SolidBlend
 from .solid_blends import can_hold_a_solid as can_hold_a_solid
 from .solid_blends import solid_with_blend as solid_with_blend
+from .solid_contacts import SolidContact as SolidContact
+from .solid_contacts import contacts_in_solid as contacts_in_solid
+from .solid_contacts import outward_at_border as outward_at_border
+from .solid_joins import joined_solid as joined_solid
 from .solid_rounds import solid_with_round as solid_with_round

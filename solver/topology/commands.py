@@ -3,24 +3,36 @@
 from __future__ import annotations
 
 import shlex
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from math import floor, log10
+from pathlib import Path
 
 from semispline.solver.errors import EdgeError
+from semispline.solver.io import OCC_SUFFIXES
 from semispline.solver.topology.between import Between
+from semispline.solver.topology.clearance import clearance
 from semispline.solver.topology.contact_words import beyond, contact_word, has_exact_bases, linked
 from semispline.solver.topology.end_faces import end_edges, going_on
-from semispline.solver.topology.half_edges import EdgeGraph
+from semispline.solver.topology.face_runs import face_run, runs_on
+from semispline.solver.topology.half_edges import NONE, EdgeGraph
 from semispline.solver.topology.place import Place, PlaceSide
 from semispline.solver.topology.relations import Relations
 from semispline.solver.topology.replacing import pair_of
+from semispline.solver.topology.sharp_chains import sharp_chain
+from semispline.solver.topology.solid_blends import can_hold_a_solid
 
 # A contact moves into its face by this share of the way to the next edge, where nobody says how far.
 _OF_CLEARANCE = 1 / 3
 
 
-def with_commands(graph: EdgeGraph, relations: Relations, place: Place, betweens: Mapping[int, Between]) -> Place:
+def with_commands(
+    graph: EdgeGraph,
+    relations: Relations,
+    place: Place,
+    betweens: Mapping[int, Between],
+    chains: Sequence[Sequence[int]] = (),
+) -> Place:
     """Return a place with its commands; a chain that is no single blend has those of its members, one by one.
 
     Parameters
@@ -30,19 +42,42 @@ def with_commands(graph: EdgeGraph, relations: Relations, place: Place, betweens
     place : Place
     betweens : dict
         Face -> how it lies between the faces that are to be blended.
+    chains : sequence of sequence of int
+        Faces that go on into each other.
     """
+    if place.faces and can_hold_a_solid(graph.path):
+        command = _of_run(graph, relations, place, chains)
+        if command is not None:
+            return replace(place, commands=(command,))
     words = _words(graph, relations, place, betweens)
     if words is not None:
         return replace(place, commands=(_between_chains(graph.path, place, words),))
+    if place.kind == "sharp edge" and Path(graph.path).suffix.lower() in OCC_SUFFIXES:
+        command = _rounding(graph, relations, place)
+        # What cannot be a solid may be a blend all the same.
+        return replace(place, commands=(command,) if command else tuple(two_faces(graph.path, place, alone=True)))
     if not place.faces:
         return replace(place, commands=tuple(two_faces(graph.path, place)))
     commands = []
     for face in place.faces:
         between = betweens[face]
         ends = end_edges(graph, face, (between.a.uses, between.b.uses))
-        alone = bool(going_on(graph, relations, ends))
-        commands.append(replacing(graph.path, face, _edges_to_name(graph, relations, between), alone=alone))
+        keeps = bool(going_on(graph, relations, ends))
+        names = _edges_to_name(graph, relations, between)
+        commands.append(replacing(graph.path, [face], names, keep_ends=keeps))
     return replace(place, commands=tuple(commands))
+
+
+def _of_run(graph: EdgeGraph, relations: Relations, place: Place, chains: Sequence[Sequence[int]]) -> str | None:
+    """Return the command that replaces a chain, or the one that a fillet belongs to; None where none does."""
+    (faces,) = [list(chain) for chain in chains if set(place.faces) <= set(chain)][:1] or [list(place.faces)]
+    try:
+        run = face_run(graph, relations, faces)
+    except EdgeError:
+        return None
+    if run.is_plain:
+        return None
+    return replacing(graph.path, run.faces, keep_ends=runs_on(graph, relations, run))
 
 
 def _words(
@@ -75,6 +110,21 @@ def _words(
     return contact_word(graph, relations, found[0]), contact_word(graph, relations, found[1])
 
 
+def _rounding(graph: EdgeGraph, relations: Relations, place: Place) -> str | None:
+    """Return the command that rounds a sharp edge with all that go on in it; None where no solid can come back."""
+    face, edge = place.a.face, place.a.edge
+    row = graph.uses.of_face(face).start + int(edge[1:])
+    try:
+        chain = sharp_chain(graph, relations, row, edge)
+    except EdgeError:
+        return None
+    if any(graph.uses.other[use] == NONE for use in chain.rows):
+        return None
+    least = min(clearance(graph, *pair) for pair in zip(chain.rows, chain.others, strict=True))
+    words = ["semispline", "blend", _safe(graph.path), "--round", f"{face}:{edge}", "--distance"]
+    return shlex.join([*words, f"{_two_digits(least * _OF_CLEARANCE):g}", "-o", f"round-{face}{edge}.step"])
+
+
 def _rows(graph: EdgeGraph, side: PlaceSide) -> list[int]:
     """Return the uses along a side."""
     return [graph.uses.of_face(face).start + int(edge[1:]) for face, edge in ((side.face, side.edge), *side.more)]
@@ -88,21 +138,21 @@ def _between_chains(path: str, place: Place, words: tuple[str, str]) -> str:
     return shlex.join(["semispline", "blend", file, file, "--edge-a", words[0], "--edge-b", words[1], "-o", out])
 
 
-def replacing(path: str, face: int, edges: tuple[str, str] | None = None, *, alone: bool = False) -> str:
-    """Return the command that blends the faces beyond a face, from one of its edges to another where they are named.
-
-    `alone` asks for the blend as a surface, instead of the solid with it.
+def replacing(path: str, faces: Sequence[int], edges: tuple[str, str] | None = None, *, keep_ends: bool = False) -> str:
+    """Return the command that blends the faces beyond some, from one edge of the first to another where they are named.
 
     Examples
     --------
-    >>> replacing("my part.step", 65)
+    >>> replacing("my part.step", [65])
     "semispline blend 'my part.step' --replace 65 -o blend-65.step"
+    >>> replacing("part.step", [12, 13], keep_ends=True)
+    'semispline blend part.step --replace 12,13 --keep-ends -o blend-12.step'
     """
-    words = ["semispline", "blend", _safe(path), "--replace", str(face)]
+    words = ["semispline", "blend", _safe(path), "--replace", ",".join(map(str, faces))]
     if edges is not None:
         words += ["--edge-a", edges[0], "--edge-b", edges[1]]
-    words += ["--surfaces"] * alone
-    return shlex.join([*words, "-o", f"blend-{face}.step"])
+    words += ["--keep-ends"] * (keep_ends and can_hold_a_solid(path))
+    return shlex.join([*words, "-o", f"blend-{faces[0]}.step"])
 
 
 def _edges_to_name(graph: EdgeGraph, relations: Relations, between: Between) -> tuple[str, str] | None:
@@ -117,8 +167,11 @@ def _edges_to_name(graph: EdgeGraph, relations: Relations, between: Between) -> 
     return graph.uses.name(rows[0]), graph.uses.name(rows[1])
 
 
-def two_faces(path: str, place: Place) -> Iterator[str]:
-    """Yield the command of two edges; of a gap with as many on both sides, of each edge and the one that faces it."""
+def two_faces(path: str, place: Place, *, alone: bool = False) -> Iterator[str]:
+    """Yield the command of two edges; of a gap with as many on both sides, of each edge and the one that faces it.
+
+    `alone` asks for the blend as a surface, instead of the solid with it.
+    """
     sides = [[(side.face, side.edge), *side.more] for side in (place.a, place.b)]
     cuts: list[str] = []
     if place.kind == "sharp edge":
@@ -126,7 +179,7 @@ def two_faces(path: str, place: Place) -> Iterator[str]:
         cuts = ["--cut-a", distance, "--cut-b", distance]
     for a, b in zip(*sides, strict=True) if len(sides[0]) == len(sides[1]) else [(sides[0][0], sides[1][0])]:
         words = ["semispline", "blend", *(f"{_safe(path)}#{face}" for face, _ in (a, b))]
-        words += ["--edge-a", a[1], "--edge-b", b[1], *cuts]
+        words += ["--edge-a", a[1], "--edge-b", b[1], *cuts, *["--surfaces"] * alone]
         # Two faces may have several edges in common.
         out = "-".join([place.kind.partition(" ")[0], *(f"{face}{edge}" for face, edge in (a, b))])
         yield shlex.join([*words, "-o", f"{out}.step"])

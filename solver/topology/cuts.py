@@ -25,12 +25,20 @@ from semispline.solver.judge import cad_measures
 from semispline.solver.splines import BSplineCurve, BSplineSurface, EdgeName, parse_edge
 from semispline.solver.topology.face_jets import Face, dot
 from semispline.solver.topology.outlines import Outline
-from semispline.solver.topology.parallels import Paths, crossings, focal_distance, lost_distances, paths_from
+from semispline.solver.topology.parallels import (
+    Paths,
+    crossings,
+    focal_distance,
+    lost_distances,
+    paths_from,
+    turns_over,
+)
+from semispline.solver.topology.self_meeting import meeting_distance
 from semispline.solver.topology.trim_curves import TrimCurve
 
 _PARAMETER = re.compile(r"([uv])=(.+)")
 # Paths of which the face's limits are told; places of a free contact between which it is interpolated.
-_PATHS, _PLACES, _DEGREE = 41, 161, 5
+_PATHS, _AGAIN, _PLACES, _DEGREE = 41, 5, 161, 5
 # Divisions to the end of a free contact, and parts of each: 40 bisections' worth, a step far below any tolerance.
 _DIVISIONS, _PARTS = 8, 32
 # More places where these are too few: the curve between them may be off by this share of what a gap may be.
@@ -39,7 +47,7 @@ _MOST_PLACES, _SHARE, _NEWTON = 2600, 0.1, 4
 _SNAP = 1e-9
 # Of the size of a face: what is farther is hardly in it; where one begins to look how far it goes, and how closely.
 _FAR, _NEAREST = 2.0, 1e-3
-_BEYOND, _OVER_A_POLE = "beyond the face", "over a pole of the face"
+_BEYOND, _OVER_A_POLE, _TO_ITSELF = "beyond the face", "over a pole of the face", "round the face to itself"
 _INTERVALS = 16
 _GAUSS = np.polynomial.legendre.leggauss(6)
 # Times that lengths of chords are made lengths of the curve through their ends.
@@ -143,35 +151,57 @@ def moved_contact(
         The face does not reach so far: the largest possible distance or parameter is said.
     """
     name = None if edge is None else parse_edge(edge)
+    face = Face(surface)
+    curve = _named_curve(surface, name) if name is not None else _trim_curve(outline, title)
     if cut.parameter is not None:
         if name is None:
             raise EdgeError(f"{title}: the edge is a free curve, along which no parameter is constant; give a distance")
-        return _to_parameter(surface, name, cut, outline, title)
-    assert cut.distance is not None
-    face = Face(surface)
-    curve = _named_curve(surface, name) if name is not None else _trim_curve(outline, title)
-    inside = curve.ends[0] + (np.arange(_PATHS) + 0.5) / _PATHS * (curve.ends[1] - curve.ends[0])
-    paths = _checked_paths(face, curve, inside, cut.distance, outline, title)
+        found, inside = _to_parameter(face, name, cut, outline, title), ""
+    else:
+        assert cut.distance is not None
+        found, inside = _to_distance(face, curve, name, cut.distance, outline, tolerance, millimetres, title)
+    if isinstance(found, EdgeName):
+        return MovedContact(found, None, f"{found}{inside}")
+    moved_by = "" if cut.distance is None else f" {cut.distance:g} into its face"
+    free = TrimCurve(
+        name=f"edge {word} moved{moved_by}",
+        surface=surface,
+        edge=None,
+        pcurve=found,
+        keep="left" if curve.sign > 0 else "right",
+        tolerance=0.0,
+        millimetres=millimetres,
+    )
+    return MovedContact(None, free, f"a free curve{inside}")
+
+
+def _to_distance(
+    face: Face,
+    curve: _Curve,
+    name: EdgeName | None,
+    distance: float,
+    outline: Outline,
+    tolerance: float,
+    millimetres: float | None,
+    title: str,
+) -> tuple[EdgeName | BSplineCurve, str]:
+    """Return the line, or the curve in the parameters, that a contact is moved to, and what is said of it."""
+    # Of a closed curve the first places come again a turn later.
+    inside = curve.ends[0] + (np.arange(_PATHS + _AGAIN * curve.closed) + 0.5) / _PATHS * (
+        curve.ends[1] - curve.ends[0]
+    )
+    paths = _checked_paths(face, curve, inside, distance, outline, title)
+    said = f", {distance:g} inside"
     if name is not None:
         axis = 0 if name.direction == "u" else 1
         last = paths.at[-1]
         speed = np.linalg.norm(face.jet(last, 1)[(1, 0) if axis == 0 else (0, 1)], axis=1)
         if (np.abs(last[:, axis] - last[_PATHS // 2, axis]) * speed).max() <= tolerance:
-            value = _exactly(face, paths, axis, cut.distance)
-            moved = _line(surface, name, value, float(last[_PATHS // 2, 1 - axis]), outline, title)
-            return MovedContact(moved, None, f"{moved}, {cut.distance:g} inside")
-    through = _fine_enough(face, curve, cut.distance, outline, millimetres, title)
+            value = _exactly(face, paths, axis, distance)
+            return _line(face, name, value, float(last[_PATHS // 2, 1 - axis]), outline, title), said
+    through = _fine_enough(face, curve, distance, outline, millimetres, title)
     points = np.column_stack([through.c, np.zeros(len(through.c))])
-    moved_curve = TrimCurve(
-        name=f"edge {word} moved {cut.distance:g} into its face",
-        surface=surface,
-        edge=None,
-        pcurve=BSplineCurve(_DEGREE, through.t, points),
-        keep="left" if curve.sign > 0 else "right",
-        tolerance=0.0,
-        millimetres=millimetres,
-    )
-    return MovedContact(None, moved_curve, f"a free curve, {cut.distance:g} inside")
+    return BSplineCurve(_DEGREE, through.t, points), said
 
 
 @dataclass(frozen=True, eq=False)
@@ -184,14 +214,21 @@ class _Curve:
     closed: bool
 
     def paths(self, face: Face, x: FloatArray, distance: float) -> Paths:
-        """Return the paths from places of the edge into the face."""
+        """Return the paths from places of the edge into the face; of a closed one they may be a turn later."""
+        (first, last), turns = self.ends, np.zeros(len(x))
+        if self.closed:
+            turns = np.floor((x - first) / (last - first))
+            # Its end is not the start of the next turn.
+            turns[x == last] = 0.0
+            x = x - turns * (last - first)
         at, slope = (self.spline.evaluate(x, order)[:, :2] for order in (0, 1))
-        return paths_from(face, at, slope, self.sign, distance)
+        ends = self.spline.evaluate(np.array([first, last]))[:, :2]
+        return paths_from(face, at + turns[:, None] * (ends[1] - ends[0]), slope, self.sign, distance)
 
     def run_out(self, face: Face, x: FloatArray, distance: float, outline: Outline) -> NDArray[np.bool_]:
         """Tell which paths come to an edge of the face at an end of this one first."""
-        met = crossings(self.paths(face, x, distance), outline.ends).min(axis=0, initial=np.inf)
-        return np.asarray(met <= distance)
+        met = crossings(self.paths(face, x, distance), outline.ends, outline.periods)
+        return np.asarray(met.min(axis=0, initial=np.inf) <= distance)
 
     def end_inside(self, face: Face, inside: float, outside: float, distance: float, outline: Outline) -> float:
         """Return the last place, towards an end, whose path stays inside."""
@@ -235,66 +272,78 @@ def _checked_paths(face: Face, curve: _Curve, x: FloatArray, distance: float, ou
     """
     good, tried = 0.0, distance if distance <= _FAR * face.size else _NEAREST * face.size
     paths = curve.paths(face, x, tried)
-    reach, why = _reach(face, paths, outline)
+    reach, why = _reach(face, curve, x, paths, outline)
     if tried == distance:
         if distance < reach:
             return paths
         tried = min(_NEAREST * face.size, distance / 2)
         paths = curve.paths(face, x, tried)
-        reach, why = _reach(face, paths, outline)
+        reach, why = _reach(face, curve, x, paths, outline)
     while tried < reach:
         if tried == distance:
             return paths
         good, tried = tried, min(2 * tried, distance)
         paths = curve.paths(face, x, tried)
-        reach, why = _reach(face, paths, outline)
+        reach, why = _reach(face, curve, x, paths, outline)
     # Where paths are lost is known by steps alone, and what was passed before is no end.
-    while not (reach > good and why == _BEYOND) and tried - good > _NEAREST * tried:
+    while not (reach > good and why != _OVER_A_POLE) and tried - good > _NEAREST * tried:
         middle = (good + tried) / 2
-        further, then = _reach(face, curve.paths(face, x, middle), outline)
+        further, then = _reach(face, curve, x, curve.paths(face, x, middle), outline)
         good, tried, why = (middle, tried, why) if middle < further else (good, middle, then)
         reach = good
     raise EdgeError(f"{title}: {distance:g} reaches {why}, expected a distance below {reach:.4g}")
 
 
-def _reach(face: Face, paths: Paths, outline: Outline) -> tuple[float, str]:
+def _reach(face: Face, curve: _Curve, x: FloatArray, paths: Paths, outline: Outline) -> tuple[float, str]:
     """Return the distance at which paths leave the face or cross, or all have run out, and what is there.
 
     It is infinite where they do not.
     """
-    leaves = crossings(paths, outline.others).min(axis=0, initial=np.inf)
-    ends = crossings(paths, outline.ends).min(axis=0, initial=np.inf)
-    lost = lost_distances(face, paths)
-    beyond, pole = (float(np.where(x < ends, x, np.inf).min()) for x in (leaves, lost))
+    leaves, first = (
+        crossings(paths, lines, outline.periods).min(axis=0, initial=np.inf) for lines in (outline.others, outline.ends)
+    )
+    # An edge that touches this one and is met between paths that go on ends nothing: the face ends there.
+    inner = first < np.minimum(np.maximum.accumulate(first), np.maximum.accumulate(first[::-1])[::-1])
+    leaves = np.where(inner, np.minimum(leaves, np.nextafter(first, 0.0)), leaves)
+    own = crossings(paths, outline.own, outline.periods, again=True).min(axis=0, initial=np.inf)
+    beyond, again, pole = (
+        float(np.where(x < first, x, np.inf).min()) for x in (leaves, own, lost_distances(face, paths))
+    )
+    round_ = _PATHS if curve.closed else None
+    itself = meeting_distance(paths, x, lambda x, far: curve.paths(face, x, far), outline.periods, round_, first)
     # Where all run out at the ends the contact has shrunk to nothing.
-    nothing = float(ends.max())
+    nothing = float(first.max())
     largest = min(beyond, nothing, focal_distance(paths))
-    return (pole, _OVER_A_POLE) if pole < largest else (largest, _BEYOND)
+    return min((largest, _BEYOND), (min(again, itself), _TO_ITSELF), (pole, _OVER_A_POLE))
 
 
-def _to_parameter(surface: BSplineSurface, name: EdgeName, cut: Cut, outline: Outline, title: str) -> MovedContact:
+def _to_parameter(face: Face, name: EdgeName, cut: Cut, outline: Outline, title: str) -> EdgeName | BSplineCurve:
     """Return a contact moved to a line of constant parameter."""
     assert cut.parameter is not None
     if cut.direction != name.direction:
         raise EdgeError(f"{title}: found {cut.direction}, but along the edge {name} {name.direction} is constant")
     axis, at = (0 if name.direction == "u" else 1), cut.parameter
-    edge = surface.domain[axis][name.end] if name.at is None else name.at
-    low, high = name.part or surface.domain[1 - axis]
+    domain = face.surface.domain
+    edge = domain[axis][name.end] if name.at is None else name.at
+    low, high = name.part or domain[1 - axis]
     into = 1.0 if name.end == 0 else -1.0
-    reach = np.inf
+    # Round a closed surface the edge itself is met.
+    period = float(outline.periods[axis])
+    reach = period or np.inf
     for value in low + (np.arange(_PATHS) + 0.5) / _PATHS * (high - low):
-        ends, others = (_met(lines, 1 - axis, value, edge, into) for lines in (outline.ends, outline.others))
+        ends, others = (_met(outline, lines, 1 - axis, value, edge, into) for lines in (outline.ends, outline.others))
         reach = min(reach, others if others < ends else np.inf)
     middle = (low + high) / 2
-    reach = min(reach, _met(outline.ends, 1 - axis, middle, edge, into))
+    reach = min(reach, _met(outline, outline.ends, 1 - axis, middle, edge, into))
+    if period and not 0 < (at - edge) * into < reach and domain[axis][0] <= at <= domain[axis][1]:
+        at += into * period
     if not 0 < (at - edge) * into < reach:
         first, last = sorted((edge, edge + into * reach))
         raise EdgeError(
-            f"{title}: {cut.direction}={at:g} lies beyond the face, expected {cut.direction} between {first:.6g} and "
-            f"{last:.6g}"
+            f"{title}: {cut.direction}={cut.parameter:g} lies beyond the face, expected {cut.direction} between "
+            f"{first:.6g} and {last:.6g}"
         )
-    moved = _line(surface, name, at, middle, outline, title)
-    return MovedContact(moved, None, str(moved))
+    return _line(face, name, at, middle, outline, title)
 
 
 def _exactly(face: Face, paths: Paths, axis: int, distance: float) -> float:
@@ -309,7 +358,8 @@ def _exactly(face: Face, paths: Paths, axis: int, distance: float) -> float:
         at[:, axis] = value
         return np.asarray(np.linalg.norm(face.jet(at, 1)[(1, 0) if axis == 0 else (0, 1)], axis=1))
 
-    breaks = face.surface.breakpoints[axis]
+    turns = np.arange(-1.0, 2.0)[:, None] * face.periods[axis]
+    breaks = np.unique(face.surface.breakpoints[axis] + turns)
 
     def missing(value: float) -> float:
         low, high = sorted((start, value))
@@ -322,39 +372,66 @@ def _exactly(face: Face, paths: Paths, axis: int, distance: float) -> float:
     return float(brentq(missing, end - margin, end + margin, xtol=1e-15 * abs(end - start)))
 
 
-def _line(surface: BSplineSurface, name: EdgeName, at: float, middle: float, outline: Outline, title: str) -> EdgeName:
+def _line(
+    face: Face, name: EdgeName, at: float, middle: float, outline: Outline, title: str
+) -> EdgeName | BSplineCurve:
     """Return the name of a line, as far as the edges of the face at both sides of its middle.
 
     Where it runs past the end of its edge without meeting the next one, at a corner that juts into the face, it ends
-    beside that end.
+    beside that end. A line that runs over the seam of the surface has no name: it is returned as a curve.
     """
     axis = 0 if name.direction == "u" else 1
-    first, last = surface.domain[1 - axis]
-    own = name.part or (first, last)
+    first, last = face.surface.domain[1 - axis]
+    own, period = name.part or (first, last), float(outline.periods[1 - axis])
 
     def reach(sign: float) -> float:
-        ends, others = (_met(lines, axis, at, middle, sign) for lines in (outline.ends, outline.others))
+        ends, others = (_met(outline, lines, axis, at, middle, sign) for lines in (outline.ends, outline.others))
         beside = sign * (own[1 if sign > 0 else 0] - middle)
         return ends if np.isfinite(ends) and ends <= others else min(others, beside)
 
     low, high = middle - reach(-1.0), middle + reach(1.0)
     near = _SNAP * (last - first)
-    low, high = (first if low <= first + near else low), (last if high >= last - near else high)
     if not high - low > near:
         raise EdgeError(f"{title}: the face has no width there")
-    part = None if (low, high) == (first, last) else (low, high)
-    return EdgeName(name.direction, name.end, at, part)
+    if period and high - low >= period - near:
+        low, high = first, last
+    turns = np.floor((low + near - first) / period) * period if period else 0.0
+    low, high = low - turns, high - turns
+    if period and high > last + near:
+        points = np.zeros((2, 3))
+        points[:, axis], points[:, 1 - axis] = at, (low, high)
+        return BSplineCurve(1, np.array([low, low, high, high]), points)
+    low, high = (first if low <= first + near else low), (last if high >= last - near else high)
+    return EdgeName(
+        name.direction,
+        name.end,
+        _within(face, axis, at, name.end, outline),
+        None if (low, high) == (first, last) else (low, high),
+    )
 
 
-def _met(lines: Sequence[FloatArray], axis: int, at: float, start: float, sign: float) -> float:
+def _within(face: Face, axis: int, at: float, end: int, outline: Outline) -> float | None:
+    """Return a parameter in the turn that the surface has; None for its own end, at which the edge is a natural one."""
+    (first, last), period = face.surface.domain[axis], float(outline.periods[axis])
+    if not period:
+        return at
+    at = first + (at - first) % period
+    return None if min(at - first, last - at) <= _SNAP * period else at
+
+
+def _met(outline: Outline, lines: Sequence[FloatArray], axis: int, at: float, start: float, sign: float) -> float:
     """Return how far from `start`, in a direction along a line of constant parameter, polylines are met first."""
     nearest = np.inf
+    low, high = np.empty(2), np.empty(2)
+    low[axis] = high[axis] = at
+    low[1 - axis], high[1 - axis] = sorted((start, start + sign * outline.periods[1 - axis]))
     for line in lines:
-        off, along = line[:, axis] - at, line[:, 1 - axis]
-        rows = np.flatnonzero((off[:-1] <= 0) != (off[1:] <= 0))
-        share = off[rows] / (off[rows] - off[rows + 1])
-        away = sign * (along[rows] + share * (along[rows + 1] - along[rows]) - start)
-        nearest = min(nearest, float(away[away > 0].min(initial=np.inf)))
+        for turn in turns_over(line, outline.periods, low, high):
+            off, along = line[:, axis] + turn[axis] - at, line[:, 1 - axis] + turn[1 - axis]
+            rows = np.flatnonzero((off[:-1] <= 0) != (off[1:] <= 0))
+            share = off[rows] / (off[rows] - off[rows + 1])
+            away = sign * (along[rows] + share * (along[rows + 1] - along[rows]) - start)
+            nearest = min(nearest, float(away[away > 0].min(initial=np.inf)))
     return nearest
 
 

@@ -161,7 +161,9 @@ def _in_unit(contact: Contact, side: EdgeBase, which: str) -> Contact:
     return replace(contact, allowed=contact.allowed | {"gap": gap})
 
 
-def _ended(base: Base | Chain, ends_on: EndFaces) -> Chain:
+def _ended(base: Base | Chain, ends_on: EndFaces) -> Base | Chain:
+    if ends_on == (None, None):
+        return base
     return replace(base if isinstance(base, Chain) else chain([base]), ends_on=ends_on)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
@@ -28,6 +29,7 @@ from semispline.solver.topology.measuring import MeasuredEdges, measured_edges
 from semispline.solver.topology.outlines import border, curved_edges, outline_of
 from semispline.solver.topology.relations import relate
 from semispline.solver.topology.resolving import resolve_edge
+from semispline.solver.topology.sharp_chains import shared_sharp_edge
 from semispline.solver.topology.trim_curves import TrimCurve, read_trim_curves
 
 _NAMES = ("A", "B")
@@ -74,6 +76,74 @@ def moved_edges(
     return [replace(one, loaded=loaded) for one, loaded in zip(found, same, strict=True)]
 
 
+def moved_uses(measured: MeasuredEdges, rows: Sequence[int], cuts: Sequence[str]) -> list[ResolvedEdge]:
+    """Return uses of edges by faces of one file, each moved into its face; errors as `moved_edges`.
+
+    Parameters
+    ----------
+    measured : MeasuredEdges
+    rows : sequence of int
+    cuts : sequence of str
+        As `moved_edges` has them.
+
+    Raises
+    ------
+    EdgeError
+        Of all faces that do not reach so far, how far they do.
+    """
+    uses, path = measured.graph.uses, measured.graph.path
+    ends = [
+        _Wanted(
+            "A", f"{path}#{uses.face[row]}", uses.name(row), parse_cut(cut), measured, row, f"face {uses.face[row]}"
+        )
+        for row, cut in zip(rows, cuts, strict=True)
+    ]
+    surfaces, curves = _surfaces([end.spec for end in ends]), _curves(ends)
+    found, refused = [], []
+    for end, loaded, row in zip(ends, surfaces, rows, strict=True):
+        assert end.cut is not None
+        try:
+            found.append(_moved_in_face(end, end.cut, measured, row, loaded, curves))
+        except EdgeError as error:
+            refused.append(str(error))
+    if refused:
+        raise EdgeError("; ".join(dict.fromkeys(refused)))
+    return found
+
+
+def sharp_edge_between(specs: tuple[str, str], edges: tuple[str | None, str | None]) -> tuple[str, int, str] | None:
+    """Return file, face and edge where two words for edges mean one sharp edge that two faces of a solid share.
+
+    Parameters
+    ----------
+    specs, edges
+        As `moved_edges` has them.
+
+    Returns
+    -------
+    tuple or None
+        The face and the name of the edge are those of the first word.
+
+    Raises
+    ------
+    EdgeError
+        The faces share no edge, or several.
+    FileError, ComputationError
+        As `read_edges`.
+    """
+    (path, face), (other_path, other) = (split_spec(spec) for spec in specs)
+    said = [None if word is None else word.strip() for word in edges]
+    if path != other_path or any(word is not None and not re.fullmatch(r"e\d+", word) for word in said):
+        return None
+    read = cache(measured_edges)
+    one, two = _shared_edge(read, specs) if said == [None, None] else said
+    if one is None or two is None or face is None or other is None:
+        return None
+    graph = read(path).graph
+    a, b = row_of(graph, one, face, "--edge-a"), row_of(graph, two, other, "--edge-b")
+    return (path, face, one) if shared_sharp_edge(graph, relate(graph), a, b) else None
+
+
 @dataclass(frozen=True, eq=False)
 class _Wanted:
     """One side: what was said, and the use of the edge where it is one of a face."""
@@ -84,6 +154,7 @@ class _Wanted:
     cut: Cut | None
     measured: MeasuredEdges | None = None
     row: int | None = None
+    called: str | None = None
 
     @property
     def option(self) -> str:
@@ -92,6 +163,8 @@ class _Wanted:
     @property
     def title(self) -> str:
         """How messages of its cut begin."""
+        if self.called is not None:
+            return self.called
         cut = self.cut
         assert cut is not None
         value = f"{cut.distance:g}" if cut.distance is not None else f"{cut.direction}={cut.parameter:g}"

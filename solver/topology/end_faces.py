@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from semispline.solver.arrays import FloatArray
-from semispline.solver.blending import BlendResult, EndFace, end_on_face, face_at
+from semispline.solver.blending import BlendResult, Chain, EndFace, end_on_face, face_at
 from semispline.solver.errors import EdgeError
 from semispline.solver.io import read_surfaces
 from semispline.solver.options import BlendOptions
@@ -16,12 +16,15 @@ from semispline.solver.splines import BSplineSurface, Surface, bounding_box
 from semispline.solver.topology.edge_base import EdgeBase
 from semispline.solver.topology.edge_blends import blend_bases
 from semispline.solver.topology.half_edges import NONE, EdgeGraph
+from semispline.solver.topology.kept_edges import KeptEdge
 from semispline.solver.topology.relations import Relations
 
 # Degrees: where an end edge is met at less the fillet goes on beyond it.
 _GOES_ON = 2.0
 # Of the size of the blend: nearer to a curved face an end curve is not sought.
 _WITHIN = 1e-6
+# A line that leaves a plane by less, of its speed, lies in it.
+_AS_IT_IS = 1e-7
 
 
 def end_edges(graph: EdgeGraph, face: int, contacts: tuple[Sequence[int], Sequence[int]]) -> list[int]:
@@ -38,8 +41,8 @@ def going_on(graph: EdgeGraph, relations: Relations, ends: Sequence[int]) -> lis
     return [row for row in ends if partner[row] != NONE and median[row] < _GOES_ON]
 
 
-def check_ends(graph: EdgeGraph, relations: Relations, face: int, ends: Sequence[int]) -> None:
-    """Refuse a face that goes on into others beyond its end edges.
+def check_ends(graph: EdgeGraph, relations: Relations, faces: Sequence[int], ends: Sequence[int]) -> None:
+    """Refuse faces that go on into others beyond their end edges.
 
     Raises
     ------
@@ -50,12 +53,15 @@ def check_ends(graph: EdgeGraph, relations: Relations, face: int, ends: Sequence
     if not smooth:
         return
     beyond = list(dict.fromkeys(int(graph.uses.face[relations.partner[row]]) for row in smooth))
-    over = " and ".join(graph.uses.name(row) for row in smooth)
+    several = len(faces) > 1
+    over = " and ".join(f"{graph.uses.face[row]}:" * several + graph.uses.name(row) for row in smooth)
     which = "face" if len(beyond) == 1 else "faces"
+    together = ",".join(map(str, [*faces, *beyond]))
     raise EdgeError(
-        f"--replace {face}: it goes on into {which} {' and '.join(map(str, beyond))} over {over}: a blend that bends "
-        "less than a round at its contacts cannot keep these edges, and the faces have to be replaced together; "
-        "--surfaces writes the blend alone"
+        f"--replace {','.join(map(str, faces))}: it goes on into {which} {' and '.join(map(str, beyond))} over {over}: "
+        "a blend that bends less than a round at its contacts cannot keep these edges; replace the faces together "
+        f"(--replace {together}), or keep the edges, where contact falls to G1 (--keep-ends); --surfaces writes the "
+        "blend alone"
     )
 
 
@@ -85,18 +91,22 @@ class FaceAtEnd:
 
     Attributes
     ----------
-    near : EndFace
-        To second order.
+    near : EndFace or None
+        To second order; None where the lines across the base lie on it as they are.
     surface : BSplineSurface or None
         Where it is curved.
     """
 
-    near: EndFace
+    near: EndFace | None
     surface: BSplineSurface | None
 
 
 def ends_of_base(
-    graph: EdgeGraph, side: EdgeBase, at: Sequence[tuple[FloatArray, int]], surfaces: Mapping[int, BSplineSurface]
+    graph: EdgeGraph,
+    side: EdgeBase,
+    at: Sequence[tuple[FloatArray, int]],
+    surfaces: Mapping[int, BSplineSurface],
+    kept: Sequence[KeptEdge] = (),
 ) -> tuple[FaceAtEnd, FaceAtEnd]:
     """Return the end faces where a base starts and where it ends.
 
@@ -108,15 +118,33 @@ def ends_of_base(
         Points near which bases end, and a use of an edge there by the face on which the end curve has to lie.
     surfaces : mapping
         As `curved_surfaces` returns them.
+    kept : sequence of KeptEdge
+        Near whose ends bases leave along them instead.
     """
-    places = np.array([point for point, _ in at])
-    found = []
+    corners = [(x, near) for edge in kept for x, near in zip(edge.ends, edge.corners, strict=True)]
+    places = np.array([point for point, _ in [*at, *corners]])
+    found: list[FaceAtEnd] = []
     for point in side.end_points:
-        row = at[int(np.linalg.norm(places - point, axis=1).argmin())][1]
+        nearest = int(np.linalg.norm(places - point, axis=1).argmin())
+        if nearest >= len(at):
+            found.append(FaceAtEnd(_needed(side, len(found), corners[nearest - len(at)][1]), None))
+            continue
+        row = at[nearest][1]
         surface = surfaces.get(int(graph.uses.face[row]))
         near = EndFace.plane(graph.uses.normal[row, 0]) if surface is None else face_at(surface, point)
         found.append(FaceAtEnd(near, surface))
     return found[0], found[1]
+
+
+def _needed(side: EdgeBase, end: int, near: EndFace) -> EndFace | None:
+    """Return a plane at an end of a base; None where the line across lies in it as it is."""
+    base = side.bases[-end]
+    turned = side.base.turned[-end] if isinstance(side.base, Chain) else False
+    at = np.array([base.range_along[end != turned]])
+    first, second = (base.derivative(at, across, 0)[0] for across in (1, 2))
+    size = float(np.linalg.norm(first))
+    off = max(abs(float(near.normal @ x)) for x in (first, second))
+    return None if off <= _AS_IT_IS * size else near
 
 
 def curved_surfaces(graph: EdgeGraph, at: Sequence[tuple[FloatArray, int]]) -> dict[int, BSplineSurface]:
@@ -133,9 +161,14 @@ def as_spline(surface: Surface) -> BSplineSurface:
 
 
 def blend_onto(
-    graph: EdgeGraph, a: EdgeBase, b: EdgeBase, options: BlendOptions, at: Sequence[tuple[FloatArray, int]]
+    graph: EdgeGraph,
+    a: EdgeBase,
+    b: EdgeBase,
+    options: BlendOptions,
+    at: Sequence[tuple[FloatArray, int]],
+    kept: Sequence[KeptEdge] = (),
 ) -> tuple[BlendResult, BSplineSurface]:
-    """Return a blend, and its surface with both end curves on the end faces.
+    """Return a blend, and its surface with both end curves on the end faces; `kept` are where it leaves along edges.
 
     Raises
     ------
@@ -145,7 +178,7 @@ def blend_onto(
         As `blend_edges`.
     """
     surfaces = curved_surfaces(graph, at)
-    of_a, of_b = (ends_of_base(graph, side, at, surfaces) for side in (a, b))
+    of_a, of_b = (ends_of_base(graph, side, at, surfaces, kept) for side in (a, b))
     result = blend_bases(a, b, options, ends_on=((of_a[0].near, of_a[1].near), (of_b[0].near, of_b[1].near)))
     surface = result.surface.to_bspline()
     orders = int(result.options.continuities[0][1]), int(result.options.continuities[1][1])

@@ -21,6 +21,8 @@ from semispline.solver.splines import BSplineSurface, Jet, bounding_box, surface
 
 # Borders that are as near as this to each other, of the size, are one line: the surface is closed.
 _CLOSED = 1e-9
+# Sines: a surface goes on smoothly where its tangent planes at both sides of the seam are as near as this.
+_SMOOTH, _SEAM_PLACES = 1e-6, 17
 # So far beside the curve, in fractions of the domain, lies the point that chooses the side of a knot line.
 _BESIDE = 1e-9
 _STEPS = 12
@@ -60,6 +62,23 @@ class Face:
         net = self.surface.homogeneous
         away = (np.abs(net[0] - net[-1]).max(), np.abs(net[:, 0] - net[:, -1]).max())
         return np.asarray(np.array(away) <= _CLOSED * np.abs(net - net[0, 0]).max())
+
+    @cached_property
+    def periods(self) -> FloatArray:
+        """After how much of each parameter the surface goes on smoothly in itself; 0 where it does not, shape (2,)."""
+        return np.array([self.widths[axis] if self._is_smooth(axis) else 0.0 for axis in (0, 1)])
+
+    def _is_smooth(self, axis: int) -> bool:
+        if not self.closed[axis]:
+            return False
+        at = np.empty((2, _SEAM_PLACES, 2))
+        at[..., axis] = (self.low[axis] + np.array([0.0, self.widths[axis]]))[:, None]
+        at[..., 1 - axis] = self.low[1 - axis] + self.widths[1 - axis] * np.linspace(0, 1, _SEAM_PLACES)
+        jets = [surface_jet(self.surface, x[:, 0], x[:, 1], 1) for x in at]
+        one, other = (unit(np.cross(jet[1, 0], jet[0, 1])) for jet in jets)
+        # A pole has no normal.
+        apart = np.nan_to_num(np.linalg.norm(np.cross(one, other), axis=1))
+        return bool(apart.max() <= _SMOOTH and (np.nan_to_num(dot(one, other), nan=1.0) > 0).all())
 
     def jet(self, at: FloatArray, order: int, beside: FloatArray | None = None) -> Jet:
         """Return derivatives at parameters, shape (K, 2), in the spans of the points `beside` them."""

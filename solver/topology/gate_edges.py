@@ -199,3 +199,18 @@ def measured_border(shape: Any, table: EdgeTable, k: int, new: tuple[int, ...], 
         is_plane=bool(plane),
         at=(x, y, z),
     )
+
+
+def loose_area(face: Any) -> float:
+    """Return how much area lies between the curves of a face's edges in space and those in its parameters, at most."""
+    from OCP.BRep import BRep_Tool
+
+    found = 0.0
+    for edge in parts(face, "EDGE"):
+        if BRep_Tool.Degenerated_s(edge):
+            continue
+        t = np.linspace(*range_of(edge), _PLACES)
+        points = points_of(edge, t)
+        apart = np.linalg.norm(surface_at(face, parameters_of(edge, face, t)) - points, axis=1)
+        found += float(np.linalg.norm(np.diff(points, axis=0), axis=1) @ np.maximum(apart[1:], apart[:-1]))
+    return found

@@ -16,6 +16,7 @@ from semispline.solver.topology.occ_shapes import (
     CONFUSION,
     EdgeUsers,
     children,
+    ends,
     forward,
     is_reversed,
     parts,
@@ -41,7 +42,8 @@ def closed_face(face: Any, uses: Sequence[tuple[Any, bool]], *, inwards: bool) -
 
     builder, wire = BRep_Builder(), TopoDS_Wire()
     builder.MakeWire(wire)
-    for edge, backwards in uses:
+    # Edges stand in the order in which the face's own normal has them walked.
+    for edge, backwards in reversed(uses) if inwards else uses:
         builder.Add(wire, turned(edge, backwards=backwards != inwards))
     wire.Closed(True)
     builder.Add(face, wire)
@@ -65,7 +67,12 @@ def seam_edge(
     return edge
 
 
-def rebuilt(face: Any, edges: Mapping[int, Any], users: EdgeUsers, more: Sequence[tuple[int, int, Any, bool]]) -> Any:
+def rebuilt(
+    face: Any,
+    edges: Mapping[int, Sequence[tuple[Any, bool]]],
+    users: EdgeUsers,
+    more: Sequence[tuple[Any, Any, bool]],
+) -> Any:
     """Return a face with other edges in the places of some, and with edges between.
 
     Parameters
@@ -73,12 +80,12 @@ def rebuilt(face: Any, edges: Mapping[int, Any], users: EdgeUsers, more: Sequenc
     face : TopoDS_Face
         As it is used.
     edges : mapping
-        Number of an edge -> what takes its place, in the same direction.
+        Number of an edge -> the edges that take its place, in its direction, and whether each runs against that.
     users : EdgeUsers
         It knows the numbers.
-    more : sequence of (int, int, TopoDS_Edge, bool)
-        The numbers of two edges that follow each other, the edge that comes between them, and whether the face, seen
-        from outside, walks that backwards.
+    more : sequence of (TopoDS_Vertex, TopoDS_Edge, bool)
+        A vertex in which two edges follow each other, the edge that comes between them, and whether the face, seen from
+        outside, walks that backwards.
     """
     from OCP.BRep import BRep_Builder
     from OCP.TopoDS import TopoDS_Wire
@@ -86,15 +93,17 @@ def rebuilt(face: Any, edges: Mapping[int, Any], users: EdgeUsers, more: Sequenc
     builder, own = BRep_Builder(), forward(face)
     found = forward(own.EmptyCopied())
     for wire in children(own):
-        old = _walked(forward(wire), own)
+        old = edges_of_wire(forward(wire), own)
         numbers = [users.number(edge) for edge in old]
         made = TopoDS_Wire()
         builder.MakeWire(made)
-        for k, (edge, number) in enumerate(zip(old, numbers, strict=True)):
-            new = edges.get(number)
-            builder.Add(made, edge if new is None else turned(new, backwards=is_reversed(edge)))
-            for one, two, between, backwards in more:
-                if {one, two} == {number, numbers[(k + 1) % len(old)]} and one != two:
+        for edge, number in zip(old, numbers, strict=True):
+            walked_back = is_reversed(edge)
+            new = edges.get(number, [(forward(edge), False)])
+            for one, against in reversed(new) if walked_back else new:
+                builder.Add(made, turned(one, backwards=walked_back != against))
+            for vertex, between, backwards in more:
+                if ends(edge)[1].IsSame(vertex):
                     walked = backwards != is_reversed(face)
                     builder.Add(made, turned(between, backwards=walked != is_reversed(wire)))
         made.Closed(wire.Closed())
@@ -103,7 +112,7 @@ def rebuilt(face: Any, edges: Mapping[int, Any], users: EdgeUsers, more: Sequenc
     return turned(found, backwards=is_reversed(face))
 
 
-def _walked(wire: Any, face: Any) -> list[Any]:
+def edges_of_wire(wire: Any, face: Any) -> list[Any]:
     """Return the edges of a wire as one walks it, where that can be done, else in their order in the file."""
     from OCP.BRepTools import BRepTools_WireExplorer
 
@@ -116,8 +125,10 @@ def _walked(wire: Any, face: Any) -> list[Any]:
     return found if len(found) == len(in_file) else in_file
 
 
-def with_face(shape: Any, beside: int, made: Mapping[int, Any], new: Any) -> tuple[Any, Callable[[Any], Any]]:
-    """Return a shape with some faces rebuilt and a new one in the shell of one of them, and what its parts became."""
+def with_faces(
+    shape: Any, beside: int, made: Mapping[int, Any], new: Sequence[Any]
+) -> tuple[Any, Callable[[Any], Any]]:
+    """Return a shape with some faces rebuilt and new ones in the shell of one of them, and what its parts became."""
     from OCP.BRep import BRep_Builder
     from OCP.BRepTools import BRepTools_ReShape
     from OCP.TopoDS import TopoDS_Shell
@@ -126,6 +137,8 @@ def with_face(shape: Any, beside: int, made: Mapping[int, Any], new: Any) -> tup
     shell = next(
         (x for x in parts(shape, "SHELL") if any(face.IsSame(faces[beside]) for face in parts(x, "FACE"))), None
     )
+    if shell is None and len(children(shape)) == len(faces):
+        return _with_loose_faces(shape, faces, made, new)
     if shell is None or not shell.Location().IsIdentity():
         raise EdgeError(
             "the face is in no shell of its own place; write the part as a solid, not placed, and try again"
@@ -137,10 +150,29 @@ def with_face(shape: Any, beside: int, made: Mapping[int, Any], new: Any) -> tup
         builder.Add(found, face if mine is None else turned(mine, backwards=is_reversed(face)))
         if mine is not None:
             reshape.Replace(forward(face), forward(mine))
-    builder.Add(found, turned(new, backwards=is_reversed(new) != is_reversed(shell)))
+    for one in new:
+        builder.Add(found, turned(one, backwards=is_reversed(one) != is_reversed(shell)))
     found.Closed(shell.Closed())
     reshape.Replace(forward(shell), found)
     return reshape.Apply(shape), reshape.Value
+
+
+def _with_loose_faces(
+    shape: Any, faces: Sequence[Any], made: Mapping[int, Any], new: Sequence[Any]
+) -> tuple[Any, Callable[[Any], Any]]:
+    """Return faces that are in no shell as one, some rebuilt, new ones behind them: files keep shared edges so."""
+    from OCP.BRep import BRep_Builder
+    from OCP.BRepTools import BRepTools_ReShape
+    from OCP.TopoDS import TopoDS_Shell
+
+    reshape = BRepTools_ReShape()
+    for n, face in made.items():
+        reshape.Replace(forward(faces[n]), forward(face))
+    found, builder = TopoDS_Shell(), BRep_Builder()
+    builder.MakeShell(found)
+    for one in (*children(reshape.Apply(shape)), *new):
+        builder.Add(found, one)
+    return found, reshape.Value
 
 
 def evenly(line: FloatArray, count: int = 65) -> FloatArray:

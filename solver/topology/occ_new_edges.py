@@ -10,7 +10,7 @@ import numpy as np
 
 from semispline.solver.arrays import FloatArray
 from semispline.solver.errors import ComputationError
-from semispline.solver.splines import BSplineCurve
+from semispline.solver.splines import BSplineCurve, BSplineSurface
 from semispline.solver.topology.occ_shapes import (
     CONFUSION,
     MARGIN,
@@ -41,6 +41,8 @@ _STRAIGHT = 1e-11
 # Places at which a curve is compared with its edge, and those of the border from which a nearest point is sought.
 _MEASURED, _NODES = 129, 1000
 _STEPS, _SECANTS = 30, 6
+# Points within each piece of a curve across a face.
+_ACROSS = 33
 
 
 def copied_edge(edge: Any, face: Any) -> Any:
@@ -69,27 +71,50 @@ def add_along_border(
     at_ends : (float or None, float or None)
         Which v its ends have, where that is known.
     """
+    return _add_along(edge, face, border, at_ends, lambda v: np.stack([np.full_like(v, u), v], axis=1))
+
+
+def add_across_border(
+    edge: Any, face: Any, border: BSplineCurve, v: float, at_ends: tuple[float | None, ...]
+) -> tuple[float, float]:
+    """Give an edge its curve along the line v of a new face, as `add_along_border`; return u at both its ends."""
+    return _add_along(edge, face, border, at_ends, lambda u: np.stack([u, np.full_like(u, v)], axis=1))
+
+
+def _add_along(
+    edge: Any,
+    face: Any,
+    border: BSplineCurve,
+    at_ends: tuple[float | None, ...],
+    on_face: Callable[[FloatArray], FloatArray],
+) -> tuple[float, float]:
+    def along(t: FloatArray) -> FloatArray:
+        v = _nearest(border, points_of(edge, t))
+        for limit, end in zip(range_of(edge), at_ends, strict=True):
+            v = v if end is None else np.where(t == limit, end, v)
+        return v
 
     def places(t: FloatArray) -> FloatArray:
-        v = _nearest(border, points_of(edge, t), at_ends)
-        return np.stack([np.full_like(v, u), v], axis=1)
+        return on_face(along(t))
 
     def at_knots(t: FloatArray) -> FloatArray:
-        v = places(t)[:, 1]
+        v = along(t)
         inner = np.unique(border.knots)[1:-1]
+        if len(inner) == 0:
+            return inner
         if v[-1] < v[0]:
             v, t = v[::-1], t[::-1]
         found = np.interp(inner, v, t)
         # v(t) grows or falls: a few steps of the secant between neighbours.
         for _ in range(_SECANTS):
             step = 1e-4 * float(np.ptp(t))
-            here = places(found)[:, 1]
-            slope = (places(np.clip(found + step, t.min(), t.max()))[:, 1] - here) / step
+            here = along(found)
+            slope = (along(np.clip(found + step, t.min(), t.max())) - here) / step
             found = np.clip(found + (inner - here) / np.where(slope == 0, np.inf, slope), t.min(), t.max())
         return np.asarray(found)
 
     add_pcurve(edge, _fitted(places, edge, face, at_knots), face)
-    start, end = places(np.array(range_of(edge)))[:, 1].tolist()
+    start, end = along(np.array(range_of(edge))).tolist()
     return start, end
 
 
@@ -152,6 +177,18 @@ def foot_on(edge: Any, point: FloatArray) -> float:
 def line_on(edge: Any, start: tuple[float, float], end: tuple[float, float]) -> Any:
     """Return the straight curve in the parameters of a face from one point to another over the range of an edge."""
     return plane_curve(np.array(range_of(edge)), np.array([start, end]), 1)
+
+
+def line_across(surface: BSplineSurface, ends_at: tuple[tuple[float, float], tuple[float, float]]) -> Any:
+    """Return the curve on a surface that is straight in its parameters, from one point to another, as a spline of t."""
+    (u0, v0), (u1, v1) = ends_at
+    inner = np.unique(np.concatenate([
+        (np.unique(surface.knots_u) - u0) / (u1 - u0), (np.unique(surface.knots_v) - v0) / (v1 - v0)
+    ]))  # fmt: skip
+    breaks = merged(inner, 0.0, 1.0)
+    parameters = [np.linspace(low, high, _ACROSS) for low, high in pairwise(breaks.tolist())]
+    pieces = [surface.evaluate(u0 + (u1 - u0) * t, v0 + (v1 - v0) * t) for t in parameters]
+    return spline_of_pieces(parameters, pieces, in_space=True)
 
 
 def add_by_feet(edge: Any, face: Any, start: FloatArray) -> None:
@@ -245,7 +282,7 @@ def _distance(
     return own, best
 
 
-def _nearest(border: BSplineCurve, points: FloatArray, at_ends: tuple[float | None, ...]) -> FloatArray:
+def _nearest(border: BSplineCurve, points: FloatArray) -> FloatArray:
     """Return where on a curve the points nearest to others are, which run along it."""
     low, high = float(border.knots[0]), float(border.knots[-1])
     nodes = np.linspace(low, high, _NODES + 1)
@@ -262,7 +299,4 @@ def _nearest(border: BSplineCurve, points: FloatArray, at_ends: tuple[float | No
         if np.abs(moved - v).max() <= 1e-15 * (high - low):
             break
         v = moved
-    for k, end in zip((0, -1), at_ends, strict=True):
-        if end is not None:
-            v[k] = end
     return np.asarray(v)

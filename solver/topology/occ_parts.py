@@ -6,12 +6,15 @@ face belongs to, wherever it stands. Runs in the process that read the file.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
+from semispline.solver.arrays import FloatArray
 from semispline.solver.errors import FileError
 from semispline.solver.io import (
     MILLIMETRES,
@@ -22,6 +25,7 @@ from semispline.solver.io import (
     step_unit,
     system_unit,
 )
+from semispline.solver.splines import BSplineSurface, transform
 from semispline.solver.topology.occ_shapes import parts
 
 _STEP = (".step", ".stp")
@@ -88,7 +92,7 @@ class PartFile:
             raise FileError(f"{self.path}#{number}: no such surface; the file holds {len(faces)}")
         face = faces[number]
         if self.document is not None:
-            for label, shape in self._simple():
+            for label, shape in self.simple_shapes():
                 for k, own in enumerate(parts(shape, "FACE")):
                     if own.IsPartner(face):
                         place = face.Location().Transformation() * own.Location().Transformation().Inverted()
@@ -96,7 +100,9 @@ class PartFile:
                         return Part(shape, label, k, place, times)
         return Part(self.root, None, number, gp_Trsf(), 1)
 
-    def with_part(self, part: Part, shape: Any, image: Callable[[Any], Any]) -> PartFile:
+    def with_part(
+        self, part: Part, shape: Any, image: Callable[[Any], Any], like: Sequence[tuple[Any, Any]] = ()
+    ) -> PartFile:
         """Return the file with a part changed; a document is changed itself.
 
         Parameters
@@ -107,15 +113,17 @@ class PartFile:
         image : callable
             What became of a face or another piece of the part; None of what is gone. A face that was put in the place
             of another keeps its name, colour and layer.
+        like : sequence of (TopoDS_Face, TopoDS_Face)
+            New faces, each with one of the part before that tells its colour and layer.
         """
         from OCP.XCAFDoc import XCAFDoc_DocumentTool
 
         if part.label is None:
             return PartFile(self.path, shape, self.unit, self.document)
         tool = XCAFDoc_DocumentTool.ShapeTool_s(self.document.Main())
-        _relabel(tool, part, shape, image)
+        move_labels(tool, part, shape, image, [(new, labelled(part.label, old)) for new, old in like])
         tool.UpdateAssemblies()
-        return PartFile(self.path, _root(tool), self.unit, self.document)
+        return PartFile(self.path, root_of(tool), self.unit, self.document)
 
     def content(self, suffix: str) -> bytes:
         """Return the file as bytes, in its own unit; numbers have 17 digits.
@@ -145,7 +153,8 @@ class PartFile:
             with_names.Transfer(self.document, kind)
             return bytes(step_text(with_names.ChangeWriter().Model()))
 
-    def _simple(self) -> list[tuple[Any, Any]]:
+    def simple_shapes(self) -> list[tuple[Any, Any]]:
+        """Return the label and the shape of each part of a document that is no assembly."""
         from OCP.collections import Sequence_TDF_Label
         from OCP.XCAFDoc import XCAFDoc_DocumentTool, XCAFDoc_ShapeTool
 
@@ -187,11 +196,19 @@ def open_parts(path: str | Path) -> PartFile:
         unit = step_unit(reader.ChangeReader())
         XCAFDoc_DocumentTool.SetLengthUnit_s(document, MILLIMETRES[unit] / 1000)
         reader.Transfer(document)
-        root = _root(XCAFDoc_DocumentTool.ShapeTool_s(document.Main()))
+        root = root_of(XCAFDoc_DocumentTool.ShapeTool_s(document.Main()))
     return PartFile(str(path), root, unit, document)
 
 
-def _root(tool: Any) -> Any:
+def placed(surface: BSplineSurface, trsf: Any) -> BSplineSurface:
+    """Return a surface moved as the kernel says."""
+    if trsf.Form().name == "gp_Identity":
+        return surface
+    matrix: FloatArray = np.array([[trsf.Value(i, j) for j in range(1, 5)] for i in range(1, 4)])
+    return transform(surface, matrix[:, :3], matrix[:, 3])
+
+
+def root_of(tool: Any) -> Any:
     """Return all that a document shows, in its order."""
     from OCP.BRep import BRep_Builder
     from OCP.collections import Sequence_TDF_Label
@@ -210,8 +227,21 @@ def _root(tool: Any) -> Any:
     return compound
 
 
-def _relabel(tool: Any, part: Part, shape: Any, image: Callable[[Any], Any]) -> None:
-    """Give the label of a part its new shape, and those of its pieces what these became."""
+def labelled(label: Any, piece: Any) -> Any | None:
+    """Return the label of a piece of a part; None where it has none."""
+    from OCP.collections import Sequence_TDF_Label
+    from OCP.XCAFDoc import XCAFDoc_ShapeTool
+
+    pieces = Sequence_TDF_Label()
+    XCAFDoc_ShapeTool.GetSubShapes_s(label, pieces)
+    labels = [pieces.Value(k + 1) for k in range(pieces.Length())]
+    return next((x for x in labels if XCAFDoc_ShapeTool.GetShape_s(x).IsSame(piece)), None)
+
+
+def move_labels(
+    tool: Any, part: Part, shape: Any, image: Callable[[Any], Any], like: Sequence[tuple[Any, Any | None]] = ()
+) -> None:
+    """Give a part's label its new shape, those of its pieces what these became, and new pieces labels like others."""
     from OCP.collections import Sequence_TDF_Label
     from OCP.XCAFDoc import XCAFDoc_ShapeTool
 
@@ -223,6 +253,26 @@ def _relabel(tool: Any, part: Part, shape: Any, image: Callable[[Any], Any]) -> 
     for label, became in zip(labels, images, strict=True):
         if became is not None:
             tool.SetShape(label, became)
+    for new, model in like:
+        if model is not None:
+            _copy_looks(model, tool.AddSubShape(part.label, new))
+
+
+def _copy_looks(model: Any, label: Any) -> None:
+    """Give a label the colours and the layers of another, but not its name."""
+    from OCP.collections import Sequence_TDF_Label
+    from OCP.Quantity import Quantity_ColorRGBA
+    from OCP.XCAFDoc import XCAFDoc_ColorTool, XCAFDoc_ColorType, XCAFDoc_DocumentTool
+
+    colors, color = XCAFDoc_DocumentTool.ColorTool_s(label), Quantity_ColorRGBA()
+    for kind in ("Gen", "Surf", "Curv"):
+        which = getattr(XCAFDoc_ColorType, f"XCAFDoc_Color{kind}")
+        if XCAFDoc_ColorTool.GetColor_s(model, which, color):
+            colors.SetColor(label, color, which)
+    layers, found = XCAFDoc_DocumentTool.LayerTool_s(label), Sequence_TDF_Label()
+    layers.GetLayers(model, found)
+    for k in range(found.Length()):
+        layers.SetLayer(label, found.Value(k + 1))
 
 
 @contextmanager

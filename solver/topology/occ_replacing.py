@@ -6,7 +6,7 @@ Runs in the process that read the file.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -19,6 +19,7 @@ from semispline.solver.splines import BSplineSurface, iso_curve
 from semispline.solver.topology.occ_edges import wires
 from semispline.solver.topology.occ_faces import closed_face, evenly, new_face, seam_edge
 from semispline.solver.topology.occ_new_edges import (
+    add_across_border,
     add_along_border,
     add_by_feet,
     border_edge,
@@ -26,6 +27,7 @@ from semispline.solver.topology.occ_new_edges import (
     distance_to,
     end_edge,
     first_parameters,
+    line_across,
     line_on,
     settle,
 )
@@ -37,13 +39,13 @@ from semispline.solver.topology.occ_shapes import (
     forward,
     is_reversed,
     parts,
-    point_of,
     points_of,
     range_of,
     tolerance_of,
     turned,
 )
 from semispline.solver.topology.solid_gate import Change
+from semispline.solver.topology.solid_orders import NewFace
 
 
 @dataclass(frozen=True, eq=False)
@@ -149,89 +151,129 @@ def opening(shape: Any, number: int, contacts: tuple[Sequence[int], Sequence[int
     return Opening(number, face, rims[0], rims[1], after[0], after[1])
 
 
-def put_in(shape: Any, place: Opening, surface: BSplineSurface) -> tuple[Any, Callable[[Any], Any]]:
-    """Return the shape with a new face, which has the number of the old one, and what each of its parts became.
+@dataclass(frozen=True, eq=False)
+class Made:
+    """An old edge and the one that takes its place, with the faces that have a curve of it.
+
+    Attributes
+    ----------
+    old, edge : TopoDS_Edge
+    faces : list of TopoDS_Face
+    is_kept : bool
+        Its curve in space is the old one.
+    """
+
+    old: Any
+    edge: Any
+    faces: list[Any]
+    is_kept: bool = False
+
+
+def put_in(shape: Any, places: Sequence[Opening], news: Sequence[NewFace]) -> tuple[Any, Callable[[Any], Any]]:
+    """Return the shape with new faces, which have the numbers of the old ones, and what each of its parts became.
 
     Parameters
     ----------
     shape : TopoDS_Shape
         Changed in place where vertices need more tolerance: a copy.
-    place : Opening
+    places : sequence of Opening
         Of that shape.
-    surface : BSplineSurface
-        u from the first contact to the second.
+    news : sequence of NewFace
+        One for each.
     """
     from OCP.BRepTools import BRepTools_ReShape
 
-    against = runs_against(place, surface)
     faces = parts(shape, "FACE")
-    new = new_face(surface)
-    geometry = occ_surface(surface)
-    low, high = surface.domain[1]
-    # v where the first contact starts as the wire of the old face walks it, and where it ends.
-    start, end = (high, low) if against else (low, high)
-    (u0, u1) = surface.domain[0]
-    of_a = _contact_edges(place.a, faces, new, geometry, surface, u0, (start, end))
-    of_b = _contact_edges(place.b, faces, new, geometry, surface, u1, (end, start))
-    made = of_a + of_b
-    used = [[(edge, is_reversed(old)) for old, edge, _ in side] for side in (of_a, of_b)]
-    if place.after_a is not None and place.after_b is not None:
-        for rim, v, from_a in ((place.after_a, end, True), (place.after_b, start, False)):
-            made.append(_end_edge(rim, faces, new, geometry, surface, v, from_a=from_a))
-        after = [[(edge, is_reversed(old))] for old, edge, _ in made[-2:]]
-    else:
-        seam = seam_edge(geometry, (u0, u1), end, start, (place.a.end, place.b.start), new)
-        after = [[(seam, False)], [(seam, True)]]
-        settle(turned(seam, backwards=True), [new])
-        settle(seam, [new])
-    for _, edge, beyond in made:
-        settle(edge, [new, *beyond])
-    # The parameters run round the face, seen from outside, where the first contact runs against v.
-    whole = closed_face(new, used[0] + after[0] + used[1] + after[1], inwards=not against)
+    own = {place.number: new_face(new.surface) for place, new in zip(places, news, strict=True)}
+    made: list[Made] = []
+    borders = [_border(place, new, faces, own, made) for place, new in zip(places, news, strict=True)]
+    for one in made:
+        settle(one.edge, one.faces)
     reshape = BRepTools_ReShape()
-    for old, edge, _ in made:
-        reshape.Replace(forward(old), edge)
-    reshape.Replace(place.face, whole)
+    for one in made:
+        reshape.Replace(forward(one.old), one.edge)
+    for place, (walk, inwards) in zip(places, borders, strict=True):
+        reshape.Replace(place.face, closed_face(own[place.number], walk, inwards=inwards))
     return reshape.Apply(shape), reshape.Value
 
 
-def change_of(place: Opening) -> Change:
-    """Return what is meant to happen where a face is replaced."""
+def _border(
+    place: Opening, wanted: NewFace, faces: Sequence[Any], own: Mapping[int, Any], made: list[Made]
+) -> tuple[list[tuple[Any, bool]], bool]:
+    """Return the border of a new face as the wire of the old one walks it, and whether its own normal points inwards.
+
+    Edges are added to those that are made; those between two new faces are made once.
+    """
+    surface, new = wanted.surface, own[place.number]
+    geometry = occ_surface(surface)
+    if wanted.a is None or wanted.b is None:
+        low, high = surface.domain[1]
+        # v where the first contact starts as the wire of the old face walks it, and where it ends.
+        a = b = (high, low) if runs_against(place, surface) else (low, high)
+    else:
+        a, b = wanted.a, wanted.b
+    (u0, u1) = surface.domain[0]
+    of_a = contact_edges(place.a, faces, new, geometry, surface, u0, a)
+    of_b = contact_edges(place.b, faces, new, geometry, surface, u1, b[::-1])
+    made += [*of_a, *of_b]
+    used = [[(one.edge, is_reversed(one.old)) for one in side] for side in (of_a, of_b)]
+    # Seen from outside the parameters run round the face where the first contact runs against v.
+    inwards = a[1] > a[0]
+    if place.after_a is None or place.after_b is None:
+        seam = seam_edge(geometry, (u0, u1), a[1], a[0], (place.a.end, place.b.start), new)
+        settle(turned(seam, backwards=True), [new])
+        settle(seam, [new])
+        return used[0] + [(seam, False)] + used[1] + [(seam, True)], inwards
+    after = []
+    for rim, at_a, at_b, from_a in ((place.after_a, a[1], b[1], True), (place.after_b, a[0], b[0], False)):
+        (old,) = rim.edges
+        ends_at = ((u0, at_a), (u1, at_b))
+        found = next((x for x in made if x.old.IsSame(old)), None)
+        if found is None:
+            is_kept = _number_in(place.face, old) in wanted.kept
+            made.append(_end_edge(rim, faces, own, geometry, surface, ends_at, from_a=from_a, is_kept=is_kept))
+            found = made[-1]
+        _add_across(found, new, surface, ends_at, is_backwards=is_reversed(old) == from_a)
+        after.append([(found.edge, is_reversed(old))])
+    return used[0] + after[0] + used[1] + after[1], inwards
+
+
+def change_of(places: Sequence[Opening]) -> Change:
+    """Return what is meant to happen where faces are replaced."""
     from OCP.BRepGProp import BRepGProp
     from OCP.GProp import GProp_GProps
 
-    properties = GProp_GProps()
-    BRepGProp.SurfaceProperties_s(place.face, properties)
-    lines = [_line(rim) for rim in (place.a, place.b)]
-    length = float(np.mean([np.linalg.norm(np.diff(line, axis=0), axis=1).sum() for line in lines]))
-    gap = float(np.linalg.norm(evenly(lines[0]) - evenly(lines[1])[::-1], axis=1).mean())
+    volume = 0.0
+    for place in places:
+        properties = GProp_GProps()
+        BRepGProp.SurfaceProperties_s(place.face, properties)
+        lines = [rim_line(rim) for rim in (place.a, place.b)]
+        length = float(np.mean([np.linalg.norm(np.diff(line, axis=0), axis=1).sum() for line in lines]))
+        gap = float(np.linalg.norm(evenly(lines[0]) - evenly(lines[1])[::-1], axis=1).mean())
+        volume += float(properties.Mass()) * min(length, gap)
+    numbers = tuple(place.number for place in places)
     return Change(
-        old=(place.number,),
-        new=(place.number,),
-        touched=(place.number, *(face for rim in place.rims for face in rim.faces)),
-        volume=float(properties.Mass()) * min(length, gap),
-        contacts=(*place.a.faces, *place.b.faces),
+        old=numbers,
+        new=numbers,
+        touched=tuple(dict.fromkeys([*numbers, *(n for place in places for rim in place.rims for n in rim.faces)])),
+        volume=volume,
+        contacts=tuple(dict.fromkeys(n for place in places for rim in (place.a, place.b) for n in rim.faces)),
     )
 
 
 def runs_against(place: Opening, surface: BSplineSurface) -> bool:
-    """Tell whether v runs against the first contact as the wire of the face walks it: by the corners' distances."""
+    """Tell whether v runs against the first of two closed contacts as the wire of the face walks it."""
     (u0, u1), (v0, v1) = surface.domain
-    corners = surface.evaluate_grid([u0, u1], [v0, v1])
-    a = np.array([point_of(place.a.start), point_of(place.a.end)])
-    b = np.array([point_of(place.b.end), point_of(place.b.start)])
-    if place.is_closed:
-        # Both ends are one point: which way it goes is seen a quarter later.
-        v = v0 + (v1 - v0) * np.array([0.25, 0.75])
-        corners = surface.evaluate_grid([u0, u1], v)
-        a, b = (evenly(_line(rim), 5)[[1, 3]] for rim in (place.a, place.b))
-        b = b[::-1]
+    # Both ends are one point: which way it goes is seen a quarter later.
+    corners = surface.evaluate_grid([u0, u1], v0 + (v1 - v0) * np.array([0.25, 0.75]))
+    a, b = (evenly(rim_line(rim), 5)[[1, 3]] for rim in (place.a, place.b))
+    b = b[::-1]
     along = np.linalg.norm(corners - np.array([a, b]), axis=2).sum()
     against = np.linalg.norm(corners[:, ::-1] - np.array([a, b]), axis=2).sum()
     return bool(against < along)
 
 
-def _line(rim: Rim) -> FloatArray:
+def rim_line(rim: Rim) -> FloatArray:
     """Return points along a rim, as the wire walks it."""
     pieces = []
     for edge in rim.edges:
@@ -262,10 +304,10 @@ def _between(last: int, first: int, count: int) -> list[int]:
     return [(last + 1 + k) % count for k in range((first - last - 1) % count)]
 
 
-def _contact_edges(
+def contact_edges(
     rim: Rim, faces: Sequence[Any], new: Any, geometry: Any, surface: BSplineSurface, u: float, v: tuple[float, float]
-) -> list[tuple[Any, Any, list[Any]]]:
-    """Return each old edge of a contact, the one that takes its place, and the face beyond."""
+) -> list[Made]:
+    """Return what takes the place of each old edge of a contact."""
     border = iso_curve(surface, u=u)
     made = []
     for k, (old, beyond) in enumerate(zip(rim.edges, rim.faces, strict=True)):
@@ -278,19 +320,54 @@ def _contact_edges(
             edge = border_edge(geometry.UIso(u), *places, ends(forward(old)))
             add_pcurve(edge, line_on(edge, (u, places[0]), (u, places[1])), new)
             add_by_feet(edge, face, first_parameters(old, face, ends(edge)[0]))
-        made.append((old, edge, [face]))
+        made.append(Made(old, edge, [new, face]))
     return made
 
 
 def _end_edge(
-    rim: Rim, faces: Sequence[Any], new: Any, geometry: Any, surface: BSplineSurface, v: float, *, from_a: bool
-) -> tuple[Any, Any, list[Any]]:
-    """Return the old edge at an end, the one that takes its place, and the face beyond."""
+    rim: Rim,
+    faces: Sequence[Any],
+    own: Mapping[int, Any],
+    geometry: Any,
+    surface: BSplineSurface,
+    ends_at: tuple[tuple[float, float], tuple[float, float]],
+    *,
+    from_a: bool,
+    is_kept: bool,
+) -> Made:
+    """Return what takes the place of the edge at an end: with its curve on the face beyond, unless that is new too."""
     (old,), (beyond,) = rim.edges, rim.faces
-    u0, u1 = surface.domain[0]
+    if is_kept:
+        return Made(old, copied_edge(old, faces[beyond]), [faces[beyond]], is_kept=True)
     # The wire walks from contact to contact; the edge's own direction may be the other.
     backwards = is_reversed(old) == from_a
-    edge = end_edge(geometry.VIso(v), ends(forward(old)), backwards=backwards)
-    add_pcurve(edge, line_on(edge, (u1 if backwards else u0, v), (u0 if backwards else u1, v)), new)
+    (_, v), (_, other) = ends_at
+    curve = geometry.VIso(v) if v == other else line_across(surface, ends_at)
+    edge = end_edge(curve, ends(forward(old)), backwards=backwards)
+    if beyond in own:
+        return Made(old, edge, [])
     add_by_feet(edge, faces[beyond], first_parameters(old, faces[beyond], ends(edge)[0]))
-    return old, edge, [faces[beyond]]
+    return Made(old, edge, [faces[beyond]])
+
+
+def _add_across(
+    made: Made,
+    new: Any,
+    surface: BSplineSurface,
+    ends_at: tuple[tuple[float, float], tuple[float, float]],
+    *,
+    is_backwards: bool,
+) -> None:
+    """Give an edge at an end its curve on a new face: straight and even, but for old edges in how fast it is."""
+    start, end = ends_at[::-1] if is_backwards else ends_at
+    if made.is_kept:
+        add_across_border(made.edge, new, iso_curve(surface, v=start[1]), start[1], (start[0], end[0]))
+    else:
+        add_pcurve(made.edge, line_on(made.edge, start, end), new)
+    made.faces.append(new)
+
+
+def _number_in(face: Any, edge: Any) -> int:
+    """Return k of the name "ek" of an edge of a face."""
+    walked = [x for edges, _ in wires(face) for x in edges]
+    return next(k for k, x in enumerate(walked) if x.IsSame(edge))

@@ -192,30 +192,34 @@ def plane_curve(t: FloatArray, uv: FloatArray, degree: int) -> Any:
     return _geometry(degree, curve.knots, curve.control_points)
 
 
-def spline_of_pieces(t: Sequence[FloatArray], uv: Sequence[FloatArray]) -> Any:
-    """Return the spline of degree 5 through points of several pieces that is only continuous from piece to piece."""
-    curves = [interpolate_curve(points, _DEGREE, at) for at, points in zip(t, uv, strict=True)]
+def spline_of_pieces(t: Sequence[FloatArray], points: Sequence[FloatArray], *, in_space: bool = False) -> Any:
+    """Return the spline of degree 5 through points of several pieces that is only continuous from piece to piece.
+
+    The points are parameters (u, v) of a surface, or in space.
+    """
+    curves = [interpolate_curve(x, _DEGREE, at) for at, x in zip(t, points, strict=True)]
     knots = np.concatenate(
         [curves[0].knots[:-1], *(x.knots[_DEGREE + 1 : -1] for x in curves[1:]), curves[-1].knots[-1:]]
     )
-    points = np.concatenate([curves[0].control_points, *(x.control_points[1:] for x in curves[1:])])
-    return _geometry(_DEGREE, knots, points)
+    poles = np.concatenate([curves[0].control_points, *(x.control_points[1:] for x in curves[1:])])
+    return _geometry(_DEGREE, knots, poles, in_space=in_space)
 
 
-def _geometry(degree: int, knots: FloatArray, control_points: FloatArray) -> Any:
-    from OCP.collections import Array1_double, Array1_gp_Pnt2d, Array1_int
+def _geometry(degree: int, knots: FloatArray, control_points: FloatArray, *, in_space: bool = False) -> Any:
+    from OCP.collections import Array1_double, Array1_gp_Pnt, Array1_gp_Pnt2d, Array1_int
+    from OCP.Geom import Geom_BSplineCurve
     from OCP.Geom2d import Geom2d_BSplineCurve
-    from OCP.gp import gp_Pnt2d
+    from OCP.gp import gp_Pnt, gp_Pnt2d
 
     values, counts = np.unique(knots, return_counts=True)
-    points = Array1_gp_Pnt2d(1, len(control_points))
+    points = (Array1_gp_Pnt if in_space else Array1_gp_Pnt2d)(1, len(control_points))
     for i, pole in enumerate(control_points.tolist()):
-        points.SetValue(i + 1, gp_Pnt2d(*pole[:2]))
+        points.SetValue(i + 1, gp_Pnt(*pole) if in_space else gp_Pnt2d(*pole[:2]))
     places, times = Array1_double(1, len(values)), Array1_int(1, len(values))
     for i, (value, count) in enumerate(zip(values.tolist(), counts.tolist(), strict=True)):
         places.SetValue(i + 1, value)
         times.SetValue(i + 1, count)
-    return Geom2d_BSplineCurve(points, places, times, degree)
+    return (Geom_BSplineCurve if in_space else Geom2d_BSplineCurve)(points, places, times, degree)
 
 
 def breaks_of(edge: Any) -> FloatArray:

@@ -3,32 +3,32 @@
 from __future__ import annotations
 
 import pickle
+from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
-import numpy as np
-
 # Loaded before the limits of the process count.
 import OCP  # noqa: F401
 
-from semispline.solver.arrays import FloatArray
 from semispline.solver.errors import ComputationError, SemisplineError
 from semispline.solver.io import MILLIMETRES
-from semispline.solver.splines import BSplineSurface, transform
-from semispline.solver.topology.occ_parts import PartFile, open_parts
+from semispline.solver.topology.occ_joined_parts import join_parts
+from semispline.solver.topology.occ_parts import PartFile, open_parts, placed
 from semispline.solver.topology.occ_replacing import change_of, opening, put_in
 from semispline.solver.topology.occ_rounding import rounded
 from semispline.solver.topology.occ_shapes import copy_of, parts
 from semispline.solver.topology.solid_gate import Change, GateReport, gate
-from semispline.solver.topology.solid_orders import Outcome, Replacement, Rounding
+from semispline.solver.topology.solid_orders import Joining, Outcome, Replacement, Rounding
 
 
 def work(path: str, order: str, suffix: str) -> Outcome:
-    """Return what came of changing a solid; `order` is a file with the pickled `Replacement` or `Rounding`."""
+    """Return what came of changing a solid; `order` is a file with a pickled `Replacement`, `Rounding` or `Joining`."""
     # Our own process wrote this.
     wanted = pickle.loads(Path(order).read_bytes())
     try:
+        if isinstance(wanted, Joining):
+            return join_parts(path, wanted, suffix)
         return _changed(open_parts(path), wanted, suffix)
     except (SemisplineError, MemoryError):
         raise
@@ -41,40 +41,40 @@ def work(path: str, order: str, suffix: str) -> Outcome:
 def _changed(file: PartFile, wanted: Replacement | Rounding, suffix: str) -> Outcome:
     part = file.part_of(wanted.face)
     copy, image = copy_of(part.shape)
-    surface = _moved(wanted.surface, part.place.Inverted())
+    back = part.place.Inverted()
     if isinstance(wanted, Replacement):
-        place = opening(copy, part.face, wanted.contacts)
-        change = change_of(place)
-        after, became = put_in(copy, place, surface)
+        news = [replace(x, face=file.part_of(x.face).face, surface=placed(x.surface, back)) for x in wanted.faces]
+        places = [opening(copy, x.face, x.contacts) for x in news]
+        change = change_of(places)
+        after, became = put_in(copy, places, news)
     else:
-        after, became, change = rounded(copy, part.face, wanted.edge, surface, grows=wanted.grows)
+        # Faces of a part follow each other in the file.
+        edges = [(face - wanted.face + part.face, k) for face, k in wanted.edges]
+        after, became, change = rounded(copy, edges, replace(wanted, surface=placed(wanted.surface, back)))
     millimetres = None if file.unit is None else MILLIMETRES[file.unit]
     report = gate(part.shape, after, change, millimetres=millimetres)
     touched = tuple(sorted(set(change.touched) - set(change.old)))
-    (new,) = change.new
     if not report.is_sound:
-        return Outcome(report, None, None, touched, new, part.times)
+        return Outcome(report, None, None, touched, change.new, part.times)
     before = part.shape
-    whole = file.with_part(part, after, lambda piece: became(image(piece)))
-    new_face = parts(after, "FACE")[new]
-    number = next(n for n, face in enumerate(parts(whole.root, "FACE")) if face.IsPartner(new_face))
+    own, olds = parts(after, "FACE"), parts(before, "FACE")
+    # A face in the place of another has its label; beside an edge that of the faces on the first side.
+    like = [(own[k], olds[n]) for k, n in zip(change.new, change.like, strict=False)]
+    whole = file.with_part(part, after, lambda piece: became(image(piece)), like)
+    all_faces = parts(whole.root, "FACE")
+    new = tuple(next(n for n, face in enumerate(all_faces) if face.IsPartner(own[k])) for k in change.new)
     content = whole.content(suffix)
-    again = _read_back(content, suffix, number, before, change, millimetres)
-    return Outcome(report, again, content if again.is_sound else None, touched, number, part.times)
+    again = _read_back(content, suffix, None if part.label is None else new[0], before, change, millimetres)
+    return Outcome(report, again, content if again.is_sound else None, touched, new, part.times)
 
 
 def _read_back(
-    content: bytes, suffix: str, face: int, before: Any, change: Change, millimetres: float | None
+    content: bytes, suffix: str, face: int | None, before: Any, change: Change, millimetres: float | None
 ) -> GateReport:
+    """Gate what was written once more: the part that a face belongs to, or all of it."""
     with TemporaryDirectory() as folder:
         path = Path(folder, f"written{suffix}")
         path.write_bytes(content)
-        part = open_parts(path).part_of(face)
-        return gate(before, part.shape, change, millimetres=millimetres, read_back=True)
-
-
-def _moved(surface: BSplineSurface, trsf: Any) -> BSplineSurface:
-    if trsf.Form().name == "gp_Identity":
-        return surface
-    matrix: FloatArray = np.array([[trsf.Value(i, j) for j in range(1, 5)] for i in range(1, 4)])
-    return transform(surface, matrix[:, :3], matrix[:, 3])
+        file = open_parts(path)
+        shape = file.root if face is None else file.part_of(face).shape
+        return gate(before, shape, change, millimetres=millimetres, read_back=True)

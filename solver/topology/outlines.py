@@ -17,11 +17,15 @@ from semispline.solver.topology.trim_curves import TrimCurve
 
 # Points of an edge that is not straight in the parameters.
 _POINTS = 120
+# Of the range of a parameter: an edge that is as near to an end of it all along lies on the seam.
+_ON_SEAM = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
 class Outline:
     """The edges of a face, as seen from one of them.
+
+    Of a surface that goes on over its seam they are there once a turn, and the seam is none of them.
 
     Attributes
     ----------
@@ -31,11 +35,17 @@ class Outline:
         Edges that touch it: they end what runs beside it.
     others : list of ndarray, shape (S, 2)
         All other edges: beyond them the face is left.
+    own : list of ndarray, shape (S, 2)
+        The edge itself, where nothing but itself is met a turn later.
+    periods : ndarray, shape (2,)
+        After how much of each parameter all of it comes again; 0 where it does not.
     """
 
     trim: TrimCurve | None
     ends: list[FloatArray]
     others: list[FloatArray]
+    own: list[FloatArray]
+    periods: FloatArray
 
 
 def curved_edges(graph: EdgeGraph, row: int) -> list[int]:
@@ -47,14 +57,23 @@ def curved_edges(graph: EdgeGraph, row: int) -> list[int]:
 def outline_of(graph: EdgeGraph, row: int, surface: BSplineSurface, curves: Mapping[int, TrimCurve]) -> Outline:
     """Return the outline of the face of a use; `curves` are those of `curved_edges`, as far as they are known."""
     near = {int(graph.uses.previous[row]), int(graph.uses.following[row])}
+    face = Face(surface)
     ends: list[FloatArray] = []
     others: list[FloatArray] = []
     for x in _drawn(graph, row):
-        if x != row:
+        if x != row and not (graph.uses.seam[x] and _on_seam(own_parameters(graph, x, surface), face)):
             line = _polyline(graph, x, surface, curves.get(x))
             (ends if x in near or _touches(graph, x, row) else others).append(line)
     trim = curves.get(row)
-    return Outline(None if trim is None else _beside(trim, own_parameters(graph, row, surface)), ends, others)
+    moved = None if trim is None else _beside(trim, own_parameters(graph, row, surface))
+    return Outline(moved, ends, others, [], face.periods)
+
+
+def _on_seam(samples: FloatArray, face: Face) -> bool:
+    """Tell whether all samples lie where a surface goes on smoothly in itself."""
+    turns = (samples - face.low) / face.widths
+    near = np.asarray((np.abs(turns - np.round(turns)) <= _ON_SEAM).all(axis=0))
+    return bool((near & (face.periods > 0)).any())
 
 
 def _drawn(graph: EdgeGraph, row: int) -> list[int]:
@@ -102,15 +121,21 @@ def own_parameters(graph: EdgeGraph, row: int, surface: BSplineSurface) -> Float
 
 def border(surface: BSplineSurface, name: EdgeName) -> Outline:
     """Return the outline of a whole surface, as seen from an edge or a line of it."""
-    axis = 0 if name.direction == "u" else 1
+    axis, periods = 0 if name.direction == "u" else 1, Face(surface).periods
+
+    def line(d: int, value: float) -> FloatArray:
+        found = np.empty((2, 2))
+        found[:, d], found[:, 1 - d] = value, surface.domain[1 - d]
+        return found
+
     ends, others = [], []
-    for d, (low, high) in enumerate(surface.domain):
-        first, last = surface.domain[1 - d]
-        for end, value in enumerate((low, high)):
-            line = np.empty((2, 2))
-            line[:, d], line[:, 1 - d] = value, (first, last)
+    for d, domain in enumerate(surface.domain):
+        for end, value in enumerate(domain):
+            if periods[d]:
+                continue
             if d != axis:
-                ends.append(line)
+                ends.append(line(d, value))
             elif end != name.end or name.at is not None:
-                others.append(line)
-    return Outline(None, ends, others)
+                others.append(line(d, value))
+    own = line(axis, surface.domain[axis][name.end] if name.at is None else name.at)
+    return Outline(None, ends, others, [own], periods)

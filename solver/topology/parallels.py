@@ -7,6 +7,7 @@ It is followed in space, where nothing jumps at knots at which only the paramete
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import product
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,6 +24,9 @@ _NEWTON = 3
 _ROUNDING = 4 * float(np.finfo(np.float64).eps)
 # Of the domain: so far an edge may lie outside. Chords of steps are shorter by some of the second part where it bends.
 _OUTSIDE, _UNEVEN = 1e-3, 0.1
+# Of a turn: what only touches a box counts as in it. Paths that have lost their way may be any number of turns away.
+_TOUCHED, _MOST_TURNS = 1e-6, 8
+_OPEN = np.zeros(2)
 
 
 @dataclass(frozen=True, eq=False)
@@ -111,8 +115,35 @@ def _normal(jet: Jet) -> FloatArray:
     return unit(np.cross(jet[1, 0], jet[0, 1]))
 
 
-def crossings(paths: Paths, lines: list[FloatArray]) -> FloatArray:
+def turns_over(line: FloatArray, periods: FloatArray, low: FloatArray, high: FloatArray) -> list[FloatArray]:
+    """Return by how much a polyline in the parameters of a closed surface has to move to come into a box.
+
+    Parameters
+    ----------
+    line : ndarray, shape (S, 2)
+    periods : ndarray, shape (2,)
+        0 where the surface is not closed.
+    low, high : ndarray, shape (2,)
+    """
+    per = np.where(periods > 0, periods, 1.0)
+    first = np.where(periods > 0, np.ceil((low - line.max(axis=0)) / per - _TOUCHED), 0.0)
+    last = np.where(periods > 0, np.floor((high - line.min(axis=0)) / per + _TOUCHED), 0.0)
+    last = np.minimum(last, first + _MOST_TURNS)
+    ranges = (np.arange(a, b + 1) for a, b in zip(first, last, strict=True))
+    return [np.array(turn) * periods for turn in product(*ranges)]
+
+
+def crossings(paths: Paths, lines: list[FloatArray], periods: FloatArray = _OPEN, *, again: bool = False) -> FloatArray:
     """Return, for each polyline in the parameters, where each path first crosses it; infinite where it does not.
+
+    Parameters
+    ----------
+    paths : Paths
+    lines : list of ndarray, shape (S, 2)
+    periods : ndarray, shape (2,)
+        After which the lines come again on a closed surface; 0 where they do not.
+    again : bool
+        Only their other turns count.
 
     Returns
     -------
@@ -120,15 +151,19 @@ def crossings(paths: Paths, lines: list[FloatArray]) -> FloatArray:
         Distances along the paths.
     """
     start, move = paths.at[:-1], np.diff(paths.at, axis=0)
+    known = paths.at[np.isfinite(paths.at).all(axis=2)]
     found = np.full((len(lines), start.shape[1]), np.inf)
     for number, line in enumerate(lines):
-        for p, q in zip(line[:-1], np.diff(line, axis=0), strict=True):
-            cross = _cross(move, q)
-            with np.errstate(divide="ignore", invalid="ignore"):
-                t, s = _cross(p - start, q) / cross, _cross(p - start, move) / cross
-            hit = (t >= 0) & (t < 1) & (s >= 0) & (s <= 1)
-            steps = np.where(hit, np.arange(len(start))[:, None] + t, np.inf)
-            found[number] = np.minimum(found[number], steps.min(axis=0) * paths.step)
+        for turn in turns_over(line, periods, known.min(axis=0), known.max(axis=0)):
+            if again and not turn.any():
+                continue
+            for p, q in zip(line[:-1] + turn, np.diff(line, axis=0), strict=True):
+                cross = _cross(move, q)
+                with np.errstate(divide="ignore", invalid="ignore"):
+                    t, s = _cross(p - start, q) / cross, _cross(p - start, move) / cross
+                hit = (t >= 0) & (t < 1) & (s >= 0) & (s <= 1)
+                steps = np.where(hit, np.arange(len(start))[:, None] + t, np.inf)
+                found[number] = np.minimum(found[number], steps.min(axis=0) * paths.step)
     return found
 
 

@@ -59,16 +59,19 @@ def places_of(graph: EdgeGraph) -> Places:
     accepted = fillets.accepted
     ends = fillet_ends(graph, relations, accepted.values())
     chamfers = find_chamfers(graph, relations, accepted)
+    runs = chains(graph, relations, accepted)
     entries = [
         *(fillet_entry(graph, relations, between, fillets.on_ends[face]) for face, between in accepted.items()),
-        *(chain_entry(graph, relations, [accepted[x] for x in group]) for group in chains(graph, relations, accepted)),
+        *(chain_entry(graph, relations, [accepted[x] for x in group]) for group in runs),
         *(gap_entry(graph, gap) for gap in find_gaps(graph, relations, ends)),
         *(chamfer_entry(graph, relations, chamfer) for chamfer in chamfers),
         *(round_end_entry(graph, relations, between) for between in fillets.round_ends.values()),
         *(sharp_entry(graph, relations, use) for use in sharp_edges(graph, relations)),
     ]
     betweens = {**accepted, **fillets.round_ends, **{chamfer.between.face: chamfer.between for chamfer in chamfers}}
-    found = [with_commands(graph, relations, place, betweens) for place in sorted(without_repeats(entries), key=_rank)]
+    found = [
+        with_commands(graph, relations, place, betweens, runs) for place in sorted(without_repeats(entries), key=_rank)
+    ]
     slight = (relations.median < SHARP) & ~relations.smooth & ~graph.uses.seam
     rules = Counter(refusal.rule for refusal in fillets.refused.values())
     return Places(

@@ -25,7 +25,7 @@ _FOUR = 4
 # Ends of an edge that are this near, in fractions of its length, are one point.
 _SAME_POINT = 1e-3
 # A face that turns by less, in degrees, does not turn.
-_STRAIGHT = 0.01
+STRAIGHT = 0.01
 
 
 @dataclass(frozen=True, eq=False)
@@ -136,17 +136,18 @@ def pair_of(
     if not found:
         raise EdgeError(_no_pair(graph, relations, face))
     # Where the face does not turn, as a chamfer, its long edges are the contacts.
-    return max(found, key=lambda x: (x.curvature if x.turn > _STRAIGHT else 0.0, -x.width))
+    return max(found, key=lambda x: (x.curvature if x.turn > STRAIGHT else 0.0, -x.width))
 
 
 def opposite_pairs(graph: EdgeGraph, relations: Relations, face: int) -> Iterator[Between]:
     """Yield how a face lies between each two opposite sides of it that both have another face beyond."""
-    for a, b in _opposite_sides(graph, relations, face):
+    for a, b in opposite_sides(graph, relations, face):
         if all(_other_face(graph, relations, side) is not None for side in (a, b)):
             yield measure(graph, relations, face, a, b)
 
 
-def _opposite_sides(graph: EdgeGraph, relations: Relations, face: int) -> Iterator[tuple[Side, Side]]:
+def opposite_sides(graph: EdgeGraph, relations: Relations, face: int) -> Iterator[tuple[Side, Side]]:
+    """Yield each two opposite sides of a face."""
     uses = graph.uses
     rows = range(*uses.of_face(face).indices(len(uses)))
     outer = [row for row in rows if uses.wire[row] == 0]
@@ -179,7 +180,7 @@ def _stated(graph: EdgeGraph, between: Between, a: ResolvedEdge, b: ResolvedEdge
     rows = [side.uses[0] for side in (between.a, between.b)]
     contacts = uses.name(rows[0]), uses.name(rows[1])
     angles = float(relations.median[rows[0]]), float(relations.median[rows[1]])
-    turns = between.turn > _STRAIGHT
+    turns = between.turn > STRAIGHT
     turn = f"turns by {between.turn:.3g} degrees, radius {between.radius:.4g}" if turns else "does not turn"
     return ReplacedPair(
         face=between.face,
@@ -237,7 +238,7 @@ def _no_pair(graph: EdgeGraph, relations: Relations, face: int) -> str:
     """Say why no pair of edges of a face can be blended."""
     uses = graph.uses
     rows = range(*uses.of_face(face).indices(len(uses)))
-    sides = list(_opposite_sides(graph, relations, face))
+    sides = list(opposite_sides(graph, relations, face))
     title = f"--replace: face #{face} of {graph.path}"
     listing = f"`semispline list {graph.path} --edges {face}` lists its edges, --edge-a and --edge-b take two of them"
     if not sides:

@@ -11,20 +11,19 @@ from typing import Any
 
 from semispline.solver.blending import BlendResult
 from semispline.solver.errors import BandError, EdgeError, FileError, SolidError
-from semispline.solver.io import OCC_SUFFIXES, check_outputs, read_apart, read_surfaces, write_bytes
+from semispline.solver.io import OCC_SUFFIXES, check_outputs, read_apart, write_bytes
 from semispline.solver.options import BlendOptions, Continuity, named_options
-from semispline.solver.splines import BSplineSurface
 from semispline.solver.topology.bases import edge_bases
-from semispline.solver.topology.between import Between
 from semispline.solver.topology.edge_base import EdgeBase
 from semispline.solver.topology.edge_blends import blend_bases
-from semispline.solver.topology.end_faces import blend_onto, check_ends, end_edges, faces_at_ends
-from semispline.solver.topology.face_edges import ResolvedEdge, check_face
-from semispline.solver.topology.measuring import MeasuredEdges, measured_edges
+from semispline.solver.topology.end_faces import blend_onto, check_ends, faces_at_ends, going_on
+from semispline.solver.topology.face_runs import FaceRun, ReplacedRun, replaced_run
+from semispline.solver.topology.kept_edges import KeptEdge, KeptEnd, ended_on_edges, kept_edges, measured_again
+from semispline.solver.topology.panels import panels_of
 from semispline.solver.topology.relations import relate
-from semispline.solver.topology.replacing import ReplacedPair, pair_of, resolved_pair, rows_beyond
+from semispline.solver.topology.resolving import Resolved
 from semispline.solver.topology.solid_gate import GateReport
-from semispline.solver.topology.solid_orders import Outcome, Replacement, Rounding
+from semispline.solver.topology.solid_orders import Joining, NewFace, Outcome, Replacement, Rounding
 
 # Operating, measuring twice, writing and reading again take so many times as long as reading, at most.
 _TIMES = 12.0
@@ -42,8 +41,8 @@ class SolidBlend:
     blend : BlendResult
     said : str
         What was replaced or rounded.
-    face : int
-        The new face, by its number in the file that is written.
+    faces : tuple of int
+        The new faces, by their numbers in the file that is written.
     gate : GateReport
         What was measured of the solid before it was written.
     read_back : GateReport
@@ -54,21 +53,31 @@ class SolidBlend:
         What else is to be said.
     content : bytes
         The file.
+    kept : tuple of KeptEnd
+        Old end edges that were kept, where contact falls to G1.
     """
 
     blend: BlendResult
     said: str
-    face: int
+    faces: tuple[int, ...]
     gate: GateReport
     read_back: GateReport
     touched: tuple[int, ...]
     notes: tuple[str, ...]
     content: bytes
+    kept: tuple[KeptEnd, ...] = ()
+
+    @property
+    def face(self) -> int:
+        """The new face; the first of several."""
+        return self.faces[0]
 
     def record(self) -> dict[str, Any]:
         """Return what a report holds of the solid."""
         return {
             "new_face": self.face,
+            "new_faces": list(self.faces),
+            "kept_ends": [asdict(end) for end in self.kept],
             "touched": list(self.touched),
             "notes": list(self.notes),
             **{name: _gate_record(x) for name, x in (("solid", self.gate), ("read_back", self.read_back))},
@@ -77,12 +86,13 @@ class SolidBlend:
 
 def replace_face(
     path: str | Path,
-    face: int,
+    face: int | Sequence[int],
     out: str | Path,
     options: BlendOptions | None = None,
     *,
     edge_a: str | None = None,
     edge_b: str | None = None,
+    keep_ends: bool = False,
     **named: Any,
 ) -> SolidBlend:
     """Replace a fillet of a solid in a file by a blend, and write the file with all else as it was.
@@ -91,14 +101,18 @@ def replace_face(
     ----------
     path : str or Path
         A STEP, IGES or BREP file.
-    face : int
-        N of `PATH#N`: a face with four edges, or with two rims and a seam.
+    face : int, or sequence of int
+        N of `PATH#N`: a face with four sides, or with two rims and a seam. Several that go on smoothly into each other
+        over their ends are replaced together, each by a blend, and neighbours meet in one curve.
     out : str or Path
         A STEP or BREP file.
     options : BlendOptions, optional
         Or its fields by name, as `blend` has them.
     edge_a, edge_b : str, optional
-        As `replaced_pair` has them.
+        As `replaced_pair` has them; of the first face.
+    keep_ends : bool
+        Keep end edges over which the faces go on into others: there contact falls to G1, and what is said of the
+        result says within which length.
 
     Raises
     ------
@@ -111,40 +125,39 @@ def replace_face(
     """
     check_suffixes(path, out)
     check_outputs({"out": out}, [path])
-    found = solid_with_blend(path, face, Path(out).suffix.lower(), named_options(options, named), edge_a, edge_b)
+    faces = [face] if isinstance(face, int) else face
+    said = named_options(options, named)
+    found = solid_with_blend(path, faces, Path(out).suffix.lower(), said, edge_a, edge_b, keep_ends=keep_ends)
     write_bytes(out, found.content)
     return found
 
 
 def solid_with_blend(
     path: str | Path,
-    face: int,
+    faces: Sequence[int],
     suffix: str,
     options: BlendOptions,
     edge_a: str | None = None,
     edge_b: str | None = None,
+    *,
+    keep_ends: bool = False,
 ) -> SolidBlend:
     """Return what `replace_face` writes, in the format of a suffix; its errors."""
-    measured = measured_edges(path)
-    graph = measured.graph
-    check_face(graph, face, str(path))
-    between = pair_of(graph, relate(graph), face, edge_a, edge_b)
-    specs = [f"{path}#{graph.uses.face[row]}" for row in rows_beyond(graph, between)]
-    pair = resolved_pair(measured, between, read_surfaces(specs))
-    result, surface = _blended(measured, between, pair, options)
-    names = [tuple(int(graph.uses.number[row]) for row in side.uses) for side in (between.a, between.b)]
-    outcome = operated(path, Replacement(face, (names[0], names[1]), surface), suffix)
+    found = replaced_run(str(path), faces, edge_a, edge_b)
+    made = _blended(found, options, keep_ends=keep_ends)
+    outcome = operated(path, Replacement(made.news), suffix)
     assert outcome.content is not None
     assert outcome.read_back is not None
     return SolidBlend(
-        blend=result,
-        said=pair.said,
-        face=outcome.new,
+        blend=made.result,
+        said=found.said,
+        faces=outcome.new,
         gate=outcome.report,
         read_back=outcome.read_back,
         touched=outcome.touched,
-        notes=notes_of(outcome),
+        notes=(*map(str, made.kept), *notes_of(outcome)),
         content=outcome.content,
+        kept=made.kept,
     )
 
 
@@ -166,7 +179,7 @@ def check_suffixes(path: str | Path, out: str | Path) -> None:
         raise FileError(f"{out}: no solid goes into it, expected .step or .brep; `write_surface` writes a blend")
 
 
-def operated(path: str | Path, order: Replacement | Rounding, suffix: str) -> Outcome:
+def operated(path: str | Path, order: Replacement | Rounding | Joining, suffix: str) -> Outcome:
     """Return what came of an order, carried out by a process of its own.
 
     Raises
@@ -182,9 +195,12 @@ def operated(path: str | Path, order: Replacement | Rounding, suffix: str) -> Ou
             path, "semispline.solver.topology.occ_solid_worker", "Open CASCADE", [str(written), suffix], _TIMES
         )
     assert isinstance(outcome, Outcome)
-    title = f"--replace {order.face}"
     if isinstance(order, Rounding):
-        title = f"--round {order.face}:e{order.edge}"
+        title = "--round {}:e{}".format(*order.edges[0])
+    elif isinstance(order, Joining):
+        title = f"--from {path}#{order.face} --to {order.other_path or path}#{order.other}"
+    else:
+        title = f"--replace {','.join(str(x.face) for x in order.faces)}"
     for report, when in ((outcome.report, ""), (outcome.read_back, "written and read again, ")):
         if report is not None and report.reason is not None:
             where = "" if report.place is None else " near ({:.6g}, {:.6g}, {:.6g})".format(*report.place)
@@ -192,29 +208,70 @@ def operated(path: str | Path, order: Replacement | Rounding, suffix: str) -> Ou
     return outcome
 
 
-def _blended(
-    measured: MeasuredEdges, between: Between, pair: ReplacedPair, options: BlendOptions
-) -> tuple[BlendResult, BSplineSurface]:
-    """Return the blend of both contacts, its end curves on the end faces."""
-    graph, face = measured.graph, between.face
+@dataclass(frozen=True, eq=False)
+class _Blended:
+    """The blend of both sides of a run, cut into what takes the place of each face; and how it meets kept ends."""
+
+    result: BlendResult
+    news: tuple[NewFace, ...]
+    kept: tuple[KeptEnd, ...] = ()
+
+
+def _blended(found: ReplacedRun, options: BlendOptions, *, keep_ends: bool) -> _Blended:
+    """Return the blend of both sides, its end curves on the end faces or on edges that are kept."""
+    graph, run = found.measured.graph, found.run
     relations = relate(graph)
-    sides = close_bases([pair.a, pair.b], options.continuities)
-    for side, contact in zip(sides, pair.contacts, strict=True):
-        if len(side) != 1:
-            raise EdgeError(
-                f"--replace {face}: along {contact} no one blend runs, the contact has {len(side)} parts; --surfaces "
-                "writes their blends"
-            )
-    a, b = sides[0][0], sides[1][0]
-    if between.a.closed or between.b.closed:
+    a, b = (_one_base(run, side, name) for side, name in zip(_bases(found, options), "AB", strict=True))
+    numbers = [
+        tuple(tuple(int(graph.uses.number[row]) for row in side.uses) for side in (m.a, m.b)) for m in run.members
+    ]
+    if run.closed:
         result = blend_bases(a, b, options)
-        return result, result.surface.to_bspline()
-    ends = end_edges(graph, face, (between.a.uses, between.b.uses))
-    check_ends(graph, relations, face, ends)
-    return blend_onto(graph, a, b, options, faces_at_ends(graph, relations, ends))
+        surface = result.surface.to_bspline()
+        if len(run.members) == 1:
+            return _Blended(result, (NewFace(run.faces[0], (numbers[0][0], numbers[0][1]), surface),))
+        kept: list[KeptEdge] = []
+        ends: tuple[KeptEnd, ...] = ()
+    else:
+        rows = run.ends(graph)
+        smooth = going_on(graph, relations, rows) if keep_ends else []
+        check_ends(graph, relations, run.faces, [row for row in rows if row not in smooth])
+        kept = kept_edges(graph, relations, smooth)
+        at = faces_at_ends(graph, relations, [row for row in rows if row not in smooth])
+        result, surface = blend_onto(graph, a, b, options, at, kept)
+        surface, made = ended_on_edges(surface, kept)
+        ends = tuple(made)
+        if ends:
+            result = measured_again(result, surface, a, b, ends)
+    panels = panels_of(graph, run, surface)
+    news = tuple(
+        NewFace(
+            face,
+            (contacts[0], contacts[1]),
+            panel.surface,
+            panel.a,
+            panel.b,
+            tuple(edge.number for edge in kept if edge.face == face),
+        )
+        for face, contacts, panel in zip(run.faces, numbers, panels, strict=True)
+    )
+    return _Blended(result, news, ends)
 
 
-def close_bases(ends: Sequence[ResolvedEdge], continuities: Sequence[Continuity]) -> list[tuple[EdgeBase, ...]]:
+def _bases(found: ReplacedRun, options: BlendOptions) -> list[tuple[EdgeBase, ...]]:
+    return close_bases([found.a, found.b], options.continuities)
+
+
+def _one_base(run: FaceRun, side: Sequence[EdgeBase], name: str) -> EdgeBase:
+    if len(side) != 1:
+        raise EdgeError(
+            f"--replace {','.join(map(str, run.faces))}: along contact {name} no one blend runs, it has {len(side)} "
+            "parts; --surfaces writes their blends"
+        )
+    return side[0]
+
+
+def close_bases(ends: Sequence[Resolved], continuities: Sequence[Continuity]) -> list[tuple[EdgeBase, ...]]:
     """Return the bases along both contacts, as close to their faces as bands come."""
     try:
         return edge_bases(ends, continuities, _SHARE)

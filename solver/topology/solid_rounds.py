@@ -2,26 +2,25 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from semispline.solver.errors import EdgeError
+from semispline.solver.blending import Chain, facing_rims, split_places
 from semispline.solver.io import check_outputs, write_bytes
 from semispline.solver.options import BlendOptions, named_options
-from semispline.solver.topology.cuts import parse_cut
 from semispline.solver.topology.edge_base import EdgeBase
 from semispline.solver.topology.edge_blends import blend_bases
-from semispline.solver.topology.edge_moving import moved_edges
 from semispline.solver.topology.end_faces import blend_onto
 from semispline.solver.topology.face_edges import check_face, row_of
-from semispline.solver.topology.flat_contacts import flat_contact, is_flat_contact
-from semispline.solver.topology.half_edges import NONE, EdgeGraph
+from semispline.solver.topology.half_edges import EdgeGraph
 from semispline.solver.topology.measuring import measured_edges
-from semispline.solver.topology.relations import Relations, relate
+from semispline.solver.topology.relations import relate
+from semispline.solver.topology.round_contacts import round_contacts
+from semispline.solver.topology.sharp_chains import SharpChain, chain_names, sharp_chain
 from semispline.solver.topology.solid_blends import (
     SolidBlend,
     check_suffixes,
-    close_bases,
     notes_of,
     operated,
 )
@@ -46,7 +45,8 @@ def round_edge(
     face : int
         N of `PATH#N`.
     edge : str
-        One of its edges, "e3", at each end of which two others meet it; or a closed rim.
+        One of its edges, "e3", at each end of which two others meet it; or a closed rim. Sharp edges that go on in it
+        smoothly are rounded with it.
     distance : float, or pair of float
         How far the contact lies from the edge, along this face and along the one beyond; model units.
     out : str or Path
@@ -76,33 +76,34 @@ def solid_with_round(
     path: str | Path, face: int, edge: str, cuts: tuple[str, str], suffix: str, options: BlendOptions
 ) -> SolidBlend:
     """Return what `round_edge` writes, in the format of a suffix; cuts are words, as `parse_cut` takes them."""
-    graph = measured_edges(path).graph
+    measured = measured_edges(path)
+    graph, title = measured.graph, f"--round {face}:{edge}"
     check_face(graph, face, str(path))
     relations = relate(graph)
-    row = row_of(graph, edge, face, "--round")
-    title = f"--round {face}:{edge}"
-    other = int(relations.partner[row])
-    if other == NONE or graph.uses.face[other] == face:
-        raise EdgeError(f"{title}: the edge lies between no two faces")
-    if not relations.sharp[row]:
-        raise EdgeError(f"{title}: the faces meet at {relations.median[row]:.2g} degrees there; no sharp edge")
-    beyond = int(graph.uses.face[other])
-    at = _ends(graph, relations, row, other, title)
-    a, b = _contacts(graph, (row, other), cuts, options, title)
-    if at:
-        result, surface = blend_onto(graph, a, b, options, at)
+    chain = sharp_chain(graph, relations, row_of(graph, edge, face, "--round"), title)
+    a, b = round_contacts(measured, chain, cuts, options, title)
+    matched = _with_joints(a, b, options)
+    if chain.at:
+        result, surface = blend_onto(graph, a, b, matched, chain.at)
     else:
-        result = blend_bases(a, b, options)
+        result = blend_bases(a, b, matched)
         surface = result.surface.to_bspline()
-    order = Rounding(face, int(edge[1:]), surface, not bool(relations.convex[row]))
+    uses = graph.uses
+    order = Rounding(
+        face,
+        tuple((int(uses.face[row]), int(uses.number[row])) for row in chain.rows),
+        surface,
+        split_places(result),
+        chain.closed,
+        not chain.convex,
+    )
     outcome = operated(path, order, suffix)
     assert outcome.content is not None
     assert outcome.read_back is not None
-    kind = "edge" if relations.convex[row] else "inner edge"
     return SolidBlend(
         blend=result,
-        said=f"{kind} {edge} between faces {face} and {beyond} rounded, cuts {cuts[0]} and {cuts[1]}",
-        face=outcome.new,
+        said=_said(graph, chain, edge, cuts),
+        faces=outcome.new,
         gate=outcome.report,
         read_back=outcome.read_back,
         touched=outcome.touched,
@@ -111,65 +112,22 @@ def solid_with_round(
     )
 
 
-def _contacts(
-    graph: EdgeGraph, rows: tuple[int, int], cuts: tuple[str, str], options: BlendOptions, title: str
-) -> tuple[EdgeBase, EdgeBase]:
-    """Return the bases along both contacts: exact ones in flat faces along straight edges."""
-    uses = graph.uses
-    specs = [f"{graph.path}#{uses.face[row]}" for row in rows]
-    # It also says how far the faces reach.
-    moved = moved_edges((specs[0], specs[1]), (uses.name(rows[0]), uses.name(rows[1])), cuts)
-    found: list[EdgeBase | None] = [None, None]
-    for k, (row, word) in enumerate(zip(rows, cuts, strict=True)):
-        distance = parse_cut(word).distance
-        if distance is not None and is_flat_contact(graph, row):
-            base = flat_contact(graph, row, distance)
-            found[k] = None if base is None else EdgeBase(uses.name(row), base)
-    for k in (k for k in (0, 1) if found[k] is None):
-        (side,) = close_bases([moved[k]], [options.continuities[k]])
-        if len(side) != 1:
-            raise EdgeError(
-                f"{title}: along its contact on face {uses.face[rows[k]]} no one blend runs; it has corners"
-            )
-        found[k] = side[0]
-    a, b = found
-    assert a is not None
-    assert b is not None
-    return a, b
+def _with_joints(a: EdgeBase, b: EdgeBase, options: BlendOptions) -> BlendOptions:
+    """Return the options with joints of one side that answer those of the other, where nothing else was asked for."""
+    if not isinstance(a.base, Chain) or not isinstance(b.base, Chain) or options.match != "affine":
+        return options
+    count = len(a.base.edges)
+    if len(b.base.edges) != count or facing_rims(a.base, b.base, options) is not None:
+        return options
+    # What ends where it begins is one pair.
+    return replace(options, match=tuple((float(k), float(k)) for k in range(count if a.base.closed else count + 1)))
 
 
-def _ends(graph: EdgeGraph, relations: Relations, row: int, other: int, title: str) -> list[tuple[Any, int]]:
-    """Return the ends of an edge, each with a use by the face beyond; none of a closed one.
-
-    Raises
-    ------
-    EdgeError
-        The edge goes on, or no single face lies beyond an end.
-    """
-    uses = graph.uses
-    points = uses.walked_points(row)
-    if ((points[0] - points[-1]) ** 2).sum() ** 0.5 <= 1e-6 * graph.size:
-        return []
-    found = []
-    # At the end of the one walk the other begins.
-    for point, mine, yours in (
-        (points[0], int(uses.previous[row]), int(uses.following[other])),
-        (points[-1], int(uses.following[row]), int(uses.previous[other])),
-    ):
-        for use in (mine, yours):
-            partner = int(relations.partner[use])
-            if partner == NONE:
-                raise EdgeError(f"{title}: {uses.name(use)} of face {uses.face[use]} at its end has no other face")
-            if relations.smooth[use]:
-                raise EdgeError(
-                    f"{title}: it ends at {uses.name(use)} of face {uses.face[use]}, over which this goes on smoothly "
-                    f"into face {uses.face[partner]}: the edges there have to be rounded together"
-                )
-        faces = [int(uses.face[relations.partner[use]]) for use in (mine, yours)]
-        if faces[0] != faces[1]:
-            raise EdgeError(
-                f"{title}: at its end lie faces {faces[0]} and {faces[1]}, more than three edges meet there; three can "
-                "be trimmed"
-            )
-        found.append((point, int(relations.partner[mine])))
-    return found
+def _said(graph: EdgeGraph, chain: SharpChain, edge: str, cuts: tuple[str, str]) -> str:
+    uses, kind = graph.uses, "edge" if chain.convex else "inner edge"
+    faces = [" and ".join(dict.fromkeys(str(uses.face[row]) for row in rows)) for rows in (chain.rows, chain.others)]
+    if len(chain.rows) == 1:
+        what = f"{kind} {edge} between faces {faces[0]} and {faces[1]}"
+    else:
+        what = f"{len(chain.rows)} {kind}s that go on in each other, {', '.join(chain_names(graph, chain))},"
+    return f"{what} rounded, cuts {cuts[0]} and {cuts[1]}"

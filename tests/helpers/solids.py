@@ -145,6 +145,34 @@ def quarter_disc(radius):
     return fillet(shape, radius, edge_at(0, 0))
 
 
+def pocket(radius):
+    """A rectangular hole, its inner corners rounded."""
+    shape = cut(box(40, 30, 10), box(20, 10, 10, at=(10, 10, 0)))
+    return fillet(shape, radius, lambda p, d: abs(d[2]) > 0.5 and 5 < p[0] < 35 and 5 < p[1] < 25)
+
+
+def stair(radius, high):
+    """A step, its inner edge or the one above rounded, from side to side."""
+    shape = cut(box(40, 30, 20), box(20, 30, 10, at=(20, 0, 10)))
+    return fillet(shape, radius, lambda p, _: abs(p[0] - 20) < 1e-6 and abs(p[2] - high) < 1e-6)
+
+
+def blind_hole(radius):
+    """The edge round its bottom is rounded."""
+    return rounded(cut(box(40, 40, 20), cylinder(8, 10, at=(20, 20, 10))), radius, circles_at(10, 8))
+
+
+def blunt_wedge(radius):
+    """An edge of 117 degrees."""
+    shape = prism([(0, 0, 0), (30, 0, 0), (40, 0, 15), (0, 0, 15)], (0, 40, 0))
+    return fillet(shape, radius, lambda p, _: abs(p[0] - 30) < 1e-6 and abs(p[2]) < 1e-6)
+
+
+def pipe(radius):
+    """The outer rim of a thick pipe."""
+    return rounded(cut(cylinder(8, 20), cylinder(5, 20)), radius, circles_at(20, 8))
+
+
 MODELS = {
     **{f"box r={r}": (lambda r=r: box_with_fillet(r)) for r in (0.1, 1.0, 3.0, 5.0, 9.0)},
     **{f"box four r={r}": (lambda r=r: box_with_four(r)) for r in (2.0, 7.0)},
@@ -161,4 +189,10 @@ MODELS = {
     **{f"pin r={r}": (lambda r=r: pin(r)) for r in (1.0, 4.0)},
     **{f"rim of a hole r={r}": (lambda r=r: rim_of_hole(r)) for r in (1.0, 3.0)},
     **{f"quarter disc r={r}": (lambda r=r: quarter_disc(r)) for r in (2.0, 5.0)},
+    **{f"pocket, inner corner r={r}": (lambda r=r: pocket(r)) for r in (1.0, 4.0)},
+    **{f"stair, inner edge r={r}": (lambda r=r: stair(r, 10)) for r in (1.0, 5.0)},
+    **{f"stair r={r}": (lambda r=r: stair(r, 20)) for r in (2.0, 8.0)},
+    **{f"blind hole, inner rim r={r}": (lambda r=r: blind_hole(r)) for r in (1.0, 3.0)},
+    "blunt wedge r=2": lambda: blunt_wedge(2.0),
+    "pipe r=1": lambda: pipe(1.0),
 }

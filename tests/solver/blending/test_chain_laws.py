@@ -8,17 +8,21 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from helpers.chains import (
+    arc,
     box,
+    circle,
     fillets,
     flanges,
     lines_inside,
     moved,
+    oval,
     rounded_square,
     run_back_face,
     stretched,
     strips,
     turned_round,
     walls,
+    with_net,
 )
 from helpers.sweeps import examples
 from semispline import Base, blend, chain
@@ -108,12 +112,9 @@ def test_faces_along_lines_may_be_cut_further(ring_of, which, at):
         firsts.append(len(cut))
     here, there = chain(faces).strip(order), chain(cut).strip(order)
     assert [joint.kind for joint in there.joints] == ["smooth"] * len(cut)
-    # What runs along a straight face is a cubic on each of its parts: the contact stays, not where it is met.
     assert there.surface.degree_v == here.surface.degree_v
-    same = sampled(there, firsts)[..., 0, :]
-    assert np.abs(sampled(here)[..., 0, :] - same).max() < SAME
-    if kind == "prism":
-        assert np.abs(sampled(here) - sampled(there, firsts)).max() < SAME
+    # Parts of one line are one again.
+    assert np.abs(sampled(here) - sampled(there, firsts)).max() < SAME
 
 
 def test_nothing_is_left_of_cuts_along_lines():
@@ -150,3 +151,92 @@ def test_corners_answer_each_other_whichever_is_named_first(x, y, yaw, order):
     found = np.linalg.norm(points[0][:, None] - points[1][None], axis=2).min(axis=1)
     assert found.max() < SAME
     assert lines_inside(one.surface).crease > 10
+
+
+def cut_arcs(pieces, at):
+    """A profile whose arcs are cut in two, at a share of their angle."""
+    found = []
+    for piece in pieces:
+        if len(piece) == 2:
+            found.append(piece)
+            continue
+        ends = piece[[0, 2], :2]
+        # Both tangents meet in the middle point: the centre lies beyond the chord.
+        middle = piece[1, :2] / piece[1, 2]
+        half = np.arccos(piece[1, 2])
+        centre = ends.mean(axis=0) + (ends.mean(axis=0) - middle) / np.tan(half) ** 2
+        radius = np.linalg.norm(ends[0] - centre)
+        angles = np.degrees(np.unwrap([np.arctan2(*(x - centre)[::-1]) for x in ends]))
+        between = angles[0] + at * (angles[1] - angles[0])
+        found += [arc(centre, radius, angles[0], between), arc(centre, radius, between, angles[1])]
+    return found
+
+
+@pytest.mark.parametrize("family", [walls, flanges])
+@pytest.mark.parametrize(("at", "first"), [(0.5, 0), (0.3, 2)])
+def test_arcs_that_are_cut_make_the_strip_of_the_whole_ones(family, at, first):
+    profile = rounded_square((4.0, 3.0), (1.0, 1.4, 1.2, 0.8))
+    pieces = cut_arcs(profile, at)
+    whole = chain(family(profile)).strip(2)
+    # Begun in the middle of an arc, the third piece, it begins at the line that follows.
+    rest = family(pieces)
+    cut = chain(rest[first:] + rest[:first]).strip(2)
+    begun = family(profile)
+    if first:
+        whole = chain(begun[first:] + begun[:first]).strip(2)
+    assert len(whole.joints) == 8
+    assert len(cut.joints) == 12
+    assert all(joint.kind == "smooth" for joint in cut.joints)
+    assert cut.surface.control_points.shape == whole.surface.control_points.shape
+    assert cut.surface.knots_v == pytest.approx(whole.surface.knots_v, rel=1e-10)
+    # Recognised from a singular value decomposition: some hundred roundings.
+    assert cut.surface.control_points == pytest.approx(whole.surface.control_points, abs=1e-10)
+
+
+def test_a_blend_of_cut_arcs_is_that_of_whole_ones_and_measured_on_each_face():
+    """Halves of other heights, one run through backwards: other speeds across, and another way along."""
+    profile = rounded_square((4.0, 3.0), (1.0, 1.4, 1.2, 0.8))
+    faces = walls(cut_arcs(profile, 0.4))
+    faces[1] = walls(cut_arcs(profile, 0.4), height=-3.0)[1]
+    faces[4] = run_back_face(faces[4])
+    tube = walls(circle(2.0, (0, 90, 180, 270, 360)), base=5.0, height=2.0)
+    options = {"alpha": "natural", "p2": "zero"}
+    whole, cut = blend(chain(walls(profile)), chain(tube), **options), blend(chain(faces), chain(tube), **options)
+    assert cut.rows_stored == whole.rows_stored
+    u, v = np.meshgrid(np.linspace(0, 1, 7), np.linspace(*whole.surface.domain[1], 41), indexing="ij")
+    apart = whole.surface.evaluate(u.ravel(), v.ravel()) - cut.surface.evaluate(u.ravel(), v.ravel())
+    assert np.abs(apart).max() <= 1e-9
+    assert len(cut.chain_a.faces) == 12
+    assert {face.edge for face in cut.chain_a.faces} == set(cut.chain_a.edges)
+    assert cut.chain_a.worst("angle_degrees") <= 1e-9
+    assert max(crease.curvature_jump_relative for crease in cut.creases) == pytest.approx(
+        max(crease.curvature_jump_relative for crease in whole.creases), abs=1e-9
+    )
+
+
+def test_half_circles_of_two_arcs_are_one_piece():
+    """A slot: between the lines nothing jumps."""
+    strip = chain(walls(oval())).strip(2)
+    assert len(strip.joints) == 6
+    bends = [joint.bends for joint in strip.joints]
+    assert sum(bends) == 4
+    # Two lines and two half circles of degree 4.
+    assert strip.surface.control_points.shape[1] == 4 * 4 - 4 + 1 + 1
+    inner = strip.surface.knots_v[5:-5]
+    assert len(np.unique(inner)) == 3
+
+
+@pytest.mark.parametrize("noise", [2e-12, 6e-12])
+def test_noise_of_a_file_does_not_raise_the_degree(noise):
+    """Coordinates written with some digits less: 26 points of degree 4, as without, not 50 of degree 7."""
+    rng = np.random.default_rng(0)
+    profile = rounded_square((4.0, 3.0), (1.0, 1.4, 1.2, 0.8))
+    found = []
+    for base in walls(profile, draft=0.2):
+        net = base.surface.control_points.copy()
+        net[1] += noise * rng.standard_normal(net[1].shape)
+        found.append(Base(with_net(base.surface, net), base.side))
+    strip = chain(found).strip(2)
+    assert (strip.surface.degree_v, strip.surface.control_points.shape[1]) == (4, 26)
+    assert all(joint.kind == "smooth" for joint in strip.joints)
+    assert max(max(joint.residuals) for joint in strip.joints) <= 2 * 4e-11

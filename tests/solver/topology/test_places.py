@@ -20,7 +20,6 @@ from helpers.parts import compound, graph_of, moved, rounded_box, without, writt
 from helpers.random_parts import known_part
 from semispline import FileError, find_places
 from semispline.solver.cli import app
-from semispline.solver.topology import moved_edges
 from semispline.solver.topology.commands import two_faces
 from semispline.solver.topology.listing import place_lines, places_record
 from semispline.solver.topology.place import KINDS
@@ -86,12 +85,13 @@ def test_commands_name_file_and_edges_for_a_shell(name):
             assert words[-2] == "-o"
             path = f"./{name}" if name.startswith("-") else name
             if place.faces:
-                if place.kind == "chain":
-                    # Words say the faces.
-                    assert words[2:5:2] == [path, "--edge-a"]
-                    continue
                 assert words[2:4] == [path, "--replace"]
-                assert int(words[4]) in place.faces
+                numbers = {int(word) for word in words[4].split(",")}
+                # The chain that a fillet belongs to goes with it.
+                assert numbers >= set(place.faces)
+                continue
+            if "--round" in words:
+                assert words[2:5] == [path, "--round", f"{place.a.face}:{place.a.edge}"]
                 continue
             assert words[2:4] == [f"{path}#{place.a.face}", f"{path}#{place.b.face}"]
             for side, option in ((place.a, "--edge-a"), (place.b, "--edge-b")):
@@ -158,10 +158,9 @@ def test_of_a_gap_with_other_numbers_of_edges_one_pair_is_named_and_the_rest_sai
 def test_a_sharp_edge_is_cut_by_less_than_the_face_has():
     for place in places_of(graph_of(BRepPrimAPI_MakeBox(2.0, 3.0, 5.0).Shape())).found:
         words = shlex.split(place.commands[0])
-        cuts = [float(words[words.index(option) + 1]) for option in ("--cut-a", "--cut-b")]
+        distance = float(words[words.index("--distance") + 1])
         # A third of the nearest edge that does not touch it: of the smaller of two sides of the box.
-        assert cuts[0] == cuts[1]
-        assert 0.3 * place.measures["clearance"] < cuts[0] <= place.measures["clearance"] / 3
+        assert 0.3 * place.measures["clearance"] < distance <= place.measures["clearance"] / 3
         assert place.measures["clearance"] in (pytest.approx(2.0), pytest.approx(3.0))
 
 
@@ -187,10 +186,9 @@ def test_the_clearance_of_sharp_edges_is_that_within_their_faces(tmp_path, shape
 def test_the_command_of_the_rim_of_a_tall_pin_stays_within_its_disc(tmp_path):
     place = find_places(written(BRepPrimAPI_MakeCylinder(3.0, 60.0).Shape(), tmp_path / "pin.brep")).found[0]
     words = shlex.split(place.commands[0])
-    option = {word: words[k + 1] for k, word in enumerate(words[:-1]) if word.startswith("--")}
-    edges = option["--edge-a"], option["--edge-b"]
-    ends = moved_edges((words[2], words[3]), edges, (option["--cut-a"], option["--cut-b"]))
-    assert [end.spec for end in ends] == words[2:4]
+    distance = float(words[words.index("--distance") + 1])
+    # A third of the radius, rounded down to two digits.
+    assert 0.9 < distance <= 1.0
 
 
 def test_nothing_found_says_what_was_refused(tmp_path):

@@ -14,12 +14,14 @@ from helpers.parts import compound, graph_of, moved, rounded_box, written
 from helpers.solids import MODELS, box_with_fillet, slanted, volume
 from helpers.xcaf import labels_of, write_assembly, write_coloured
 from semispline import EdgeError, FileError, SolidError, read_surface, replace_face
+from semispline.solver import workers
 from semispline.solver.cli import app
+from semispline.solver.io import foreign
 from semispline.solver.topology import solid_blends
 from semispline.solver.topology.end_faces import blend_onto
 from semispline.solver.topology.fillets import find_fillets
 from semispline.solver.topology.occ_parts import open_parts
-from semispline.solver.topology.occ_shapes import parts
+from semispline.solver.topology.occ_shapes import parameters_of, parts, points_of, range_of, surface_at, tolerance_of
 from semispline.solver.topology.relations import relate
 
 # .ci/run lets each file be read by a process of its own.
@@ -204,3 +206,56 @@ def test_other_formats_get_the_surface_and_are_told_so(tmp_path):
     done = CliRunner().invoke(app, words)
     assert done.exit_code == 0, done.output
     assert "no solid can come back in .3dm" in done.output
+
+
+def test_who_is_killed_by_the_limits_leaves_nothing(tmp_path, monkeypatch):
+    """The process that operates gets too little memory."""
+    shape = box_with_fillet(5.0)
+    path, number, out = written(shape, tmp_path / "part.brep"), fillet_of(shape), tmp_path / "out.step"
+    before, usual = (path.read_bytes(), sorted(tmp_path.iterdir())), foreign.call
+
+    def limited(module, arguments, *limits):
+        if not module.endswith("occ_solid_worker"):
+            return usual(module, arguments, *limits)
+        return workers.call(module, arguments, 100.0, 60.0)
+
+    monkeypatch.setattr(foreign, "call", limited)
+    with pytest.raises(FileError, match=r"of memory|broke down"):
+        replace_face(path, number, out)
+    assert (path.read_bytes(), sorted(tmp_path.iterdir())) == before
+
+
+@pytest.mark.parametrize("scale", [1e-3, 1e3])
+def test_scale_changes_nothing(scale, tmp_path):
+    shape, small = box_with_fillet(5.0), gp_Trsf()
+    small.SetScale(gp_Pnt(0, 0, 0), scale)
+    number = fillet_of(shape)
+    plain = replace_face(written(shape, tmp_path / "part.brep"), number, tmp_path / "plain.brep").gate
+    found = replace_face(written(moved(shape, small), tmp_path / "moved.brep"), number, tmp_path / "out.brep").gate
+    # The fairest shape is sought to some 1e-6 of its measure.
+    change = (found.volume[1] - found.volume[0]) / scale**3
+    assert change == pytest.approx(plain.volume[1] - plain.volume[0], rel=1e-5)
+
+
+def test_faces_that_are_not_touched_are_the_same(tmp_path):
+    """Their surfaces and their edges, to the last bit, as a BREP file has them."""
+    shape = box_with_fillet(5.0)
+    path, number = written(shape, tmp_path / "part.brep"), fillet_of(shape)
+    found = replace_face(path, number, tmp_path / "out.brep")
+    old, new = (parts(open_parts(x).root, "FACE") for x in (path, tmp_path / "out.brep"))
+    rest = set(range(7)) - {number, *found.touched}
+    assert rest
+    for n in rest:
+        assert all(np.array_equal(a, b) for a, b in zip(all_of(old[n]), all_of(new[n]), strict=True))
+    # Those with new borders keep their surfaces.
+    for n in found.touched:
+        u = np.array([[0.1, 0.2], [3.0, 4.0]])
+        assert np.array_equal(surface_at(old[n], u), surface_at(new[n], u))
+
+
+def all_of(face):
+    """Of each edge of a face its range and tolerance, points in space, in the parameters and on the surface."""
+    for edge in parts(face, "EDGE"):
+        t = np.linspace(*range_of(edge), 9)
+        uv = parameters_of(edge, face, t)
+        yield from (t, tolerance_of(edge), points_of(edge, t), uv, surface_at(face, uv))

@@ -5,61 +5,33 @@ from functools import cache
 
 import numpy as np
 import pytest
-from OCP.BRep import BRep_Builder
 from OCP.BRepCheck import BRepCheck_Analyzer
-from OCP.TopoDS import TopoDS_Shell, TopoDS_Solid
 
-from helpers.parts import compound, graph_of
-from helpers.solids import box_with_fillet, cut, cylinder, pin, volume
-from semispline import Base, BSplineCurve, blend, elevate_degree, insert_knots, plane, reverse_v, revolve, transform
-from semispline.solver.topology.occ_replacing import change_of, opening, put_in
+from helpers.gated import corner_blend, edge_rounded, placed, put, solid_of, the_fillet
+from helpers.parts import compound, fillet, graph_of
+from helpers.solids import box, box_with_fillet, cut, cylinder, pin, volume
+from semispline import (
+    Base,
+    BSplineCurve,
+    BSplineSurface,
+    blend,
+    elevate_degree,
+    extrude,
+    insert_knots,
+    reverse_v,
+    revolve,
+    swap_directions,
+    transform,
+)
 from semispline.solver.topology.occ_shapes import copy_of, parts, raise_tolerance, tolerance_of
 from semispline.solver.topology.solid_gate import gate
 
 OUT = np.array([-1.0, -1.0, 0.0]) / np.sqrt(2)
 
 
-@cache
-def corner_blend(radius=5.0, height=40.0):
-    """G2 from the plane y = 0 to the plane x = 0 along an upright edge."""
-    a = Base(plane([radius, 0, 0], [0, 0, height], [20, 0, 0]), "v0")
-    b = Base(plane([0, radius, 0], [0, 0, height], [0, 20, 0]), "v0")
-    return blend(a, b, middle_curves=0).surface.to_bspline()
-
-
 def with_hole():
     """A hole beside the fillet, through the whole height."""
     return cut(box_with_fillet(5.0), cylinder(1.5, 40.0, at=(5.0, 5.0, 0.0)))
-
-
-def the_fillet(shape):
-    """The number of the round along the z-axis, and its upright edges."""
-    graph = graph_of(shape)
-    uses = graph.uses
-    for number, kind in enumerate(graph.faces.kind):
-        rows = uses.of_face(number)
-        if kind == "cylinder" and np.abs(uses.points[rows].mean(axis=(0, 1))[:2] - 1.5).max() < 2.0:
-            upright = [k for k in range(rows.stop - rows.start) if np.ptp(uses.points[rows][k, :, 2]) > 1.0]
-            if len(upright) == 2 and rows.stop - rows.start == 4:
-                return number, tuple((k,) for k in upright)
-    raise AssertionError
-
-
-def put(shape, surface, number, contacts):
-    copy, _ = copy_of(shape)
-    place = opening(copy, number, contacts)
-    # u runs from the first contact: from the plane y = 0.
-    after, _ = put_in(copy, place, surface)
-    return after, change_of(place)
-
-
-def placed(shape, surface, radius=5.0):
-    """The shape with a surface in the place of its fillet, and what is meant to have happened."""
-    number, (one, two) = the_fillet(shape)
-    graph = graph_of(shape)
-    row = graph.uses.of_face(number).start + one[0]
-    contacts = (one, two) if abs(graph.uses.points[row, 0, 1]) < 1e-6 else (two, one)
-    return put(shape, surface, number, contacts)
 
 
 def bent(surface, by, columns=slice(3, 6), rows=slice(2, 4)):
@@ -141,17 +113,6 @@ def test_a_face_turned_round_is_stopped():
     wrong = solid_of([face.Reversed() if n in change.new else face for n, face in enumerate(faces)])
     found = gate(shape, wrong, change)
     assert "not twice, one against the other" in found.reason
-
-
-def solid_of(faces):
-    builder, shell, solid = BRep_Builder(), TopoDS_Shell(), TopoDS_Solid()
-    builder.MakeShell(shell)
-    for face in faces:
-        builder.Add(shell, face)
-    shell.Closed(True)
-    builder.MakeSolid(solid)
-    builder.Add(solid, shell)
-    return compound([solid])
 
 
 def test_a_solid_turned_inside_out_is_stopped():
@@ -316,3 +277,67 @@ def test_the_input_is_not_changed():
     assert before == (
         [tolerance_of(x) for kind in ("FACE", "EDGE", "VERTEX") for x in parts(shape, kind)], volume(shape)
     )  # fmt: skip
+
+
+@cache
+def box_with_twelve(radius):
+    return fillet(box(20, 30, 40), radius, lambda *_: True)
+
+
+def along_a_fillet(radius, dip):
+    """From ball to ball along the upright round of a box with twelve, the old end edges kept, bent in by so much."""
+    r, h = radius, 40.0 - 2 * radius
+    arc = BSplineCurve(2, [0, 0, 0, 1, 1, 1], [[r, 0, r], [0, 0, r], [0, r, r]], [1, np.sqrt(0.5), 1])
+    upright = extrude(arc, [0, 0, h])
+    surface = upright if upright.degree_u == 1 else swap_directions(upright)
+    surface = elevate_degree(surface, 5, 3)
+    points = surface.control_points.copy()
+    points[2:4, 1:-1] -= dip * OUT
+    return replace(surface, control_points=points)
+
+
+@pytest.mark.parametrize("dip", [0.0, 20.0])
+def test_the_wrong_pair_with_its_ends_kept_is_stopped_among_twelve_fillets(dip):
+    """Valid, and no tolerance grows: the volume alone tells; the round put back in its own place is right."""
+    shape = box_with_twelve(2.0)
+    number, upright = the_fillet(shape)
+    graph = graph_of(shape)
+    rows = graph.uses.of_face(number)
+    low, high = sorted((k for k in range(4) if (k,) not in upright), key=lambda k: graph.uses.points[rows][k, 0, 2])
+    after, change = put(shape, along_a_fillet(2.0, dip), number, ((low,), (high,)))
+    assert is_valid(after)
+    assert max(tolerance_of(edge) for edge in parts(after, "EDGE")) <= 1.1e-7
+    found = gate(shape, after, change)
+    assert found.is_sound if dip == 0 else "the volume changes" in found.reason
+
+
+def round_of(cuts, reach, inwards=1.0):
+    """From the plane y = 0 to the plane x = 0 about the upright edge, quintic, with rows of one length."""
+    a, b = np.array([cuts[0], 0, 0.0]), np.array([0, cuts[1], 0.0])
+    to_a, to_b = np.array([-1.0, 0, 0]), np.array([0, -1.0, 0])
+    rows = [a, a + 0.2 * reach * to_a, a + 0.4 * reach * to_a, b + 0.4 * reach * to_b, b + 0.2 * reach * to_b, b]
+    points = np.array([[row, row + np.array([0, 0, 40.0])] for row in rows])
+    return BSplineSurface(5, 1, [0] * 6 + [1] * 6, [0, 0, 1, 1], points)
+
+
+@pytest.mark.parametrize(
+    ("cuts", "reach", "said"),
+    [((1.0, 8.0), 8.0, "rounding this edge takes away some"), ((3.0, 6.0), 4.0, None), ((1.0, 8.0), 2.5, None)],
+)
+def test_a_sharp_edge_that_bulges_out_is_stopped(cuts, reach, said):
+    """Rows that are too long leave the box where the cut is short; the kernel calls it valid."""
+    shape = box(20, 30, 40)
+    graph = graph_of(shape)
+    edges = [
+        (int(graph.uses.face[row]), int(graph.uses.number[row]))
+        for row in range(len(graph.uses))
+        if np.abs(graph.uses.points[row, :, :2]).max() < 1e-9 and abs(graph.uses.normal[row, 0, 1]) > 0.5
+    ]
+    ((face, k),) = edges
+    after, change = edge_rounded(shape, face, k, round_of(cuts, reach), grows=False)
+    assert is_valid(after)
+    found = gate(shape, after, change)
+    assert found.reason is None if said is None else said in found.reason
+    # What an inner edge is to do is the other way round.
+    other = gate(shape, after, replace(change, grows=True))
+    assert other.is_sound if said else "inner corner adds some" in other.reason

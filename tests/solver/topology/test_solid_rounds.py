@@ -61,6 +61,41 @@ def test_a_fixed_shape_takes_away_c_d_squared_s(distance, tmp_path):
         assert found.gate.volume[1] == pytest.approx(24000 - taken, abs=1e-9)
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("share", [0.005, 0.02, 0.1, 0.3, 0.5, 0.7, 0.9])
+@pytest.mark.parametrize(("face", "edge", "length", "convex"), BOX)
+def test_each_edge_of_a_box_by_shares_of_its_narrower_face(share, face, edge, length, convex, tmp_path):
+    path = written(box(20, 30, 40), tmp_path / "part.brep")
+    distance = share * min(x for x in (20.0, 30.0, 40.0) if abs(x - length) > 1)
+    assert convex
+    found = round_edge(path, face, edge, distance, tmp_path / "out.step")
+    assert found.gate.faces == (6, 7)
+    assert found.gate.largest_tolerance <= 1.1e-7
+    found = round_edge(path, face, edge, distance, tmp_path / "out.step", **FIXED)
+    taken = 24000 - volume(open_parts(tmp_path / "out.step").root)
+    assert taken == pytest.approx(559 / 4096 * distance**2 * length, abs=1e-9)
+
+
+@pytest.mark.parametrize("face", [0, pytest.param(4, marks=pytest.mark.slow)])
+def test_edges_of_a_face_that_do_not_meet_one_after_the_other(face, tmp_path):
+    """Faces keep their numbers, and so do edges that are far from what was done."""
+    path, taken, shape = written(box(20, 30, 40), tmp_path / "0.brep"), 0.0, box(20, 30, 40)
+    lengths = {name: length for f, name, length, _ in _all_edges(shape) if f == face}
+    for k, name in enumerate(("e0", "e2")):
+        found = round_edge(path, face, name, 4.0 + k, tmp_path / f"{k + 1}.brep", **FIXED)
+        path, taken = tmp_path / f"{k + 1}.brep", taken + 559 / 4096 * (4.0 + k) ** 2 * lengths[name]
+    assert found.gate.faces == (7, 8)
+    assert 24000 - volume(open_parts(path).root) == pytest.approx(taken, abs=1e-9)
+
+
+def _all_edges(shape):
+    """The same as `sharp_edges`, as each of its two faces names them."""
+    graph = graph_of(shape)
+    relations = relate(graph)
+    for row in range(len(graph.uses)):
+        yield int(graph.uses.face[row]), graph.uses.name(row), float(relations.length[row]), True
+
+
 def test_cuts_may_differ(tmp_path):
     path = written(box(20, 30, 40), tmp_path / "part.brep")
     face, edge, length, _ = BOX[0]
@@ -120,15 +155,16 @@ def test_closed_rims(radius, tmp_path):
         assert 0.1 * 9 * length < taken < 0.15 * 9 * length
 
 
-def test_edges_that_go_on_over_a_round_are_refused(tmp_path):
+def test_an_edge_that_goes_on_over_a_round_is_rounded_with_it(tmp_path):
     shape = box_with_fillet(5.0)
     path = written(shape, tmp_path / "part.brep")
     graph = graph_of(shape)
     number = graph.faces.kind.index("cylinder")
     row = graph.uses.of_face(number).start
     arcs = [k for k in range(4) if abs(graph.uses.points[row + k, 0, 2] - graph.uses.points[row + k, -1, 2]) < 1e-9]
-    with pytest.raises(EdgeError, match="have to be rounded together"):
-        round_edge(path, number, f"e{arcs[0]}", 1.0, tmp_path / "out.step")
+    found = round_edge(path, number, f"e{arcs[0]}", 1.0, tmp_path / "out.step")
+    assert found.said.startswith("3 edges that go on in each other, ")
+    assert found.gate.faces == (7, 10)
 
 
 def test_the_command_rounds_an_edge(tmp_path):
