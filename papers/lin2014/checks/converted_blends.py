@@ -59,7 +59,7 @@ def pair_means(v: Vector) -> list[Fraction]:
 
 
 # What becomes of the last of an odd number of knots: each a reading of the rule, or what our own examples do.
-UNPAIRED = {
+UNPAIRED: dict[str, Callable[[Vector], list[Fraction]]] = {
     "dropped": pair_means,
     "kept": lambda v: [*pair_means(v), *v[len(v) - len(v) % 2 :]],
     "averaged with v_e": lambda v: [*pair_means(v), *((x + 1) / 2 for x in v[len(v) - len(v) % 2 :])],
