@@ -62,11 +62,10 @@ def with_commands(
     for face in place.faces:
         between = betweens[face]
         ends = end_edges(graph, face, (between.a.uses, between.b.uses))
-        sewn = _is_sewn(graph, [face])
-        keeps = sewn and bool(going_on(graph, relations, ends))
-        names = _edges_to_name(graph, relations, between)
-        alone = can_hold_a_solid(graph.path) and not sewn
-        commands.append(replacing(graph.path, [face], names, keep_ends=keeps, alone=alone))
+        word = "" if _is_sewn(graph, [face]) else "--surfaces"
+        if not word and going_on(graph, relations, ends):
+            word = "--keep-ends"
+        commands.append(replacing(graph.path, [face], _edges_to_name(graph, relations, between), word=word))
     return replace(place, commands=tuple(commands))
 
 
@@ -79,7 +78,7 @@ def _of_run(graph: EdgeGraph, relations: Relations, place: Place, chains: Sequen
         return None
     if run.is_plain or not _is_sewn(graph, run.faces):
         return None
-    return replacing(graph.path, run.faces, keep_ends=runs_on(graph, relations, run))
+    return replacing(graph.path, run.faces, word="--keep-ends" if runs_on(graph, relations, run) else "")
 
 
 def _is_sewn(graph: EdgeGraph, faces: Sequence[int]) -> bool:
@@ -147,29 +146,22 @@ def _between_chains(path: str, place: Place, words: tuple[str, str]) -> str:
     return shlex.join(["semispline", "blend", file, file, "--edge-a", words[0], "--edge-b", words[1], "-o", out])
 
 
-def replacing(
-    path: str,
-    faces: Sequence[int],
-    edges: tuple[str, str] | None = None,
-    *,
-    keep_ends: bool = False,
-    alone: bool = False,
-) -> str:
+def replacing(path: str, faces: Sequence[int], edges: tuple[str, str] | None = None, *, word: str = "") -> str:
     """Return the command that blends the faces beyond some, from one edge of the first to another where they are named.
 
-    `alone` asks for the blend as a surface, instead of the solid with it.
+    `word` asks for edges that are kept, or for the blend alone: nothing where no solid comes back anyway.
 
     Examples
     --------
     >>> replacing("my part.step", [65])
     "semispline blend 'my part.step' --replace 65 -o blend-65.step"
-    >>> replacing("part.step", [12, 13], keep_ends=True)
+    >>> replacing("part.step", [12, 13], word="--keep-ends")
     'semispline blend part.step --replace 12,13 --keep-ends -o blend-12.step'
     """
     words = ["semispline", "blend", _safe(path), "--replace", ",".join(map(str, faces))]
     if edges is not None:
         words += ["--edge-a", edges[0], "--edge-b", edges[1]]
-    words += ["--keep-ends"] * (keep_ends and can_hold_a_solid(path)) + ["--surfaces"] * alone
+    words += [word] * bool(word and can_hold_a_solid(path))
     return shlex.join([*words, "-o", f"blend-{faces[0]}.step"])
 
 
