@@ -137,6 +137,14 @@ def test_a_contact_of_no_length_stands_still():
         _check_speeds(BEFORE, piece([(0, 0, 0), (0, 0, 0)]), 1)
 
 
+def test_a_half_circle_runs_on_though_a_control_point_is_at_infinity():
+    jets = np.zeros((2, 3, 4))
+    jets[0] = [[1, 0, 0, 1], [0, 1, 0, 6e-17], [-1, 0, 0, 1]]
+    jets[1, :, 2] = 1.0
+    half = Piece(0, (0.0, 1.0), jets, QUADRATIC, (2, 2), np.zeros(2), 1.0)
+    _check_speeds(half, half, 1)
+
+
 def test_a_crease_is_the_angle_between_normals():
     """The second face turned about the first one's side edge, which is upright: it leans too."""
     t = np.radians(30)
@@ -183,6 +191,14 @@ def test_what_rounding_leaves_asks_for_no_slopes(rounding, least, times, is_roun
     else:
         assert slopes[1][0, Q, 1] == pytest.approx(-lean, rel=1e-3)
         assert result.joints[1].residuals[1] < lean / 100
+
+
+@pytest.mark.parametrize(("apart", "least"), [(5e-13, 5e-12), (5e-12, 5e-11), (5e-9, 1e-10)])
+@pytest.mark.parametrize(("times", "is_noise"), BOTH_SIDES)
+def test_noise_is_ten_times_what_cannot_be_made_to_agree(apart, least, times, is_noise):
+    """But for a part in 1e10, what the faces leave the contact apart by is no reason for a jump."""
+    result = joined(BEFORE, piece(AFTER, (0, apart, -1), (times * least, apart, -1)))
+    assert (not result.coefficients[1].slopes.any()) is is_noise
 
 
 def test_slopes_close_a_joint():
