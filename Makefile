@@ -17,7 +17,7 @@ QUICK := tests/test_documents.py tests/test_readme.py tests/test_rooms.py tests/
 	$(addprefix tests/solver/,splines generated proof judge blending io c_export) \
 	$(patsubst %,--ignore=tests/solver/%.py,$(LONG))
 
-.PHONY: report check quick test test-left-out test-kernels mutants lint types layers fresh bench shapes reach pictures clean
+.PHONY: report check quick test test-left-out test-kernels mutants lint types layers fresh recheck bench shapes reach solids pictures clean
 
 $(STAMP): pyproject.toml constraints.txt
 	$(PYTHON) -m venv $(VENV)
@@ -62,6 +62,11 @@ layers: $(STAMP)
 fresh: $(STAMP)
 	$(BIN)/semispline generate --check
 
+# What the verdicts rest on, repeated by PARI: in a process without SymPy, and by gp alone.
+recheck: $(STAMP)
+	$(BIN)/semispline verify lin2014 --recheck pari --certificates build/certificates
+	cd build/certificates && gp -q check.gp
+
 bench: $(STAMP)
 	$(BIN)/python benchmarks/run.py
 
@@ -73,6 +78,10 @@ shapes: $(STAMP)
 # Every place of real files, blended by --replace: docs/reach.md. AGAIN as of shapes; MORE names further files.
 reach: $(STAMP)
 	$(BIN)/python benchmarks/reach/run.py $(AGAIN) $(MORE)
+
+# Every fillet of real files, replaced by --replace, one solid back: docs/solids.md. AGAIN and MORE as of reach.
+solids: $(STAMP)
+	$(BIN)/python benchmarks/solids/run.py $(AGAIN) $(MORE)
 
 # The picture in README, of the example beside it: docs/pipe_to_elbow.png.
 pictures: $(STAMP)

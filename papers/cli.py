@@ -22,6 +22,7 @@ from semispline.solver.reports import print_warnings
 
 if TYPE_CHECKING:
     from semispline.papers.ledger import Ledger
+    from semispline.papers.recheck import Recheck
 
 app = typer.Typer(
     no_args_is_help=True,
@@ -60,25 +61,63 @@ def verify_command(
         str | None,
         typer.Option(metavar="FILE", help="Write the report of the paper; what a study found stays at its end."),
     ] = None,
+    recheck: Annotated[
+        str | None, typer.Option(metavar="SYSTEM", help="Have a second system, pari, repeat what verdicts rest on.")
+    ] = None,
+    certificates: Annotated[
+        str | None, typer.Option(metavar="DIR", help="Write what verdicts rest on, for PARI alone: gp -q check.gp.")
+    ] = None,
 ) -> None:
     """Decide every claim of a paper anew; exit status 1 if a verdict is not the recorded one, 3 if one is missing."""
     from semispline.papers.ledger import paper_files
+    from semispline.papers.recheck import require_folder, require_system
     from semispline.papers.report import ledger_markdown, ledger_record, with_study_kept
     from semispline.solver.io import check_outputs, to_text, write_text
 
     check_outputs({"--json": None if json_file == "-" else json_file, "--markdown": markdown}, paper_files(paper))
+    if recheck is not None:
+        require_system(recheck)
+    if certificates is not None:
+        require_folder(certificates)
     ledger = decided(paper)
+    second = _second_system(ledger, recheck, certificates) if recheck or certificates else None
     if json_file == "-":
-        typer.echo(to_text(ledger_record(ledger)), nl=False)
+        typer.echo(to_text(ledger_record(ledger, second)), nl=False)
     elif json_file is not None:
-        write_text(json_file, to_text(ledger_record(ledger)))
+        write_text(json_file, to_text(ledger_record(ledger, second)))
     if markdown is not None:
         file = Path(markdown)
         before = file.read_text(encoding="utf-8", errors="replace") if file.is_file() else ""
         write_text(markdown, with_study_kept(ledger_markdown(ledger), before))
     if json_file != "-":
         print_ledger(ledger)
-    _end_as(ledger)
+        if second is not None:
+            typer.echo(recheck_text(second))
+    if second is not None:
+        for problem in second.problems:
+            typer.echo(problem, err=True)
+    _end_as(ledger, agrees=second is None or second.agrees)
+
+
+def _second_system(ledger: Ledger, system: str | None, folder: str | None) -> Recheck:
+    """Export what the verdicts of a ledger rest on, write it where asked, and have it repeated where asked."""
+    from semispline.papers.recheck import Recheck, exported, rechecked, write_certificates
+
+    export = exported(ledger.paper)
+    if folder is not None:
+        write_certificates(folder, export)
+    return rechecked(export, folder) if system is not None else Recheck(export)
+
+
+def recheck_text(second: Recheck) -> str:
+    """Return in one line what was exported and what the second system agrees on."""
+    counts = second.counts()
+    done = (
+        f", {counts['identities_agreed']} agreed; {counts['rechecked']} records rechecked as a whole"
+        if second.refused is not None
+        else ""
+    )
+    return f"{counts['identities_exported']} identities exported{done}; {counts['not_expressible']} not expressible"
 
 
 @app.command("reproduce")
@@ -134,11 +173,11 @@ def decided(name: str) -> Ledger:
         return verify(name, workers=min(os.cpu_count() or 1, 8), progress=lambda decision: advance(decision.id))
 
 
-def _end_as(ledger: Ledger) -> None:
+def _end_as(ledger: Ledger, *, agrees: bool = True) -> None:
     """End with the exit status of a ledger: what gave no answer is a failure of its check, and never a no."""
     if ledger.unanswered:
         raise typer.Exit(FAILED)
-    if not ledger.ok:
+    if not ledger.ok or not agrees:
         raise typer.Exit(ANSWER_IS_NO)
 
 

@@ -16,7 +16,7 @@ import semispline
 ROOT = Path(__file__).parents[1]
 HALLS = ("derivations", "papers", "solver")
 # Not installed everywhere or not on every system, so their imports may stand where they are used.
-EXTRAS = ("OCP", "fcntl", "pyvista", "resource", "rhino3dm", "smlibpy", "vtkmodules")
+EXTRAS = ("OCP", "cypari", "fcntl", "pyvista", "resource", "rhino3dm", "smlibpy", "vtkmodules")
 
 
 def module_name(path):

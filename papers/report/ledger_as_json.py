@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from semispline.papers.ledger import Ledger
+from semispline.papers.recheck import Recheck
 from semispline.papers.report.ledger_words import (
     consequence_text,
     correction_text,
@@ -14,8 +15,8 @@ from semispline.papers.report.ledger_words import (
 )
 
 
-def ledger_record(ledger: Ledger) -> dict[str, Any]:
-    """Return the ledger as the file format has it."""
+def ledger_record(ledger: Ledger, second: Recheck | None = None) -> dict[str, Any]:
+    """Return the ledger as the file format has it, with what a second system says of it where it was asked."""
     claims = []
     for claim, decision in zip(ledger.paper.claims, ledger.decisions, strict=True):
         claims.append(
@@ -29,6 +30,8 @@ def ledger_record(ledger: Ledger) -> dict[str, Any]:
                 "evidence": evidence_text(decision) or claim.reason,
                 "strength": strength_text(decision) or None,
                 "proved": decision.proved,
+                "consistent": decision.consistent,
+                "cause": claim.cause,
                 "condition": "; ".join(r.condition for r in decision.readings if r.condition),
                 "readings": [
                     {"reading": r.label, "verdict": str(r.verdict), "cases": r.cases, "true": r.true_case,
@@ -51,6 +54,7 @@ def ledger_record(ledger: Ledger) -> dict[str, Any]:
                     "survivors": list(decision.mutation.survivors),
                 },
                 "seconds": round(decision.seconds, 3),
+                **({"recheck": second.record(claim.id)} if second else {}),
             }
         )  # fmt: skip
     return {
@@ -58,5 +62,10 @@ def ledger_record(ledger: Ledger) -> dict[str, Any]:
         "kind": "ledger",
         "paper": ledger.paper.name,
         "claims": claims,
-        "counts": ledger.counts(),
-    }
+        "causes": [
+            {"key": cause.key, "title": cause.title, "text": cause.text, "misprint": cause.misprint,
+             "records": [decision.id for decision in decisions]}
+            for cause, decisions in ledger.causes()
+        ],
+        "counts": ledger.counts() | (second.counts() if second else {}),
+    }  # fmt: skip

@@ -48,7 +48,7 @@ def facing_rims(a: Chain, b: Chain, options: BlendOptions) -> tuple[Chain, Chain
     if any(chain.is_steered(order) for chain, order in zip((a, nearest), options.orders, strict=True)):
         return None
     pair = [chain.rim_pieces(order) for chain, order in zip((a, nearest), options.orders, strict=True)]
-    return (a, nearest) if _answer(*pair) else None
+    return (a, nearest) if _answer(pair[0], pair[1], nearest.origin - a.origin) else None
 
 
 def _stations(chain: Chain) -> FloatArray:
@@ -58,14 +58,17 @@ def _stations(chain: Chain) -> FloatArray:
     return np.array([*(way[0] for way in ways), ways[-1][1]])
 
 
-def _answer(a: JoinedPieces, b: JoinedPieces) -> bool:
-    """Tell whether at each joint of both nothing but derivatives along one tangent jumps."""
+def _answer(a: JoinedPieces, b: JoinedPieces, offset: FloatArray) -> bool:
+    """Tell whether at each joint of both nothing but derivatives along one tangent jumps.
+
+    `offset` leads from the origin of a to that of b.
+    """
     if len(a.pieces) != len(b.pieces):
         return False
     if any(not _run_alike(one.jets, other.jets) for one, other in zip(a.pieces, b.pieces, strict=True)):
         return False
     joints = [k for k, joint in enumerate(a.joints) if joint is not None]
-    return all(_answers(_at_joint(a, k), _at_joint(b, k)) for k in joints)
+    return all(_answers(_at_joint(a, k), _at_joint(b, k), offset) for k in joints)
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,12 +95,12 @@ class _AtJoint:
         return square and all(_is_along(jump, self.tangent, one, speed * size) for jump, one, size in jumps)
 
 
-def _answers(a: _AtJoint, b: _AtJoint) -> bool:
+def _answers(a: _AtJoint, b: _AtJoint, offset: FloatArray) -> bool:
     if not (a.is_plain and b.is_plain) or a.tangent @ b.tangent < 0:
         return False
     if np.linalg.norm(np.cross(a.tangent, b.tangent)) > _SQUARE:
         return False
-    return _is_square(b.values[0] - a.values[0], a.tangent, a.extent)
+    return _is_square(b.values[0] + offset - a.values[0], a.tangent, a.extent)
 
 
 def _at_joint(joined: JoinedPieces, k: int) -> _AtJoint:

@@ -28,7 +28,7 @@ def _within(graph: EdgeGraph, row: int) -> float:
     """Return the same for the face of one use; infinite where nothing is known to end it."""
     uses = graph.uses
     at = np.arange(*uses.of_face(int(uses.face[row])).indices(len(uses)))
-    over = np.array([_goes_on(graph, x) for x in at.tolist()], dtype=np.bool_)
+    over = np.array([_goes_on(graph, int(x)) for x in at], dtype=np.bool_)
     seams = at[over]
     at = at[(uses.edge[at] != uses.edge[row]) & (uses.pcurve[at] != "none") & ~over]
     ends = uses.points[at][:, [0, -1], None] - uses.points[row, [0, -1]]
@@ -53,10 +53,10 @@ def _half_round(graph: EdgeGraph, row: int, seam: int) -> float:
     uses = graph.uses
     axis = int(np.ptp(uses.uv[seam], axis=0).argmin())
     start, end = graph.faces.ends[uses.face[row]][2 * axis : 2 * axis + 2]
-    rest = float(end - start - np.ptp(uses.uv[row][:, axis]))
+    rest = end - start - float(np.ptp(uses.uv[row][:, axis]))
     if rest <= _ALL_ROUND * (end - start):
         return np.inf
-    return rest / 2 * float((uses.speed_u, uses.speed_v)[axis][row].min())
+    return float(rest / 2 * (uses.speed_u, uses.speed_v)[axis][row].min())
 
 
 def _between_ends(graph: EdgeGraph, row: int, lines: FloatArray) -> float:

@@ -100,11 +100,13 @@ def _of_ring(
     period, within = high - low, _SAME_PLACE * (high - low)
     places = _placed(surface, a[:-1], b[:-1])
     apart = _apart(places[0], places[1], period)
+    way, step = (
+        (x - places[0, 0]) % period
+        for x in (_along(boundary_curve(surface, "u0"), middle[None])[0], places[0, 1 % places.shape[1]])
+    )
+    runs_up = bool(way < step)
     if not (apart <= within).any():
-        raise EdgeError(
-            "--replace: the corners of this closed run lie at different places along both sides of its blend, and none "
-            "is fit to be where it closes; --surfaces writes the blend alone"
-        )
+        return _unwound(surface, places if runs_up else places[:, ::-1], runs_up=runs_up)
     # Best one that lies on the seam.
     at_seam = _apart(places[0], np.full_like(places[0], low), period)
     k = int(np.where(apart <= within, at_seam, np.inf).argmin())
@@ -112,15 +114,38 @@ def _of_ring(
         surface = move_seam(surface, v=_on_knot(surface, float(places[0, k])))
         places = _placed(surface, a[:-1], b[:-1])
         low, high = surface.domain[1]
-    way, step = (
-        (x - places[0, 0]) % period
-        for x in (_along(boundary_curve(surface, "u0"), middle[None])[0], places[0, 1 % places.shape[1]])
-    )
-    runs_up = bool(way < step)
     begun = np.roll((places - low) % period, -k, axis=1)
     begun[:, 0] = 0.0 if runs_up else period
     closed = np.concatenate([begun, np.full((2, 1), period if runs_up else 0.0)], axis=1)
     return surface, np.asarray(low + closed), k
+
+
+def _unwound(surface: BSplineSurface, places: FloatArray, *, runs_up: bool) -> tuple[BSplineSurface, FloatArray, int]:
+    """Return a closed blend three times over, where the corners, in increasing order, lie on it, and the first one.
+
+    A piece that runs across the seam is then one of it.
+    """
+    low, high = surface.domain[1]
+    period = high - low
+    steps = np.diff(np.concatenate([places, places[:, :1]], axis=1), axis=1) % period
+    second = places[0, 0] + (places[1, 0] - places[0, 0] + period / 2) % period - period / 2
+    starts = np.array([places[0, 0], second])
+    starts += period if starts.min() < low else 0.0
+    found = starts[:, None] + np.concatenate([np.zeros((2, 1)), np.cumsum(steps, axis=1)], axis=1)
+    q, knots = surface.degree_v, surface.knots_v
+    longer = np.concatenate([knots[:-1], knots[q + 1 : -1] + period, knots[q + 1 :] + 2 * period])
+    points = [surface.control_points, surface.control_points[:, 1:], surface.control_points[:, 1:]]
+    weights = surface.weights
+    whole = BSplineSurface(
+        surface.degree_u,
+        q,
+        surface.knots_u,
+        longer,
+        np.concatenate(points, axis=1),
+        None if weights is None else np.concatenate([weights, weights[:, 1:], weights[:, 1:]], axis=1),
+    )
+    # Walked down, the first corner comes last but one.
+    return (whole, found, 0) if runs_up else (whole, found[:, ::-1], places.shape[1] - 1)
 
 
 def _apart(one: FloatArray, other: FloatArray, period: float) -> FloatArray:

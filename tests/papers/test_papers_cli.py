@@ -57,6 +57,40 @@ def test_verify_a_folder_and_write_both_files(made_up_paper, tmp_path):
     assert "### eq-2" in (tmp_path / "r.md").read_text()
 
 
+def test_a_paper_without_certificates_says_so(made_up_paper, tmp_path):
+    result = run("verify", made_up_paper(), "--json", tmp_path / "l.json", "--certificates", tmp_path / "c")
+    assert result.exit_code == 0, result.output
+    assert "0 identities exported; 2 not expressible" in result.output
+    record = json.loads((tmp_path / "l.json").read_text())
+    wanted = {"identities_exported": 0, "identities_agreed": 0, "rechecked": 0, "not_expressible": 2}
+    assert wanted.items() <= record["counts"].items()
+    assert all("no certificates" in claim["recheck"]["not_expressible"] for claim in record["claims"])
+    assert (tmp_path / "c" / "check.gp").is_file()
+
+
+def test_a_second_system_that_is_not_known(made_up_paper):
+    result = run("verify", made_up_paper(), "--recheck", "maple")
+    assert result.exit_code == 2
+    assert "--recheck: found 'maple', expected one of pari" in result.output
+
+
+def test_a_folder_for_certificates_that_is_a_file(made_up_paper, tmp_path):
+    (tmp_path / "c").write_text("mine")
+    result = run("verify", made_up_paper(), "--certificates", tmp_path / "c")
+    assert (result.exit_code, (tmp_path / "c").read_text()) == (2, "mine")
+
+
+@pytest.mark.parametrize(("refused", "status"), [({}, 0), ({"eq-1": ("eq-1 #1: x",)}, 1)])
+def test_what_a_second_system_refuses_is_a_no(made_up_paper, monkeypatch, refused, status):
+    import semispline.papers.recheck as room
+
+    monkeypatch.setattr(room, "require_system", lambda _: None, raising=False)
+    monkeypatch.setattr(room, "rechecked", lambda export, _: room.Recheck(export, refused, {}), raising=False)
+    result = run("verify", made_up_paper(), "--recheck", "pari")
+    assert result.exit_code == status
+    assert ("recheck: found different: eq-1 #1: x" in result.output) == bool(status)
+
+
 def test_a_report_written_anew_keeps_what_the_study_found(made_up_paper, tmp_path):
     folder, report = made_up_paper(), tmp_path / "r.md"
     assert run("verify", folder, "--markdown", report).exit_code == 0

@@ -15,7 +15,9 @@ from helpers.parts import compound, graph_of, moved, written
 from helpers.solids import box, circles_at, cut, cylinder, fused, rounded, volume
 from helpers.xcaf import labels_of, write_parts
 from semispline import EdgeError, FileError, SolidError, join_faces
+from semispline.solver import workers
 from semispline.solver.cli import app
+from semispline.solver.io import foreign
 from semispline.solver.topology import solid_joins
 from semispline.solver.topology.occ_parts import open_parts
 from semispline.solver.topology.occ_shapes import EdgeUsers, jets_at, parameters_of, parts, range_of
@@ -311,6 +313,24 @@ def test_inputs_are_not_changed(tmp_path):
     assert before == [(tmp_path / name).read_bytes() for name in ("a.brep", "b.brep")]
     with pytest.raises(FileError):
         join_faces(*specs, tmp_path / "out.3dm")
+
+
+def test_who_needs_too_long_is_ended_and_leaves_nothing(tmp_path, monkeypatch):
+    """Thirteen faces take the gate some seconds."""
+    specs, out = two(oval(), tube(5), tmp_path), tmp_path / "out.step"
+    out.write_text("what was there")
+    before, usual = sorted(tmp_path.iterdir()), foreign.call
+
+    def limited(module, arguments, seconds, megabytes):
+        if not module.endswith("occ_solid_worker"):
+            return usual(module, arguments, seconds, megabytes)
+        return workers.call(module, arguments, 1.0, megabytes)
+
+    monkeypatch.setattr(foreign, "call", limited)
+    with pytest.raises(FileError, match="of processor time"):
+        join_faces(*specs, out, split="joints")
+    assert out.read_text() == "what was there"
+    assert sorted(tmp_path.iterdir()) == before
 
 
 def test_a_tube_round_a_bend_has_a_middle_line_as_long_as_it_should():

@@ -1,0 +1,26 @@
+"""All certificates of the paper."""
+
+from __future__ import annotations
+
+from semispline.papers.ledger import Paper
+from semispline.papers.lin2014.certificates import (
+    appendix,
+    bezier,
+    conditions,
+    contact,
+    controls,
+    counts,
+    energy,
+    figures,
+    others,
+    surfaces,
+)
+from semispline.papers.recheck import Export, export_of
+
+MODULES = (surfaces, bezier, counts, contact, conditions, appendix, energy, figures, others)
+
+
+def export(paper: Paper) -> Export:
+    """Return the certificates of all decided records, and reasons for those that have none."""
+    drafts = {identifier: draft for module in MODULES for identifier, draft in module.DRAFTS.items()}
+    return export_of(paper, drafts, others.NOT_EXPRESSIBLE, controls.controls)

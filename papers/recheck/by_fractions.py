@@ -1,0 +1,145 @@
+"""Statements at their instance, with Python's `fractions` alone."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from fractions import Fraction
+from typing import Any
+
+from semispline.papers.recheck.arithmetic import instance, satisfied, value
+from semispline.papers.recheck.statements import Contained, Identity, Knots, Minimum, Positive, Rank, Statement, Term
+
+_Rows = list[list[Fraction]]
+
+
+def agrees(statement: Statement) -> bool:
+    """Tell whether what is stated is so at the instance; numbers need none."""
+    at = instance(statement.at, statement.where)
+    if any(value(factor, at) == 0 for factor in statement.nonzero):
+        return False
+    return _BY_FORM[statement.form](statement, at)
+
+
+def _identity(statement: Identity, at: dict[str, Fraction]) -> bool:
+    equal = value(statement.left, at) == value(statement.right, at)
+    return equal == statement.equal and all(satisfied(condition, at) for condition in statement.conditions)
+
+
+def _positive(statement: Positive, at: dict[str, Fraction]) -> bool:
+    if not _signs(statement):
+        return False
+    over, under = (sum(_term(term, at) for term in part) for part in (statement.over, statement.under))
+    left = value(statement.left, at)
+    return left * under == over and left >= 0 and under > 0 and (left > 0 or not statement.strict)
+
+
+def _signs(statement: Positive) -> bool:
+    """Tell whether the terms have the signs and names that the argument needs."""
+    positive = set(statement.positive)
+    known = positive | set(statement.nonnegative)
+    terms = (*statement.over, *statement.under)
+    allowed = all(
+        Fraction(term.coefficient) > 0 and all(n in known or power % 2 == 0 for n, power in term.powers)
+        for term in terms
+    )
+
+    def strict(part: tuple[Term, ...]) -> bool:
+        return any(not term.squares and all(name in positive for name, _ in term.powers) for term in part)
+
+    return allowed and strict(statement.under) and (strict(statement.over) or not statement.strict)
+
+
+def _term(term: Term, at: dict[str, Fraction]) -> Fraction:
+    product = Fraction(term.coefficient)
+    for name, power in term.powers:
+        product *= at[name] ** power
+    for square in term.squares:
+        product *= value(square, at) ** 2
+    return product
+
+
+def _rank(statement: Rank, at: dict[str, Fraction]) -> bool:
+    full = [[value(entry, at) for entry in row] for row in statement.matrix]
+    kernel = [[value(entry, at) for entry in row] for row in statement.kernel]
+    missing = len(kernel[0]) if kernel else 0
+    minor = [[full[i][j] for j in statement.columns] for i in statement.rows]
+    unit = [[Fraction(int(i == j)) for j in range(missing)] for i in range(missing)]
+    return (
+        len(minor) == statement.rank
+        and missing == len(full[0]) - statement.rank
+        and (not minor or _determinant(minor) != 0)
+        and (not missing or ([kernel[i] for i in statement.free] == unit and not any(map(any, _product(full, kernel)))))
+    )
+
+
+def _contained(statement: Contained, _: dict[str, Fraction]) -> bool:
+    outer, inner = _numbers(statement.outer), _numbers(statement.inner)
+    if statement.solution:
+        return _product(outer, _numbers(statement.solution)) == inner
+    row = [[Fraction(x) for x in statement.separator]]
+    return not any(_product(row, outer)[0]) and any(_product(row, inner)[0])
+
+
+def _minimum(statement: Minimum, _: dict[str, Fraction]) -> bool:
+    full, lower = _numbers(statement.matrix), _numbers(statement.lower)
+    pivots = [Fraction(x) for x in statement.pivots]
+    size = len(pivots)
+    triangular = all(lower[i][j] == (i == j) for i in range(size) for j in range(i, size))
+    scaled = [[lower[i][j] * pivots[j] for j in range(size)] for i in range(size)]
+    back = [list(row) for row in zip(*lower, strict=True)]
+    return triangular and all(pivot > 0 for pivot in pivots) and _product(scaled, back) == full
+
+
+def _knots(statement: Knots, _: dict[str, Fraction]) -> bool:
+    return _fact(statement) == statement.holds
+
+
+def _fact(statement: Knots) -> bool:
+    knots, order = [Fraction(x) for x in statement.numbers], statement.order
+    name, _, number = statement.fact.partition(" ")
+    inner = knots[order : len(knots) - order]
+    if name == "points":
+        return len(knots) - order == int(number)
+    if name == "increasing":
+        return knots == sorted(knots)
+    if name == "clamped":
+        return knots[:order] == [0] * order and knots[len(knots) - order :] == [1] * order
+    if name == "single":
+        return len(set(inner)) == len(inner) and all(0 < x < 1 for x in inner)
+    return knots == [Fraction(x) for x in statement.other]
+
+
+def _numbers(rows: Sequence[Sequence[str]]) -> _Rows:
+    return [[Fraction(entry) for entry in row] for row in rows]
+
+
+def _product(one: _Rows, other: _Rows) -> _Rows:
+    columns = list(zip(*other, strict=True))
+    return [[sum((a * b for a, b in zip(row, column, strict=True)), Fraction(0)) for column in columns] for row in one]
+
+
+def _determinant(rows: _Rows) -> Fraction:
+    rows = [list(row) for row in rows]
+    total = Fraction(1)
+    for n in range(len(rows)):
+        pivot = next((r for r in range(n, len(rows)) if rows[r][n] != 0), None)
+        if pivot is None:
+            return Fraction(0)
+        if pivot != n:
+            rows[n], rows[pivot] = rows[pivot], rows[n]
+            total = -total
+        total *= rows[n][n]
+        for r in range(n + 1, len(rows)):
+            factor = rows[r][n] / rows[n][n]
+            rows[r] = [a - factor * b for a, b in zip(rows[r], rows[n], strict=True)]
+    return total
+
+
+_BY_FORM: dict[str, Callable[[Any, dict[str, Fraction]], bool]] = {
+    "identity": _identity,
+    "positive": _positive,
+    "rank": _rank,
+    "contained": _contained,
+    "minimum": _minimum,
+    "knots": _knots,
+}

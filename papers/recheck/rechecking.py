@@ -1,0 +1,187 @@
+"""Exporting a paper, and handing it to the process that rechecks."""
+
+from __future__ import annotations
+
+import importlib
+import importlib.util
+import json
+import subprocess
+import sys
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+from semispline.papers.ledger import CheckFailedError, Paper, paper_names
+from semispline.papers.recheck.draft import is_decided
+from semispline.papers.recheck.files import write_certificates
+from semispline.papers.recheck.statements import Export, Identity
+from semispline.solver.errors import OptionError
+
+SYSTEMS = ("pari",)
+_SECONDS = 600
+
+
+@dataclass(frozen=True)
+class Recheck:
+    """What was exported, and what a second system said of it.
+
+    Attributes
+    ----------
+    export : Export
+    refused : mapping or None
+        Record -> statements with which it disagrees; None where it was not asked.
+    verdicts : mapping
+        Record -> the verdict that was made anew from its cases.
+    """
+
+    export: Export
+    refused: Mapping[str, tuple[str, ...]] | None = None
+    verdicts: Mapping[str, str | None] | None = None
+
+    @property
+    def agrees(self) -> bool:
+        """Whether nothing was refused, and every verdict is the recorded one."""
+        return not self.refused and not self.changed
+
+    @property
+    def changed(self) -> tuple[str, ...]:
+        """Records whose cases amount to another verdict than the recorded one, where all of them are there."""
+        verdicts = self.verdicts or {}
+        return tuple(
+            c.id
+            for c in self.export.certificates
+            if c.id in verdicts and not c.left_out and verdicts[c.id] != c.verdict
+        )
+
+    @property
+    def problems(self) -> tuple[str, ...]:
+        """What the second system disagrees with, one a line."""
+        refused = [f"recheck: found different: {name}" for found in (self.refused or {}).values() for name in found]
+        verdicts = self.verdicts or {}
+        recorded = {c.id: c.verdict for c in self.export.certificates}
+        return (
+            *refused,
+            *(f"recheck: {i}: the cases amount to {verdicts[i]}, recorded {recorded[i]}" for i in self.changed),
+        )
+
+    def is_whole(self, identifier: str) -> bool:
+        """Tell whether the whole verdict of a record was repeated."""
+        if self.verdicts is None or self.refused is None:
+            return False
+        found = next((c for c in self.export.certificates if c.id == identifier), None)
+        return (
+            found is not None
+            and not found.left_out
+            and not self.refused.get(identifier)
+            and self.verdicts.get(identifier) == found.verdict
+        )
+
+    def counts(self) -> dict[str, int]:
+        """Return how many identities were exported, and agreed on; records rechecked as a whole, and not expressible.
+
+        Identities that several records share are counted once, and only those whose sides differ as text.
+        """
+        refused = self.refused or {}
+        exported, disputed, same = set(), set(), set()
+        for certificate in self.export.certificates:
+            for number, case in enumerate(certificate.statements, start=1):
+                if not isinstance(case, Identity):
+                    continue
+                key = (case.left, case.right, case.where, case.equal)
+                if case.left == case.right:
+                    same.add(key)
+                else:
+                    exported.add(key)
+                    mark = f"{certificate.id} #{number}:"
+                    if any(text.startswith(mark) for text in refused.get(certificate.id, ())):
+                        disputed.add(key)
+        asked = self.refused is not None
+        return {
+            "identities_exported": len(exported),
+            "identities_agreed": len(exported - disputed) if asked else 0,
+            "identities_of_one_text": len(same),
+            "statements_exported": sum(len(c.statements) for c in self.export.certificates),
+            "rechecked": sum(self.is_whole(c.id) for c in self.export.certificates),
+            "not_expressible": len(self.export.not_expressible)
+            + sum(bool(c.left_out) for c in self.export.certificates),
+        }
+
+    def reasons(self) -> dict[str, str]:
+        """Return why records are not rechecked as a whole."""
+        return dict(self.export.not_expressible) | {c.id: c.left_out for c in self.export.certificates if c.left_out}
+
+    def record(self, identifier: str) -> dict[str, Any] | None:
+        """Return what a ledger says of one record; None where it is not decided."""
+        found = next((c for c in self.export.certificates if c.id == identifier), None)
+        reason = self.reasons().get(identifier, "")
+        if found is None and not reason:
+            return None
+        return {
+            "statements": len(found.statements) if found else 0,
+            "refused": list((self.refused or {}).get(identifier, ())),
+            "whole": self.is_whole(identifier),
+            "not_expressible": reason,
+            "believed": list(found.believed) if found else [],
+        }
+
+
+def exported(paper: Paper) -> Export:
+    """Return the export of a paper; of one without certificates of its own, that it has none."""
+    if paper.name in paper_names() and importlib.util.find_spec(f"semispline.papers.{paper.name}.certificates"):
+        module = importlib.import_module(f"semispline.papers.{paper.name}.certificates.export")
+        found = module.export(paper)
+        assert isinstance(found, Export)
+        return found
+    reason = "no certificates were written for this paper"
+    return Export(paper.name, (), (), {claim.id: reason for claim in paper.claims if is_decided(claim)})
+
+
+def require_system(system: str) -> None:
+    """Refuse a system that is not known or not installed.
+
+    Raises
+    ------
+    OptionError
+    """
+    if system not in SYSTEMS:
+        raise OptionError(f"--recheck: found {system!r}, expected one of {', '.join(SYSTEMS)}")
+    if importlib.util.find_spec("cypari") is None:
+        raise OptionError("--recheck pari: found no cypari, expected it installed: pip install 'semispline[recheck]'")
+
+
+def rechecked(export: Export, folder: str | Path | None = None) -> Recheck:
+    """Have an export decided in a process of its own, which never imports SymPy.
+
+    Parameters
+    ----------
+    export : Export
+    folder : str or Path, optional
+        Where it has been written; else it is written to a folder that is removed again.
+
+    Raises
+    ------
+    CheckFailedError
+        The process gave no answer, or did import SymPy.
+    """
+    if not export.certificates:
+        return Recheck(export, {}, {})
+    with TemporaryDirectory() as scratch:
+        place = Path(folder) if folder is not None else Path(scratch) / "certificates"
+        if folder is None:
+            write_certificates(place, export)
+        answer = Path(scratch) / "answer.json"
+        command = [sys.executable, "-m", "semispline.papers.recheck.process", str(place), str(answer)]
+        try:
+            done = subprocess.run(command, capture_output=True, text=True, timeout=_SECONDS, check=False)
+        except subprocess.TimeoutExpired:
+            raise CheckFailedError(f"recheck: found no answer within {_SECONDS} s, expected one") from None
+        if not answer.is_file():
+            last = done.stderr.strip().splitlines()[-1:] or ["nothing"]
+            raise CheckFailedError(f"recheck: the process ended without an answer: {last[0]}")
+        result = json.loads(answer.read_text(encoding="utf-8"))
+    if result["sympy"]:
+        raise CheckFailedError("recheck: found SymPy in the process that rechecks, expected it not to be imported")
+    refused = {name: tuple(found) for name, found in result["refused"].items()}
+    return Recheck(export, refused, result["verdicts"])

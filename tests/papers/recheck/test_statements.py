@@ -1,0 +1,145 @@
+"""Each form of a statement: what is right is agreed on, what is wrong refused, by PARI and by `fractions`."""
+
+import json
+from dataclasses import replace
+from fractions import Fraction
+
+import pytest
+import sympy as sp
+
+from semispline.papers.recheck import (
+    Export,
+    contained,
+    different,
+    identity,
+    knots,
+    minimum,
+    not_zero,
+    positive,
+    rank,
+    write_certificates,
+)
+from semispline.papers.recheck.by_fractions import agrees
+from semispline.papers.recheck.files import read_certificates
+from semispline.papers.recheck.statements import Certificate, Identity, Reading, Term, as_record, from_record
+from semispline.papers.recheck.verdicts import verdict_of
+
+X = sp.Symbol("x")
+MATRIX = [[2, 1, 0], [1, 2, 1], [0, 1, 2]]
+RIGHT = {
+    "identity": identity("a", (X**2 - 1) / (X - 1), X + 1),
+    "where": identity("a", "y^2", "x^2 + 2*x + 1", where=(("y", "x + 1"),)),
+    "different": different("a", X**2, X, conditions=("x > 1",)),
+    "not zero": not_zero("a", X - 1),
+    "positive": positive("a", (X + 2) / (X + 1) ** 2, nonnegative=("x",)),
+    "squares": positive("a", "x^2 - 2*x*y + y^2", over=[Term(coefficient="1", squares=("x - y",))], strict=False),
+    "number": positive("a", "1/2 - 1/3"),
+    "rank": rank("a", [[1, 2, 3], [2, 4, 6], [1, 0, 1]]),
+    "rank of functions": rank("a", [[X, 1], [X**2, X]]),
+    "contained": contained("a", [[1, 0], [0, 1], [1, 1]], [[2], [3], [5]]),
+    "not contained": contained("a", [[1, 0], [0, 1], [1, 1]], [[2], [3], [6]]),
+    "minimum": minimum("a", MATRIX),
+    "knots": knots("a", [0, 0, Fraction(1, 2), 1, 1], "single", order=2),
+}
+WRONG = {
+    "identity": replace(RIGHT["identity"], right="x + 2"),
+    "equal, though different": replace(RIGHT["identity"], equal=False),
+    "different, though equal": replace(RIGHT["different"], equal=True),
+    "a witness at which both are the same": replace(RIGHT["different"], at=(("x", "1"),)),
+    "a condition that the witness misses": replace(RIGHT["different"], conditions=("x < 0",)),
+    "a witness where a denominator vanishes": replace(different("a", 1 / (X - 1), X), at=(("x", "1"),)),
+    "a sign": replace(RIGHT["positive"], over=(Term(coefficient="-1"),)),
+    "another numerator": replace(RIGHT["positive"], over=(Term(coefficient="1", powers=(("x", 1),)),)),
+    "an odd power of a name without a sign": replace(RIGHT["positive"], nonnegative=()),
+    "rank": replace(RIGHT["rank"], rank=1),
+    "no kernel": replace(RIGHT["rank"], kernel=(("1",), ("1",), ("1",))),
+    "a minor that is zero": replace(RIGHT["rank"], rows=(0, 1)),
+    "a solution": replace(RIGHT["contained"], solution=(("2",), ("4",))),
+    "a separator": replace(RIGHT["not contained"], separator=("1", "0", "0")),
+    "a pivot": replace(RIGHT["minimum"], pivots=("2", "3/2", "-4/3")),
+    "another triangle": replace(RIGHT["minimum"], lower=(("1", "0", "0"), ("0", "1", "0"), ("0", "0", "1"))),
+    "knots": replace(RIGHT["knots"], numbers=("0", "0", "0", "1", "1")),
+}
+
+
+def pari_agrees(tmp_path, *statements):
+    """Return which of some statements PARI and `fractions` agree with, as the process does."""
+    pytest.importorskip("cypari")
+    from semispline.papers.recheck.process import recheck
+
+    certificates = tuple(
+        Certificate(f"eq-{n}", "holds", (Reading((case,)),)) for n, case in enumerate(statements, start=1)
+    )
+    write_certificates(tmp_path, Export("p", certificates))
+    refused = recheck(tmp_path)["refused"]
+    return [not any("fractions" not in name for name in refused.get(c.id, ())) for c in certificates]
+
+
+@pytest.mark.parametrize("name", RIGHT)
+def test_fractions_agree(name):
+    assert agrees(RIGHT[name])
+
+
+@pytest.mark.parametrize("name", WRONG)
+def test_fractions_refuse(name):
+    assert not agrees(WRONG[name])
+
+
+def test_pari_agrees(tmp_path):
+    assert dict(zip(RIGHT, pari_agrees(tmp_path, *RIGHT.values()), strict=True)) == dict.fromkeys(RIGHT, True)
+
+
+def test_pari_refuses(tmp_path):
+    assert dict(zip(WRONG, pari_agrees(tmp_path, *WRONG.values()), strict=True)) == dict.fromkeys(WRONG, False)
+
+
+def test_a_quotient_by_itself_is_one_only_where_it_does_not_vanish(tmp_path):
+    bare = Identity(label="a", left="x/x", right="1", variables=("x",), at=(("x", "2"),))
+    assert pari_agrees(tmp_path, bare, replace(bare, nonzero=("x",)), replace(bare, nonzero=("x - 1",))) == [
+        False,
+        True,
+        False,
+    ]
+
+
+@pytest.mark.parametrize("name", RIGHT)
+def test_statements_come_back_from_a_file(name):
+    assert from_record(json.loads(json.dumps(as_record(RIGHT[name])))) == RIGHT[name]
+
+
+def test_factors_of_all_denominators_are_found():
+    found = identity("a", 1 / (X**2 - 4) + 3 / X, "1/(z*(z - 1))", where=(("z", "x + 5"),))
+    assert set(found.nonzero) == {"x", "x - 2", "x + 2", "x + 5", "x + 4"}
+
+
+TRUE, FALSE = identity("t", X + X, "x*2"), different("f", X, "x + 1")
+OUTSIDE = replace(FALSE, own=False, meets=False)
+
+
+@pytest.mark.parametrize(
+    ("readings", "verdict"),
+    [
+        ([Reading((TRUE,))], "holds"),
+        ([Reading((TRUE, FALSE))], "fails"),
+        ([Reading((TRUE, OUTSIDE), condition="c")], "holds-if"),
+        ([Reading((TRUE, OUTSIDE))], None),
+        ([Reading((TRUE, replace(OUTSIDE, meets=True)), condition="c")], None),
+        ([Reading((TRUE,)), Reading((FALSE,))], "ambiguous"),
+        ([Reading((TRUE,)), Reading(())], None),
+        ([], None),
+    ],
+)
+def test_verdicts_from_cases(readings, verdict):
+    assert verdict_of(Certificate("eq-1", "holds", tuple(readings))) == verdict
+
+
+def test_a_correction_that_is_false_leaves_no_verdict():
+    wrong = Certificate("eq-1", "fails", (Reading((FALSE,)),), Reading((FALSE,)))
+    assert verdict_of(wrong) is None
+    assert verdict_of(replace(wrong, correction=Reading((TRUE,)))) == "fails"
+
+
+def test_certificates_come_back_from_a_folder(tmp_path):
+    certificate = Certificate("eq-1", "fails", (Reading((FALSE,), "l", "c"),), Reading((TRUE,)), ("b",), "o")
+    write_certificates(tmp_path, Export("p", (certificate,), (TRUE,)))
+    assert read_certificates(tmp_path) == ([certificate], [TRUE])
