@@ -79,8 +79,8 @@ def closed_points(inner: tuple[Fraction, ...], free: list[int]) -> list[Fraction
 
 
 @cache
-def middle_ends() -> tuple[Any, Any]:
-    """Return first and last control point of the middle curve of least energy between two closed contact curves.
+def middle_curve() -> tuple[ExactSurface, tuple[Any, ...]]:
+    """Return the bases of a blend with one middle curve between two closed contacts, and its heights of least energy.
 
     One coordinate square to the axes of two cylinders, so that no row differs from the contact curve: R_w has none.
     """
@@ -93,7 +93,13 @@ def middle_ends() -> tuple[Any, Any]:
         ExactBase(across, tuple(tuple((as_expression(z), 0, i) for z in heights) for i in range(3))) for heights in nets
     ]
     _, points = exact_minimum(blend_problem(2, surface, *sides), 1, 1)
-    of_middle = [point[0] for (i, _), point in zip(surface.index, points, strict=True) if i == 3]
+    return surface, tuple(point[0] for point in points)
+
+
+def middle_ends() -> tuple[Any, Any]:
+    """Return first and last control point of the middle curve of least energy between two closed contact curves."""
+    surface, points = middle_curve()
+    of_middle = [point for (i, _), point in zip(surface.index, points, strict=True) if i == 3]
     return of_middle[0], of_middle[-1]
 
 

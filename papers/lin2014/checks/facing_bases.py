@@ -44,7 +44,7 @@ PLATES: dict[str, tuple[tuple[Any, Any], tuple[Any, Any]]] = {
 
 
 @cache
-def _strip(m: int = 6) -> tuple[Any, Any, tuple[Any, ...]]:
+def strip_energy(m: int = 6) -> tuple[Any, Any, tuple[Any, ...]]:
     """Return the energy in a, b and the cosines, for m + 1 rows, and a and b where it is least."""
     p, q, r = sp.symbols("p q r")
     form = sp.Poly(energy.end_energy(CUBIC, m, (0, p, 0, q, r, 0)), p, q, r)
@@ -61,7 +61,7 @@ def _strip(m: int = 6) -> tuple[Any, Any, tuple[Any, ...]]:
 def facing_cases(formula: Formula | None) -> Iterator[Case]:
     """Decide where the energy over alpha^2 is least, for every pair of angles; then plates, true where both are G1."""
     relation = given(formula).relation
-    total, best, unknowns = _strip()
+    total, best, unknowns = strip_energy()
     residual = sp.cancel(relation.rhs - relation.lhs + BEST - best)
     yield Case("every gap and pair of angles", bool(residual == 0), residual=residual)
     hessian = sp.hessian(total, unknowns)
@@ -120,7 +120,7 @@ def facing_shares() -> Consequence:
 
 def _share(m: int, steps: int = 400) -> float:
     """Return the share of pairs of angles, each even between -90 and 90 degrees, on a grid of midpoints."""
-    _, best, _ = _strip(m)
+    _, best, _ = strip_energy(m)
     function = sp.lambdify((COS_THETA, COS_PHI, COS_BETWEEN), best.subs(GAP, 1), "numpy")
     angles = np.pi * ((np.arange(steps) + 0.5) / steps - 0.5)
     theta, phi = np.meshgrid(angles, angles, indexing="ij")

@@ -10,12 +10,14 @@ import pytest
 from semispline.papers.ledger import mutation
 from semispline.papers.ledger.records import Strength, Verdict
 from semispline.papers.ledger.verification import verify
+from semispline.papers.report.erratum import erratum_of
 from semispline.papers.report.ledger_as_html import ledger_html
 from semispline.papers.report.ledger_as_json import ledger_record
 from semispline.papers.report.ledger_as_markdown import STUDY_HEADING, ledger_markdown
 from semispline.solver.io.json_text import to_text
 
-REPORT = Path(__file__).parents[3] / "papers" / "lin2014" / "REPORT.md"
+PAPER = Path(__file__).parents[3] / "papers" / "lin2014"
+RECORDS, REPORT = PAPER / "RECORDS.md", PAPER / "REPORT.md"
 
 # Decided by hand as well, by reading the derivation.
 KNOWN = {
@@ -98,10 +100,14 @@ def test_every_claim_is_decided_as_recorded():
     _outputs_are_complete(ledger)
     _report_reads_as_an_erratum(ledger)
     # The stored report says so too; how many mutants were tried is for the test below.
-    stored, text = REPORT.read_text(encoding="utf-8"), ledger_markdown(ledger)
+    stored, text = RECORDS.read_text(encoding="utf-8"), ledger_markdown(ledger)
     assert erratum(stored) == erratum(text)
     before, now = ({name: cells[:-1] for name, cells in rows(one).items()} for one in (stored, text))
     assert {name: before[name] for name in now} == now
+    fresh = erratum_of(ledger).text
+    assert REPORT.read_text(encoding="utf-8") == fresh, (
+        "run `semispline verify lin2014 --erratum papers/lin2014/REPORT.md`"
+    )
 
 
 @pytest.mark.slow
@@ -112,11 +118,11 @@ def test_every_mutant_is_noticed_and_the_report_is_fresh():
     _evidence_is_complete(ledger)
     _outputs_are_complete(ledger)
     _report_reads_as_an_erratum(ledger)
-    stored = REPORT.read_text(encoding="utf-8")
+    stored = RECORDS.read_text(encoding="utf-8")
     text = ledger_markdown(ledger)
     # What the study found stands after it.
     part = stored[: stored.index(STUDY_HEADING)]
-    assert part.strip() == text.strip(), "run `semispline verify lin2014 --markdown papers/lin2014/REPORT.md`"
+    assert part.strip() == text.strip(), "run `semispline verify lin2014 --markdown papers/lin2014/RECORDS.md`"
 
 
 def _verdicts_are_known(ledger):
