@@ -358,7 +358,9 @@ def _checked_contacts(
     ):
         strained = strained_by(options, found, index)
         measured = required_limits(contact, wanted)
-        if any(np.isnan(value) for _, value, _ in measured):
+        # Measures are those away from such places: a blend has to meet its base everywhere.
+        undefined = wanted[0] == "G" and wanted != "G0" and any(place.is_none for place in contact.no_normal)
+        if undefined or any(np.isnan(value) for _, value, _ in measured):
             check_regular_edge(base)
             raise ContactError(
                 f"contact {name}: the blend is degenerate where it meets the base, its shape parameter is "

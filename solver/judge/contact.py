@@ -14,6 +14,10 @@ class Place:
     point: tuple[float, float, float]
 
 
+# Of what it is elsewhere along the edge; the sections that look for it find no less.
+_NOTHING = 1e-9
+
+
 @dataclass(frozen=True)
 class NoNormal:
     """Where a surface has no proper normal on an edge: what is measured beside it does not hold there.
@@ -35,6 +39,11 @@ class NoNormal:
     point: tuple[float, float, float]
     reason: str
     fraction: float
+
+    @property
+    def is_none(self) -> bool:
+        """Nothing at all is left, as in a pole."""
+        return self.fraction <= _NOTHING
 
     def __str__(self) -> str:
         x, y, z = self.point

@@ -16,8 +16,6 @@ from semispline.solver.judge.contact import NoNormal
 # A derivative that falls to this part of its mean along the edge, or the sine of the angle between two: no normal that
 # means anything, as an area element so small is as good as a fold.
 VANISHES = 1e-3
-# To this part it vanishes altogether: the sections find no less.
-_NOTHING = 1e-9
 # At a zero of a derivative between two samples its size there is below this part of the mean.
 _SUSPECT = 0.5
 _PER_SPAN = 8
@@ -64,7 +62,7 @@ def beside_poles(base: Base, s: FloatArray, places: Iterable[NoNormal]) -> NDArr
 
     Derivatives of order k are noise there: rounding over the distance to the power of k.
     """
-    if not any(place.fraction <= _NOTHING for place in places):
+    if not any(place.is_none for place in places):
         return np.zeros(len(s), dtype=np.bool_)
     return np.asarray((_sizes(base, s) <= VANISHES * _means(_sizes(base, _samples(base)))[:, None]).any(axis=0))
 
@@ -78,7 +76,7 @@ def check_regular_edge(base: Base) -> None:
         Naming the first place.
     """
     for place in places_without_normal(base, "a"):
-        if place.fraction <= _NOTHING:
+        if place.is_none:
             raise EdgeError(
                 f"edge {base.edge}: no normal at parameter {place.parameter:.6g} along it ({place.reason}); choose an "
                 "edge where the surface is regular"
