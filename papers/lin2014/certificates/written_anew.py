@@ -198,6 +198,9 @@ def closing(formula: Formula) -> Iterator[Statement]:
         "row 1 at v_e less row 1 at v_s", formula.relation.rhs, as_text(ends["E"]) - as_text(ends["S"]), where=jumps
     )
     matrix = contact_rows(2, pr.k - 1, span_symbols(2), pr.k_r - 1, span_symbols(2, "H"))
+    spans = (("h1", text(pr.u_1)), ("H1", text(pr.w_kr - pr.w_s)), ("a", "alpha^2"))
+    derived = total(as_text(matrix[1, j]) * Text(f"(E_{j} - S_{j})") for j in range(2))
+    yield identity("row 1, by the derived rows", formula.relation.rhs, derived, where=(*jumps, *spans))
     closed = tuple((f"E_{j}", f"S_{j}") for j in range(3))
     for i in range(3):
         across = total(as_text(matrix[i, j]) * Text(f"(E_{j} - S_{j})") for j in range(i + 1))
