@@ -29,6 +29,7 @@ from semispline.solver.blending.chain_pieces import Piece, cartesian_slope, with
 from semispline.solver.blending.end_faces import EndFace, steered
 from semispline.solver.blending.reparametrisation import Reparametrisation, composed, slopes_along
 from semispline.solver.errors import EdgeError
+from semispline.solver.splines import basis_matrix
 
 # Angles in degrees: contacts that turn by more have a corner; by more than the second, a kink that is no one's wish.
 CORNER, KINK = 1.0, 1e-6
@@ -131,7 +132,9 @@ def _turn(before: Piece, after: Piece) -> float:
 
 def _check_speeds(before: Piece, after: Piece, joint: int) -> None:
     for piece, end in ((before, 1), (after, 0)):
-        speed, size = piece.end_speeds()[end], float(np.ptp([_place(x) for x in piece.jets[0]], axis=0).max())
+        # Control points say nothing of it: that of a half circle is at infinity.
+        points = basis_matrix(piece.along.degree, piece.along.knots, np.linspace(0, 1, 5)) @ piece.jets[0]
+        speed, size = piece.end_speeds()[end], float(np.ptp([_place(x) for x in points], axis=0).max())
         if speed <= _STILL * size:
             raise EdgeError(
                 f"joint {joint}: the contact stands still there, its derivative is {speed:.1e} where it is {size:.3g} "

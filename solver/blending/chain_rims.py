@@ -115,11 +115,8 @@ def _at_joint(joined: JoinedPieces, k: int) -> _AtJoint:
             values = values[:, :3] / weight
         sides.append((values, slopes / joined.spans[piece]))
     (values, before), (_, after) = sides
-    return _AtJoint(values, before, after, _extent(joined))
-
-
-def _extent(joined: JoinedPieces) -> float:
-    return max(float(np.abs(piece.jets[0, :, :3]).max()) for piece in joined.pieces)
+    extent = max(float(np.abs(piece.jets[0, :, :3]).max()) for piece in joined.pieces)
+    return _AtJoint(values, before, after, extent)
 
 
 def _run_alike(one: FloatArray, other: FloatArray) -> bool:

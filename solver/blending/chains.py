@@ -117,11 +117,11 @@ class Chain:
     def _strip(self, joined: JoinedPieces, jets: FloatArray, along: Basis) -> Strip:
         first = self.edges[0]
         low, high = first.surface.domain["uv".index(first.side[0])]
-        wide = well_told_width(jets)
-        shown, surface = (
-            self._surface(jets, along, width)
-            for width in (high - low, wide if wide > _SMALL * (high - low) else high - low)
-        )
+        wide = high - low
+        # To second order narrow rows tell enough.
+        if len(jets) > 3 and (told := well_told_width(jets, along)) > _SMALL * wide:
+            wide = told
+        shown, surface = (self._surface(jets, along, width) for width in (high - low, wide))
         cuts = np.concatenate([[0.0], np.cumsum(joined.spans)])
         joints = tuple(joint if joint is None else joint.moved_by(self.origin) for joint in joined.joints)
         return Strip(surface, shown, self.edges, self.turned, joined.spans, tuple(cuts.tolist()), joints)

@@ -358,7 +358,10 @@ def _checked_contacts(
     ):
         strained = strained_by(options, found, index)
         measured = required_limits(contact, wanted)
-        if any(np.isnan(value) for _, value, _ in measured):
+        # Measures are those away from poles: a blend has to meet its base there too.
+        ends = base.breakpoints_along()
+        in_pole = any(place.is_none and place.parameter in ends for place in contact.no_normal)
+        if (in_pole and wanted[0] == "G" and wanted != "G0") or any(np.isnan(value) for _, value, _ in measured):
             check_regular_edge(base)
             raise ContactError(
                 f"contact {name}: the blend is degenerate where it meets the base, its shape parameter is "

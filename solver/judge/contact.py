@@ -14,6 +14,10 @@ class Place:
     point: tuple[float, float, float]
 
 
+# Of what it is elsewhere along the edge; the sections that look for it find no less.
+_NOTHING = 1e-9
+
+
 @dataclass(frozen=True)
 class NoNormal:
     """Where a surface has no proper normal on an edge: what is measured beside it does not hold there.
@@ -36,6 +40,11 @@ class NoNormal:
     reason: str
     fraction: float
 
+    @property
+    def is_none(self) -> bool:
+        """Nothing at all is left, as in a pole."""
+        return self.fraction <= _NOTHING
+
     def __str__(self) -> str:
         x, y, z = self.point
         return f"no proper normal at parameter {self.parameter:.6g}, ({x:.5g}, {y:.5g}, {z:.5g}): {self.reason}"
@@ -45,7 +54,8 @@ class NoNormal:
 class Contact:
     """How two surfaces meet along an edge; the worst over samples in every span of both, and between them.
 
-    Angle and curvature are not a number where a side has no normal somewhere along the edge.
+    Where a side has no normal, as in a pole, nothing but the gap is told: angle and curvature are those of all other
+    places, and not a number where there is none.
 
     Rates are those of the curvature of the section of each side with the plane square to the edge, by arc length, with
     one normal and in one direction; None where they were not asked for. They mean something only where all measures of

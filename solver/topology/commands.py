@@ -62,22 +62,30 @@ def with_commands(
     for face in place.faces:
         between = betweens[face]
         ends = end_edges(graph, face, (between.a.uses, between.b.uses))
-        keeps = bool(going_on(graph, relations, ends))
-        names = _edges_to_name(graph, relations, between)
-        commands.append(replacing(graph.path, [face], names, keep_ends=keeps))
+        word = "" if _is_sewn(graph, [face]) else "--surfaces"
+        if not word and going_on(graph, relations, ends):
+            word = "--keep-ends"
+        commands.append(replacing(graph.path, [face], _edges_to_name(graph, relations, between), word=word))
     return replace(place, commands=tuple(commands))
 
 
 def _of_run(graph: EdgeGraph, relations: Relations, place: Place, chains: Sequence[Sequence[int]]) -> str | None:
-    """Return the command that replaces a chain, or the one that a fillet belongs to; None where none does."""
+    """Return the command that replaces a chain, or the one that a fillet belongs to; None where none can."""
     (faces,) = [list(chain) for chain in chains if set(place.faces) <= set(chain)][:1] or [list(place.faces)]
     try:
         run = face_run(graph, relations, faces)
     except EdgeError:
         return None
-    if run.is_plain:
+    if run.is_plain or not _is_sewn(graph, run.faces):
         return None
-    return replacing(graph.path, run.faces, keep_ends=runs_on(graph, relations, run))
+    return replacing(graph.path, run.faces, word="--keep-ends" if runs_on(graph, relations, run) else "")
+
+
+def _is_sewn(graph: EdgeGraph, faces: Sequence[int]) -> bool:
+    """Tell whether each edge of some faces is one of another face too, or a seam: else no solid comes back."""
+    uses = graph.uses
+    rows = [row for face in faces for row in range(*uses.of_face(face).indices(len(uses)))]
+    return all(uses.other[row] != NONE or uses.twin[row] != NONE or uses.seam[row] for row in rows)
 
 
 def _words(
@@ -138,20 +146,22 @@ def _between_chains(path: str, place: Place, words: tuple[str, str]) -> str:
     return shlex.join(["semispline", "blend", file, file, "--edge-a", words[0], "--edge-b", words[1], "-o", out])
 
 
-def replacing(path: str, faces: Sequence[int], edges: tuple[str, str] | None = None, *, keep_ends: bool = False) -> str:
+def replacing(path: str, faces: Sequence[int], edges: tuple[str, str] | None = None, *, word: str = "") -> str:
     """Return the command that blends the faces beyond some, from one edge of the first to another where they are named.
+
+    `word` asks for edges that are kept, or for the blend alone: nothing where no solid comes back anyway.
 
     Examples
     --------
     >>> replacing("my part.step", [65])
     "semispline blend 'my part.step' --replace 65 -o blend-65.step"
-    >>> replacing("part.step", [12, 13], keep_ends=True)
+    >>> replacing("part.step", [12, 13], word="--keep-ends")
     'semispline blend part.step --replace 12,13 --keep-ends -o blend-12.step'
     """
     words = ["semispline", "blend", _safe(path), "--replace", ",".join(map(str, faces))]
     if edges is not None:
         words += ["--edge-a", edges[0], "--edge-b", edges[1]]
-    words += ["--keep-ends"] * (keep_ends and can_hold_a_solid(path))
+    words += [word] * bool(word and can_hold_a_solid(path))
     return shlex.join([*words, "-o", f"blend-{faces[0]}.step"])
 
 

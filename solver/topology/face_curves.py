@@ -107,7 +107,13 @@ def trim_curve(face: Face, pcurve: BSplineCurve | None, edge: BSplineCurve | Non
     EdgeError
         There is neither, or it is not on the face.
     """
-    on_face = None if pcurve is None else curve_on_face(face, pcurve)
+    try:
+        on_face = None if pcurve is None else curve_on_face(face, pcurve)
+    except EdgeError:
+        # Near a pole a hair in space is much in the parameters: there the edge alone says what is meant.
+        if edge is None:
+            raise
+        on_face = None
     if edge is not None:
         on_face = edge_on_face(face, edge, on_face, tolerance)
     if on_face is None:

@@ -165,12 +165,10 @@ def ended_on_edges(surface: BSplineSurface, edges: Sequence[KeptEdge]) -> tuple[
     return surface, found
 
 
-def measured_again(
-    result: BlendResult, surface: BSplineSurface, a: EdgeBase, b: EdgeBase, kept: Sequence[KeptEnd]
-) -> BlendResult:
-    """Return a blend with its contacts as the surface with ends on kept edges has them, and a warning of each end."""
+def measured_again(result: BlendResult, surface: BSplineSurface, a: EdgeBase, b: EdgeBase) -> BlendResult:
+    """Return a blend with its contacts as the surface with ends on kept edges has them."""
     met = [_met_again(result, side, surface, which) for side, which in ((a, "a"), (b, "b"))]
-    return replace(result, warnings=(*result.warnings, *map(str, kept)), **met[0], **met[1])
+    return replace(result, **met[0], **met[1])
 
 
 def _met_again(result: BlendResult, side: EdgeBase, surface: BSplineSurface, which: str) -> dict[str, Any]:

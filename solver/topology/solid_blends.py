@@ -242,7 +242,7 @@ def _blended(found: ReplacedRun, options: BlendOptions, *, keep_ends: bool) -> _
         surface, made = ended_on_edges(surface, kept)
         ends = tuple(made)
         if ends:
-            result = measured_again(result, surface, a, b, ends)
+            result = measured_again(result, surface, a, b)
     panels = panels_of(graph, run, surface)
     news = tuple(
         NewFace(

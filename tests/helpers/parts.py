@@ -22,7 +22,7 @@ from OCP.Geom2d import Geom2d_Line
 from OCP.gp import gp_Dir2d, gp_Pnt, gp_Pnt2d, gp_Vec
 from OCP.TopAbs import TopAbs_ShapeEnum
 from OCP.TopExp import TopExp
-from OCP.TopoDS import TopoDS, TopoDS_Compound
+from OCP.TopoDS import TopoDS, TopoDS_Compound, TopoDS_Shell
 
 from semispline.solver.io.occ import OccFace, _faces
 from semispline.solver.topology.half_edges import EdgeGraph
@@ -49,8 +49,13 @@ def compound(faces):
 
 
 def without(shape, number):
-    """The other faces, which still share their edges."""
-    return compound(face for n, face in enumerate(_faces(shape)) if n != number)
+    """The other faces, which still share their edges: an open shell."""
+    shell, builder = TopoDS_Shell(), BRep_Builder()
+    builder.MakeShell(shell)
+    for n, face in enumerate(_faces(shape)):
+        if n != number:
+            builder.Add(shell, face)
+    return shell
 
 
 def unsewn(shape):

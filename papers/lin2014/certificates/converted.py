@@ -87,8 +87,8 @@ def after_conversion(claim: Claim) -> Draft:
         positive("and below the second one", Text("(v + g) - (v + (v + g))/2", 1), positive=("g",)),
         identity("one knot for each pair", converted, Text("N_u + 1*q", 1)),
     ]
-    for label, one, other in _vectors():
-        both, rows, pairs = _counted(one, other)
+    for label, a, b in _vectors():
+        both, rows, pairs = _counted(a, b)
         where = (("N_u", str(len(both))), ("q", str(pairs)))
         own: dict[str, Any] = {"own": label in CONTACTS}
         correction.append(identity(f"{label}: counted", converted, len(rows), where=where, **own))

@@ -8,9 +8,10 @@ of both curves, each once; so it is a knot of neither, and each pair adds one, w
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from fractions import Fraction
 from itertools import pairwise
+from typing import Any
 
 import sympy as sp
 
@@ -58,7 +59,7 @@ def pair_means(v: Vector) -> list[Fraction]:
 
 
 # What becomes of the last of an odd number of knots: each a reading of the rule, or what our own examples do.
-UNPAIRED = {
+UNPAIRED: dict[str, Callable[[Vector], list[Fraction]]] = {
     "dropped": pair_means,
     "kept": lambda v: [*pair_means(v), *v[len(v) - len(v) % 2 :]],
     "averaged with v_e": lambda v: [*pair_means(v), *((x + 1) / 2 for x in v[len(v) - len(v) % 2 :])],
@@ -213,9 +214,17 @@ def _sorted_entry(entry: sp.Indexed) -> sp.Indexed:
     return pr.x[sp.expand(entry.indices[0])]
 
 
+# Of a knot and of the next one.
+_WEIGHTS = (sp.Rational(1, 2), sp.Rational(1, 2))
+
+
 def mirrored_neighbour_cases(_: Formula | None) -> Iterator[Case]:
     """Yield the other reading, each knot with the next one, in the other direction: mean i is mean n - i, mirrored."""
     n, i = sp.symbols("n i", integer=True, positive=True)
-    there = (1 - pr.x[n + 1 - (n - i)] + 1 - pr.x[n + 1 - (n - i + 1)]) / 2
-    residual = sp.expand((1 - there) - (pr.x[i] + pr.x[i + 1]) / 2)
+
+    def mean(knot: Callable[[Any], Any], at: Any) -> Any:
+        return sum(weight * knot(at + step) for step, weight in enumerate(_WEIGHTS))
+
+    there = mean(lambda at: 1 - pr.x[sp.expand(n + 1 - at)], n - i)
+    residual = sp.expand(1 - there - mean(lambda at: pr.x[at], i))
     yield Case("every n", bool(residual == 0), residual=residual)

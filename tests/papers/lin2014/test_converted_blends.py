@@ -4,6 +4,7 @@ from fractions import Fraction
 
 import pytest
 
+from semispline.papers.lin2014.checks import converted_blends
 from semispline.papers.lin2014.checks.converted_blends import (
     PAIRS_OF_VECTORS,
     UNPAIRED,
@@ -54,3 +55,10 @@ def test_control_points_of_converted_surfaces(figure, converted):
     names = [name for name in counted if name.startswith(f"Fig. {figure}, converted")]
     (told,) = [name for name in names if len(names) == 1 or "the last three averaged" in name]
     assert counted[told] == converted
+
+
+def test_blends_without_averages_would_have_no_more_knots(monkeypatch):
+    """Figs. 5, 6, 8 and 9 have a middle curve, Fig. 10 has none."""
+    assert [case.true for case in converted_blends.no_more_cases(None)] == [False] * 4 + [True]
+    monkeypatch.setitem(converted_blends.UNPAIRED, "dropped", lambda v: [])
+    assert all(case.true for case in converted_blends.no_more_cases(None))

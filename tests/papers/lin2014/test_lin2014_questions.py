@@ -136,7 +136,7 @@ PERTURBED = {
     ("sec-1.fairness", 1): [(energy, "middle_knot_energies", lambda: (sp.Integer(1), sp.Integer(2)))],
     ("sec-1.fairness", 2): [(construction, "union", first_of)],
     ("sec-3.averaging", 0): [(construction, "merged", lambda name: (Fraction(3, 4), Fraction(1, 2), Fraction(1, 4)))],
-    ("sec-3.averaging-direction", 0): [(pr, "x", sp.Function("x_of"))],
+    ("sec-3.averaging-direction", 0): [(converted_blends, "_WEIGHTS", (sp.Rational(1, 3), sp.Rational(2, 3)))],
     ("sec-3.averaging-few", 0): [(converted_blends, "pair_means", list)],
     ("sec-3.sufficient-g1", 0): [
         (geometric_continuity, "tangent_coordinates", lambda vector: (1, 1)),

@@ -8,8 +8,9 @@ import pytest
 from helpers.chains import LINE, arc, circle, flanges, line, walls
 from semispline import Base, BSplineSurface, EdgeError, chain
 from semispline.solver.blending.chain_bases import as_bases
-from semispline.solver.blending.chain_rims import facing_rims
+from semispline.solver.blending.chain_coefficients import Coefficients, JoinedPieces, Joint, Q
 from semispline.solver.blending.chain_runs import run_back
+from semispline.solver.blending.chains import _is_steered
 from semispline.solver.blending.end_faces import EndFace
 from semispline.solver.options import BlendOptions
 
@@ -48,16 +49,20 @@ def test_rims_that_answer_each_other_end_on_planes(normals, as_they_are):
     assert max(off(strip, normals) for strip in stated.strips) < 1e-13
 
 
-@pytest.mark.parametrize("which", [0, 1])
 @pytest.mark.parametrize("end", [0, 1])
-@pytest.mark.parametrize(("slope", "found"), [(0.8e-9, True), (1.25e-9, False)])
-def test_rims_end_on_a_plane_that_is_square_to_a_billionth(which, end, slope, found):
-    pair = rims(SQUARE)
-    # Walls leave downwards, the plane sideways, both by another length of their own: q R_v is `slope` times that.
-    slanted = SQUARE[end] + slope * (np.array([0, 0, 1.0]) if which == 0 else np.abs(SQUARE[1 - end]))
-    ends = [EndFace.plane(slanted) if k == end else None for k in (0, 1)]
-    pair[which] = replace(pair[which], ends_on=tuple(ends))
-    assert (facing_rims(*pair, BlendOptions()) is not None) is found
+@pytest.mark.parametrize(("times", "steered"), [(0.8, False), (1.25, True), (-1.25, True)])
+def test_lines_lean_by_more_than_rounding_at_a_free_end(end, times, steered):
+    found = [Coefficients(np.zeros((2, 3, 3)), np.zeros((2, 3, 3)), 1.0, 0.0) for _ in (0, 1)]
+    found[end].values[end, Q, 2] = times * 1e-12
+    one = JoinedPieces((), np.ones(2), tuple(found), (None, None), (0, 0))
+    assert _is_steered(one) is steered
+    # What is closed has no ends.
+    joint = Joint((0.0, 0.0, 0.0), "smooth", 0.0, 0.0, (0.0,), 0.0, (0.0, 0.0))
+    assert not _is_steered(replace(one, joints=(joint, joint)))
+    # Nor is an end what is inside.
+    found[end].values[:] = 0.0
+    found[end].values[1 - end, Q, 2] = 1.0
+    assert not _is_steered(one)
 
 
 def test_a_chain_run_back_ends_on_the_same_faces():

@@ -7,9 +7,9 @@ import pytest
 
 from helpers.chains import arc, flanges, line, walls
 from semispline import chain
-from semispline.solver.blending.chain_coefficients import JoinedPieces
+from semispline.solver.blending.chain_coefficients import Coefficients, JoinedPieces
 from semispline.solver.blending.chain_pieces import Piece
-from semispline.solver.blending.chain_rims import _answers, _AtJoint, _extent, _run_alike, facing_rims
+from semispline.solver.blending.chain_rims import _answers, _at_joint, _AtJoint, _run_alike, facing_rims
 from semispline.solver.options import BlendOptions
 from semispline.solver.splines import Basis
 
@@ -124,7 +124,11 @@ def test_what_jumps_is_along_to_a_billionth(times, met, order, size):
 def test_the_size_of_a_rim_is_that_of_its_points():
     jets = np.array([[[3.0, 4, 0], [-7, 0, 0]], [[0, 0, 20], [0, 0, 20]]])
     one = Piece(0, (0.0, 1.0), jets, Basis(1, np.array([0.0, 0, 1, 1])), (1, 0), np.zeros(2), 1.0)
-    assert _extent(JoinedPieces((one, one), np.ones(2), (), (None, None), (0, 0))) == 7
+    values = np.zeros((2, 3, 2))
+    values[:, 0, 0] = values[:, 1, 1] = 1.0
+    plain = Coefficients(values, np.zeros_like(values), 1.0, 0.0)
+    joined = JoinedPieces((one, one), np.ones(2), (plain, plain), (None, None), (0, 0))
+    assert _at_joint(joined, 1).extent == 7
 
 
 def weighted(weights, across=0.0):

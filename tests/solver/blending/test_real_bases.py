@@ -218,8 +218,10 @@ def test_a_degenerate_corner_does_not_stop_parametric_contact():
     _, b = facing_pair(rng, edges=("u0", "u0"), backwards=(False, False))
     for continuity in ("C0", "C1", "C2"):
         result = blend(a, b, continuity=continuity)
-        assert np.isnan(result.contact_a.angle_degrees)
+        assert {place.parameter for place in result.contact_a.no_normal} == {0.0}
         assert result.contact_a.gap < 1e-14
+        # Told away from the corner, near which derivatives across are rounding: what C0 leaves open, C1 and C2 meet.
+        assert result.contact_a.angle_degrees < (180 if continuity == "C0" else 1e-6)
     with pytest.raises(EdgeError, match="edge u0: no normal"):
         blend(a, b, continuity="G1")
 
