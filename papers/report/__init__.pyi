@@ -1,7 +1,5 @@
 from .documents import write_report as write_report
 from .erratum import Erratum as Erratum
-from .erratum import erratum_of as erratum_of
-from .erratum import has_erratum as has_erratum
 from .erratum import require_erratum as require_erratum
 from .erratum import write_erratum as write_erratum
 from .formulas import latex as latex

@@ -13,7 +13,7 @@ from typer.testing import CliRunner
 from helpers.parts import compound, graph_of, moved, rounded_box, written
 from helpers.solids import MODELS, box_with_fillet, slanted, volume
 from helpers.xcaf import labels_of, write_assembly, write_coloured
-from semispline import EdgeError, FileError, SolidError, read_surface, replace_face
+from semispline import ComputationError, EdgeError, FileError, SolidError, read_surface, replace_face
 from semispline.solver import workers
 from semispline.solver.cli import app
 from semispline.solver.io import foreign
@@ -220,7 +220,8 @@ def test_who_is_killed_by_the_limits_leaves_nothing(tmp_path, monkeypatch):
         return workers.call(module, arguments, 100.0, 60.0)
 
     monkeypatch.setattr(foreign, "call", limited)
-    with pytest.raises(FileError, match=r"of memory|broke down"):
+    # Where so little is left that a library cannot be loaded, the process ends without a word.
+    with pytest.raises((FileError, ComputationError), match=r"of memory|broke down|ended without a result"):
         replace_face(path, number, out)
     assert (path.read_bytes(), sorted(tmp_path.iterdir())) == before
 
