@@ -59,7 +59,11 @@ def verify_command(
     ] = None,
     markdown: Annotated[
         str | None,
-        typer.Option(metavar="FILE", help="Write the report of the paper; what a study found stays at its end."),
+        typer.Option(metavar="FILE", help="Write all records; what a study found stays at the end of the file."),
+    ] = None,
+    erratum: Annotated[
+        str | None,
+        typer.Option(metavar="FILE", help="Write two pages for a reader of the paper, their picture beside them."),
     ] = None,
     recheck: Annotated[
         str | None, typer.Option(metavar="SYSTEM", help="Have a second system, pari, repeat what verdicts rest on.")
@@ -71,10 +75,13 @@ def verify_command(
     """Decide every claim of a paper anew; exit status 1 if a verdict is not the recorded one, 3 if one is missing."""
     from semispline.papers.ledger import paper_files
     from semispline.papers.recheck import require_folder, require_system
-    from semispline.papers.report import ledger_markdown, ledger_record, with_study_kept
+    from semispline.papers.report import ledger_markdown, ledger_record, require_erratum, with_study_kept, write_erratum
     from semispline.solver.io import check_outputs, to_text, write_text
 
-    check_outputs({"--json": None if json_file == "-" else json_file, "--markdown": markdown}, paper_files(paper))
+    outputs = {"--json": None if json_file == "-" else json_file, "--markdown": markdown, "--erratum": erratum}
+    check_outputs(outputs, paper_files(paper))
+    if erratum is not None:
+        require_erratum(paper)
     if recheck is not None:
         require_system(recheck)
     if certificates is not None:
@@ -89,6 +96,8 @@ def verify_command(
         file = Path(markdown)
         before = file.read_text(encoding="utf-8", errors="replace") if file.is_file() else ""
         write_text(markdown, with_study_kept(ledger_markdown(ledger), before))
+    if erratum is not None:
+        write_erratum(ledger, erratum)
     if json_file != "-":
         print_ledger(ledger)
         if second is not None:

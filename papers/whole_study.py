@@ -73,7 +73,7 @@ def reproduce(
     for line in _spoken(results):
         echo(line)
     write_report(results, folder)
-    echo(f"wrote {folder / 'index.html'}, numbers.json, REPORT.md, report.md and the pictures beside it")
+    echo(f"wrote {folder / 'index.html'}, numbers.json, RECORDS.md, report.md and the pictures beside it")
     return ledger
 
 

@@ -28,12 +28,14 @@ from .number_lists import Numbers as Numbers
 from .number_lists import inner_moves as inner_moves
 from .number_lists import near as near
 from .number_lists import number_changes as number_changes
+from .questions import consistent as consistent
 from .questions import of_data as of_data
 from .questions import premises as premises
 from .questions import proved as proved
 from .questions import question as question
 from .questions import unconditional as unconditional
 from .records import Case as Case
+from .records import Cause as Cause
 from .records import Check as Check
 from .records import CheckFailedError as CheckFailedError
 from .records import Claim as Claim
@@ -68,6 +70,7 @@ from .verification import ReadingDecision as ReadingDecision
 from .verification import verify as verify
 from .writing import ambiguous as ambiguous
 from .writing import data_formula as data_formula
+from .writing import definition as definition
 from .writing import fails as fails
 from .writing import holds as holds
 from .writing import holds_if as holds_if

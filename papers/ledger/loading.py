@@ -1,5 +1,6 @@
 """Finding a paper: a folder with `printed.py`, and records in the tuples `CLAIMS` of its `claims.py` or `claims/`.
 
+What several records share as the cause of their faults stands in `CAUSES` of its `causes.py`, where it has one.
 `printed.py` is the only module in which a printed formula can run.
 """
 
@@ -12,8 +13,8 @@ import sys
 from pathlib import Path
 from types import ModuleType
 
-from semispline.papers.ledger.record_checks import check_record
-from semispline.papers.ledger.records import Claim, LedgerError, Paper
+from semispline.papers.ledger.record_checks import check_causes, check_record
+from semispline.papers.ledger.records import Cause, Claim, LedgerError, Paper
 
 
 def paper_names() -> list[str]:
@@ -41,6 +42,7 @@ def load_paper(name: str) -> Paper:
     paper = collected(name)
     for claim in paper.claims:
         check_record(claim)
+    check_causes(paper.claims, paper.causes)
     return paper
 
 
@@ -68,7 +70,16 @@ def collected(name: str) -> Paper:
         if claim.id in {c.id for c in claims[:i]}:
             raise LedgerError(f"claim {claim.id}: the id occurs twice, expected once")
     title, _, legend = inspect.cleandoc(package.__doc__ or folder.name).partition("\n\n")
-    return Paper(name, title.rstrip("."), legend, tuple(claims))
+    return Paper(name, title.rstrip("."), legend, tuple(claims), _causes(package, folder))
+
+
+def _causes(package: ModuleType, folder: Path) -> tuple[Cause, ...]:
+    if not _is_file(folder / "causes.py"):
+        return ()
+    found = getattr(importlib.import_module(f"{package.__name__}.causes"), "CAUSES", None)
+    if not isinstance(found, tuple) or not all(isinstance(c, Cause) for c in found):
+        raise LedgerError(f"causes.py: CAUSES is {type(found).__name__}, expected a tuple of Cause")
+    return found
 
 
 def _is_file(path: Path) -> bool:

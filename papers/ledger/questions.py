@@ -24,8 +24,13 @@ def proved(cases: Callable[[], Iterator[Case]], method: str, strength: Strength 
     return Check(lambda _: cases(), strength, method, proof=True)
 
 
+def consistent(cases: Callable[[Formula | None], Iterator[Case]], method: str) -> Check:
+    """Return a check that finds what is printed to agree, or that something of the kind exists; it proves nothing."""
+    return Check(cases, Strength.CONSISTENT, method)
+
+
 def of_data(cases: Callable[[Formula | None], Iterator[Case]], method: str) -> Check:
-    """Return a check that decides printed numbers, all of them."""
+    """Return a check that decides a claim which is on printed numbers and nothing else, all of them."""
     return Check(cases, Strength.RATIONAL, method, proof=True)
 
 

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 import sympy as sp
 
 from semispline.papers.ledger.mutation import mutants
-from semispline.papers.ledger.records import Check, Claim, Formula, LedgerError, Strength, Verdict
+from semispline.papers.ledger.records import Cause, Check, Claim, Formula, LedgerError, Strength, Verdict
 from semispline.papers.ledger.search import smallest_assignment
 
 # The paper's own number, or a section, figure or table with a slug.
@@ -25,6 +25,29 @@ def check_record(claim: Claim) -> None:
     """
     for problem in _problems(claim):
         raise LedgerError(f"claim {claim.id}: {problem}")
+
+
+def check_causes(claims: tuple[Claim, ...], causes: tuple[Cause, ...]) -> None:
+    """Refuse a cause that no record has or that says nothing, and records without one where the paper has causes.
+
+    Raises
+    ------
+    LedgerError
+        Naming the record or the cause, what was found, and what would be right.
+    """
+    keys = [cause.key for cause in causes]
+    for cause in causes:
+        if keys.count(cause.key) > 1 or not cause.title.strip() or not cause.text.strip():
+            raise LedgerError(
+                f"cause {cause.key!r}: found twice, or without title or text, expected each once with both"
+            )
+        if all(claim.cause != cause.key for claim in claims):
+            raise LedgerError(f"cause {cause.key!r}: no record has it, expected at least one")
+    for claim in claims:
+        if claim.cause and claim.cause not in keys:
+            raise LedgerError(f"claim {claim.id}: cause {claim.cause!r}, expected one of {', '.join(keys) or 'none'}")
+        if causes and claim.verdict is Verdict.FAILS and not claim.cause:
+            raise LedgerError(f"claim {claim.id}: fails without a cause, expected one of {', '.join(keys)}")
 
 
 def _problems(claim: Claim) -> Iterator[str]:
@@ -48,6 +71,8 @@ def _check_problems(check: Check) -> Iterator[str]:
         yield f"strength {check.strength!r}, expected one of {', '.join(Strength.__members__)}"
     elif check.proof and check.strength is Strength.FLOAT:
         yield "a proof in floating point, expected an exact one, or a check that is none"
+    elif check.proof and check.strength is Strength.CONSISTENT:
+        yield "a proof by what is printed agreeing, expected a check that is none"
 
 
 def _formula_problems(formula: Formula) -> Iterator[str]:
@@ -91,11 +116,11 @@ def assumption_instance(formula: Formula) -> dict[sp.Symbol, sp.Rational] | None
 
 def _missing_evidence(claim: Claim) -> Iterator[str]:
     verdict = claim.verdict
-    if verdict is Verdict.NOT_CHECKABLE:
+    if verdict in (Verdict.NOT_CHECKABLE, Verdict.DEFINITION):
         if not claim.reason.strip():
-            yield "not-checkable without a reason"
+            yield f"{verdict} without " + ("a reason" if verdict is Verdict.NOT_CHECKABLE else "what it names")
         if claim.readings:
-            yield "not-checkable with readings, expected none"
+            yield f"{verdict} with readings, expected none"
         return
     if claim.reason:
         yield f"{verdict} with a reason for not being checkable"

@@ -31,6 +31,7 @@ class Verdict(StrEnum):
     HOLDS_IF = "holds-if"
     FAILS = "fails"
     AMBIGUOUS = "ambiguous"
+    DEFINITION = "definition"
     NOT_CHECKABLE = "not-checkable"
 
 
@@ -38,12 +39,15 @@ class Strength(IntEnum):
     """How strong the evidence is, the strongest first.
 
     In general: for all that the claim speaks of (orders, degrees, counts, knots, control points), left as symbols.
+    The last one is no evidence for a claim: what is printed agrees, or something of the kind exists. It is counted
+    apart; only where what is printed contradicts itself is anything shown.
     """
 
     SYMBOLIC_ORDER = 1
     EACH_ORDER = 2
     RATIONAL = 3
     FLOAT = 4
+    CONSISTENT = 5
 
     @property
     def text(self) -> str:
@@ -56,6 +60,7 @@ _STRENGTH_TEXT = {
     Strength.EACH_ORDER: "exact, for each order from 2 to 8",
     Strength.RATIONAL: "exact rational instances",
     Strength.FLOAT: "floating point with a stated tolerance",
+    Strength.CONSISTENT: "consistent with what is printed",
 }
 
 
@@ -221,6 +226,28 @@ class Consequence:
 
 
 @dataclass(frozen=True)
+class Cause:
+    """Why records fail or need a condition: one fault of a paper, however many of its sentences it reaches.
+
+    Attributes
+    ----------
+    key : str
+        How records name it.
+    title : str
+        In a few words.
+    text : str
+        What is wrong, and what is right.
+    misprint : bool
+        One sign, index or digit that a printer or a scan may have lost; otherwise mathematics.
+    """
+
+    key: str
+    title: str
+    text: str
+    misprint: bool = False
+
+
+@dataclass(frozen=True)
 class Claim:
     """One record.
 
@@ -235,14 +262,17 @@ class Claim:
     verdict : Verdict
         As recorded; every run decides anew and compares.
     readings : tuple of Reading
-        One, or more where the text can be read in more than one way; none where it is not checkable.
+        One, or more where the text can be read in more than one way; none for a definition and where it is not
+        checkable.
     correction : Correction, optional
     counterexample, consequence : callables, optional
         Search and measurement, run with the check.
     reason : str
-        Why it is not checkable.
+        Why it is not checkable, or what a definition gives a name to.
     remark : str
         Special cases, possible misreads of the scan.
+    cause : str
+        Key of the cause of what is wrong in it, where something is.
     """
 
     id: str
@@ -255,6 +285,7 @@ class Claim:
     consequence: Callable[[], Consequence] | None = None
     reason: str = ""
     remark: str = ""
+    cause: str = ""
 
     @property
     def formulas(self) -> tuple[Formula, ...]:
@@ -288,12 +319,15 @@ class Paper:
     title, legend : str
         First paragraph of its docstring, and the rest.
     claims : tuple of Claim
+    causes : tuple of Cause
+        In the order in which a report tells them; none where the paper's records name none.
     """
 
     name: str
     title: str
     legend: str
     claims: tuple[Claim, ...]
+    causes: tuple[Cause, ...] = ()
 
     def claim(self, identifier: str) -> Claim:
         """Return the record with this id."""

@@ -17,6 +17,7 @@ from semispline.papers.ledger.loading import collected, load_paper
 from semispline.papers.ledger.mutation import MutationResult, try_mutants
 from semispline.papers.ledger.records import (
     Case,
+    Cause,
     Check,
     CheckFailedError,
     Claim,
@@ -65,8 +66,13 @@ class ReadingDecision:
 
     @property
     def proved(self) -> bool:
-        """Whether the verdict is proved: a single exact instance disproves."""
-        return self.proof or (self.verdict is Verdict.FAILS and self.strength <= Strength.RATIONAL)
+        """Whether the verdict is proved: a single exact instance disproves, and so does a contradiction in print."""
+        return self.proof or (self.verdict is Verdict.FAILS and self.strength is not Strength.FLOAT)
+
+    @property
+    def consistent(self) -> bool:
+        """Whether it rests on nothing but that what is printed agrees."""
+        return self.strength is Strength.CONSISTENT and not self.proved
 
 
 @dataclass(frozen=True)
@@ -116,6 +122,11 @@ class Decision:
         return bool(self.readings) and self.verdict is not None and all(reading.proved for reading in self.readings)
 
     @property
+    def consistent(self) -> bool:
+        """Some reading rests on nothing but that what is printed agrees, or that something of the kind exists."""
+        return any(reading.consistent for reading in self.readings)
+
+    @property
     def false_case(self) -> str:
         """The first instance of a failing reading."""
         return next((r.false_case for r in self.readings if r.verdict is Verdict.FAILS), "")
@@ -148,7 +159,7 @@ def decide(claim: Claim, time_limit: float = TIME_LIMIT) -> Decision:
     try:
         with _limited(time_limit):
             readings = tuple(_decide_reading(reading, known) for reading in claim.readings)
-            verdict = _combined(readings)
+            verdict = _combined(readings) if readings else _without_check(claim)
             if claim.counterexample:
                 found = claim.counterexample()
                 if found is None or not found.values:
@@ -284,10 +295,13 @@ def _verdict(cases: list[Case], condition: str) -> Verdict:
 
 def _combined(readings: tuple[ReadingDecision, ...]) -> Verdict:
     """Combine readings: where they differ the claim is ambiguous, else it is what they all are."""
-    if not readings:
-        return Verdict.NOT_CHECKABLE
     verdicts = {reading.verdict for reading in readings}
     return verdicts.pop() if len(verdicts) == 1 else Verdict.AMBIGUOUS
+
+
+def _without_check(claim: Claim) -> Verdict:
+    """Return the verdict on a claim with nothing to decide: a name that is given, or nothing that can be checked."""
+    return Verdict.DEFINITION if claim.verdict is Verdict.DEFINITION else Verdict.NOT_CHECKABLE
 
 
 def _mutation(claim: Claim, known: _Known) -> MutationResult:
@@ -313,13 +327,15 @@ class Ledger:
         return tuple(decision.id for decision in self.decisions if decision.verdict is None)
 
     def counts(self) -> dict[str, int]:
-        """Return how many records are printed, decided, proved; each verdict; vacuous, changed; mutants."""
-        decided = [d for d in self.decisions if d.verdict not in (None, Verdict.NOT_CHECKABLE)]
+        """Return how many records are printed, decided, proved, consistent; each verdict; causes; mutants and more."""
+        decided = [d for d in self.decisions if d.verdict not in (None, Verdict.NOT_CHECKABLE, Verdict.DEFINITION)]
         return {
             "printed": len(self.decisions),
             "decided": len(decided),
             "proved": sum(d.proved for d in decided),
+            "consistent": sum(d.consistent for d in decided),
             **{str(v): sum(d.verdict is v for d in self.decisions) for v in Verdict},
+            "causes": len(self.causes()),
             "vacuous": sum(d.vacuous for d in self.decisions),
             "changed": sum(d.verdict is not d.recorded for d in self.decisions),
             "mutants": sum(d.mutation.tried for d in self.decisions),
@@ -328,6 +344,17 @@ class Ledger:
             "mutants_undefined": sum(d.mutation.undefined for d in self.decisions),
             "mutants_survived": sum(len(d.mutation.survivors) for d in self.decisions),
         }
+
+    def causes(self) -> list[tuple[Cause, list[Decision]]]:
+        """Return each cause with the decisions on its records that found something wrong; none where all hold."""
+        sound = (Verdict.HOLDS, Verdict.DEFINITION, Verdict.NOT_CHECKABLE)
+        wrong = [
+            (claim.cause, decision)
+            for claim, decision in zip(self.paper.claims, self.decisions, strict=True)
+            if decision.verdict not in sound
+        ]
+        found = [(cause, [d for key, d in wrong if key == cause.key]) for cause in self.paper.causes]
+        return [(cause, decisions) for cause, decisions in found if decisions]
 
     def mutants_by_kind(self) -> dict[str, int]:
         """Return how many mutants of each kind were tried."""

@@ -15,9 +15,9 @@ def part(check: Check, formula: Formula | None = None) -> Part:
     return Part(check, formula)
 
 
-def holds(identifier: str, where: str, statement: str, *parts: Part, remark: str = "") -> Claim:
+def holds(identifier: str, where: str, statement: str, *parts: Part, remark: str = "", **evidence: Any) -> Claim:
     """Return a record whose parts all hold."""
-    return Claim(identifier, where, statement, Verdict.HOLDS, (Reading(parts),), remark=remark)
+    return Claim(identifier, where, statement, Verdict.HOLDS, (Reading(parts),), remark=remark, **evidence)
 
 
 def holds_if(
@@ -43,6 +43,11 @@ def ambiguous(
 def not_checkable(identifier: str, where: str, statement: str, reason: str) -> Claim:
     """Return a record without machine-checkable content."""
     return Claim(identifier, where, statement, Verdict.NOT_CHECKABLE, reason=reason)
+
+
+def definition(identifier: str, where: str, statement: str, names: str, remark: str = "") -> Claim:
+    """Return a record of a sentence that only gives a name, and `names` what it is given to."""
+    return Claim(identifier, where, statement, Verdict.DEFINITION, reason=names, remark=remark)
 
 
 def data_formula(name: str, data: Any, reason: str = "", changes: Iterable[Any] = ()) -> Formula:

@@ -1,4 +1,10 @@
 from .documents import write_report as write_report
+from .erratum import Erratum as Erratum
+from .erratum import erratum_of as erratum_of
+from .erratum import has_erratum as has_erratum
+from .erratum import require_erratum as require_erratum
+from .erratum import write_erratum as write_erratum
+from .formulas import latex as latex
 from .ledger_as_json import ledger_record as ledger_record
 from .ledger_as_markdown import ledger_markdown as ledger_markdown
 from .ledger_as_markdown import with_study_kept as with_study_kept

@@ -1,4 +1,4 @@
-"""The files of a report: every number, the document for a reader of the paper, all tables in Markdown, the page."""
+"""The files of a report: every number, what a reader of the paper wants to know, all records and tables, the page."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
+from semispline.papers.report.erratum import has_erratum, write_erratum
 from semispline.papers.report.html_page import page
 from semispline.papers.report.ledger_as_json import ledger_record
 from semispline.papers.report.ledger_as_markdown import STUDY_HEADING, ledger_markdown
@@ -16,9 +17,14 @@ from semispline.solver.io import to_text, write_text
 
 
 def write_report(results: Results, folder: Path) -> None:
-    """Write `numbers.json`, `REPORT.md` for a reader of the paper, `report.md` with every table, and `index.html`."""
+    """Write `numbers.json`, `RECORDS.md`, `report.md` with every table, `index.html`, and the paper's own `REPORT.md`.
+
+    The last one for papers that have it: two pages for a reader of the paper.
+    """
     write_text(folder / "numbers.json", to_text(numbers(results)))
-    write_text(folder / "REPORT.md", report_document(results))
+    if has_erratum(results.ledger.paper.name):
+        write_erratum(results.ledger, folder / "REPORT.md")
+    write_text(folder / "RECORDS.md", records_document(results))
     write_text(folder / "report.md", "\n".join(markdown(results)))
     write_text(folder / "index.html", page(results))
 
@@ -53,8 +59,8 @@ def markdown(results: Results) -> list[str]:
     return [*lines, "", ledger_markdown(results.ledger)]
 
 
-def report_document(results: Results) -> str:
-    """Return what a reader of the paper wants to know: every claim decided, then what the study finds, and prior art.
+def records_document(results: Results) -> str:
+    """Return every claim as it is decided, then what the study finds, and prior art.
 
     Its copy in the paper's folder is what the last study said; numbers that depend on the machine are left out.
     """

@@ -14,6 +14,7 @@ from PIL import Image
 from semispline.papers.baselines import oriented_bases
 from semispline.papers.ledger import Ledger, Verdict
 from semispline.papers.report.chart import LEGEND, energy_chart
+from semispline.papers.report.formulas import text_html
 from semispline.papers.report.ledger_as_html import ledger_html
 from semispline.papers.report.measured_tables import METHODS_NOTE, methods_table
 from semispline.papers.report.results import Results
@@ -66,18 +67,34 @@ def _asset(name: str) -> str:
 def _summary(ledger: Ledger, found: Sequence[Finding]) -> str:
     counts = ledger.counts()
     tiles = "".join(f"<div class='tile {v}'><b>{counts[v]}</b>{v.replace('-', ' ')}</div>" for v in Verdict)
-    failures = [
-        f"<li><a href='#claim-{escape(claim.id)}'>{escape(claim.id)}</a> {escape(claim.statement)}</li>"
-        for claim, decision in zip(ledger.paper.claims, ledger.decisions, strict=True)
-        if decision.verdict is Verdict.FAILS
-    ]
+    heading, failures = ("By cause", _causes(ledger)) if ledger.causes() else ("False as printed", _failures(ledger))
     items = "".join(
         f"<details{' open' if i < _OPEN else ''}><summary>{escape(f.short)}</summary>{_paragraph(f.detail)}</details>"
         for i, f in enumerate(found)
     )
     return f"""<div class="tiles"><div class="tile"><b>{counts["printed"]}</b>printed claims</div>{tiles}</div>
 <div class="columns"><div class="findings"><h3>The method, run beside its rivals</h3>{items}</div>
-<div><h3>False as printed</h3><ul class="failures">{"".join(failures) or "<li>nothing</li>"}</ul></div></div>"""
+<div><h3>{heading}</h3><ul class="failures">{"".join(failures) or "<li>nothing</li>"}</ul></div></div>"""
+
+
+def _failures(ledger: Ledger) -> list[str]:
+    return [
+        f"<li>{_link(claim.id)} {escape(claim.statement)}</li>"
+        for claim, decision in zip(ledger.paper.claims, ledger.decisions, strict=True)
+        if decision.verdict is Verdict.FAILS
+    ]
+
+
+def _causes(ledger: Ledger) -> list[str]:
+    """Return each fault once, with the records under it."""
+    return [
+        f"<li><b>{escape(cause.title)}.</b> {text_html(cause.text)} {', '.join(_link(d.id) for d in decisions)}</li>"
+        for cause, decisions in ledger.causes()
+    ]
+
+
+def _link(identifier: str) -> str:
+    return f"<a href='#claim-{escape(identifier)}'>{escape(identifier)}</a>"
 
 
 def _paragraph(text: str) -> str:

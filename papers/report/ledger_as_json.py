@@ -30,6 +30,8 @@ def ledger_record(ledger: Ledger, second: Recheck | None = None) -> dict[str, An
                 "evidence": evidence_text(decision) or claim.reason,
                 "strength": strength_text(decision) or None,
                 "proved": decision.proved,
+                "consistent": decision.consistent,
+                "cause": claim.cause,
                 "condition": "; ".join(r.condition for r in decision.readings if r.condition),
                 "readings": [
                     {"reading": r.label, "verdict": str(r.verdict), "cases": r.cases, "true": r.true_case,
@@ -60,5 +62,10 @@ def ledger_record(ledger: Ledger, second: Recheck | None = None) -> dict[str, An
         "kind": "ledger",
         "paper": ledger.paper.name,
         "claims": claims,
+        "causes": [
+            {"key": cause.key, "title": cause.title, "text": cause.text, "misprint": cause.misprint,
+             "records": [decision.id for decision in decisions]}
+            for cause, decisions in ledger.causes()
+        ],
         "counts": ledger.counts() | (second.counts() if second else {}),
-    }
+    }  # fmt: skip

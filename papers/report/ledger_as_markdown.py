@@ -46,10 +46,12 @@ def ledger_markdown(ledger: Ledger) -> str:
         "",
         *([ledger.paper.legend, ""] if ledger.paper.legend else []),
         *_changed(ledger),
+        *_causes(ledger),
         *_erratum(ledger),
         *_section(ledger, Verdict.HOLDS_IF, "True only under an unstated condition", _conditional_lines),
         *_section(ledger, Verdict.AMBIGUOUS, "Can be read in more than one way", _ambiguous_lines),
         *_section(ledger, Verdict.HOLDS, "True as printed, with a remark", _proof_lines, remarked=True),
+        *_section(ledger, Verdict.DEFINITION, "Definitions, which cannot fail", _reason_lines),
         *_section(ledger, Verdict.NOT_CHECKABLE, "Not checkable", _reason_lines),
         *_survivors(ledger),
         *_records(ledger),
@@ -113,6 +115,18 @@ def _changed(ledger: Ledger) -> Iterator[str]:
             found = decision.verdict or f"no answer ({decision.problem})"
             yield f"- **{decision.id}**: found {found}, recorded {decision.recorded}."
         yield ""
+
+
+def _causes(ledger: Ledger) -> Iterator[str]:
+    """Yield each cause once, with the records under it."""
+    if not ledger.causes():
+        return
+    yield from ("## Causes", "")
+    for cause, decisions in ledger.causes():
+        kind = "a misprint, or lost by the scan" if cause.misprint else "mathematics"
+        named = ", ".join(f"{decision.id} ({decision.verdict})" for decision in decisions)
+        yield f"- **{cause.title}** ({kind}). {cause.text} Records: {named}."
+    yield ""
 
 
 def _erratum(ledger: Ledger) -> Iterator[str]:
@@ -181,6 +195,8 @@ def _conditional_lines(claim: Claim, decision: Decision) -> Iterable[str]:
         yield f"Holds if {reading.condition}: true for {reading.true_case}, false for {reading.false_case}."
     if decision.counterexample:
         yield f"Smallest counterexample otherwise: {decision.counterexample}."
+    if decision.consequence:
+        yield f"On a surface: {consequence_text(decision.consequence)}"
     if claim.correction:
         yield f"In general: {claim.correction.statement} {_formulas(claim.corrected_formulas)}".rstrip()
 

@@ -13,6 +13,7 @@ _COLORS = {
     Verdict.HOLDS_IF: "yellow",
     Verdict.FAILS: "red",
     Verdict.AMBIGUOUS: "magenta",
+    Verdict.DEFINITION: "dim",
     Verdict.NOT_CHECKABLE: "dim",
 }
 

@@ -87,10 +87,12 @@ def counts_text(ledger: Ledger) -> str:
     """Return the counts in two lines."""
     n = ledger.counts()
     verdicts = ", ".join(f"{n[verdict]} {verdict}" for verdict in Verdict)
+    told = f", {n['consistent']} found consistent with what is printed and no more" if n["consistent"] else ""
+    causes = f"what is not true as printed has {n['causes']} causes; " if n["causes"] else ""
     kinds = ", ".join(f"{number} {kind}" for kind, number in sorted(ledger.mutants_by_kind().items()))
     return (
-        f"{n['printed']} printed claims, {n['decided']} decided, {n['proved']} of them proved or disproved exactly: "
-        f"{verdicts}; {n['vacuous']} vacuous, {n['changed']} changed.\n"
+        f"{n['printed']} printed claims, {n['decided']} decided, {n['proved']} of them proved or disproved exactly"
+        f"{told}: {verdicts}; {causes}{n['vacuous']} vacuous, {n['changed']} changed.\n"
         f"{n['mutants']} mutants of printed and corrected formulas tried ({kinds}): {n['mutants_survived']} survived "
         f"without a reason, {n['mutants_equivalent']} say the same as the formula, {n['mutants_undecidable']} change "
         "printed data on which nothing else printed depends (each with its reason)."

@@ -36,8 +36,8 @@ class Coefficients:
 
     values: FloatArray
     slopes: FloatArray
-    first: float = 1.0
-    last: float = 0.0
+    first: float
+    last: float
 
     def at(self, low: float, high: float, t: FloatArray) -> FloatArray:
         """Return them at places t in [0, 1] of the span from `low` to `high`, shape (3, order + 1, T)."""

@@ -264,12 +264,12 @@ def stretches_along(
 def _part(base: Base, edge: BSplineCurve, ends: FloatArray, middle: FloatArray) -> tuple[float, float]:
     """Return the range of an edge between two points on it that goes through a third one."""
     start, end = base.range_along
-    low, high = sorted(_snapped(_parameter(edge, x), start, end) for x in ends)
+    places = sorted(_snapped(_parameter(edge, x), start, end) for x in ends)
     if not is_closed(base):
-        return low, high
+        return places[0], places[1]
     # A point on the seam is both of its ends.
-    inner, at = [x for x in (low, high) if start < x < end], _parameter(edge, middle)
-    return max([start, *(x for x in inner if x < at)]), min([end, *(x for x in inner if x > at)])
+    at = _parameter(edge, middle)
+    return max([start, *(x for x in places if x < at)]), min([end, *(x for x in places if x > at)])
 
 
 def _parameter(curve: BSplineCurve, point: ArrayLike) -> float:

@@ -29,6 +29,7 @@ from semispline.solver.blending.chain_pieces import Piece, cartesian_slope, with
 from semispline.solver.blending.end_faces import EndFace, steered
 from semispline.solver.blending.reparametrisation import Reparametrisation, composed, slopes_along
 from semispline.solver.errors import EdgeError
+from semispline.solver.splines import basis_matrix
 
 # Angles in degrees: contacts that turn by more have a corner; by more than the second, a kink that is no one's wish.
 CORNER, KINK = 1.0, 1e-6
@@ -38,13 +39,15 @@ _MOVED = 1e-13
 # agree either: so many times that, and so much at most, a crease of 2e-9 degree.
 _ROUNDING = 1e-13
 _OF_NOISE, _MOST_NOISE = 10.0, 4e-11
+# A contact that is slower than this part of its size stands still: the judge sees no normal there.
+_STILL = 1e-9
 # Speeds of a closed chain that come back to the first one, and weights that are flat, to this.
 _SAME = 1e-9
 EndFaces: TypeAlias = tuple[EndFace | None, EndFace | None]
 
 
 def joined_pieces(
-    pieces: list[Piece], *, closed: bool, tolerance: float = 0.0, ends_on: EndFaces = (None, None)
+    pieces: list[Piece], *, closed: bool, tolerance: float, ends_on: EndFaces = (None, None)
 ) -> JoinedPieces:
     """Return what makes the pieces one strip.
 
@@ -60,10 +63,13 @@ def joined_pieces(
     Raises
     ------
     EdgeError
-        A contact that runs along an end face; or at a joint the faces do not meet along one curve that leaves the
-        contact, or lie on different sides.
+        A contact that runs along an end face, or stands still at a joint; or there the faces do not meet along one
+        curve that leaves the contact, or lie on different sides.
     """
     turns = [_turn(pieces[k - 1], pieces[k]) if k or closed else None for k in range(len(pieces))]
+    for k, turn in enumerate(turns):
+        if turn is not None:
+            _check_speeds(pieces[k - 1], pieces[k], k)
     smooth = [turn is not None and turn <= CORNER for turn in turns]
     pieces = _of_even_weights(pieces, closed=closed, tolerance=tolerance)
     if closed and all(smooth):
@@ -122,6 +128,18 @@ def _turn(before: Piece, after: Piece) -> float:
     """Return the angle between the tangents of the contact at a joint, degrees."""
     (one, other) = (piece.at_ends()[0] for piece in (before, after))
     return _degrees(cartesian_slope(one[0, 1], one[1, 1]), cartesian_slope(other[0, 0], other[1, 0]))
+
+
+def _check_speeds(before: Piece, after: Piece, joint: int) -> None:
+    for piece, end in ((before, 1), (after, 0)):
+        # Control points say nothing of it: that of a half circle is at infinity.
+        points = basis_matrix(piece.along.degree, piece.along.knots, np.linspace(0, 1, 5)) @ piece.jets[0]
+        speed, size = piece.end_speeds()[end], float(np.ptp([_place(x) for x in points], axis=0).max())
+        if speed <= _STILL * size:
+            raise EdgeError(
+                f"joint {joint}: the contact stands still there, its derivative is {speed:.1e} where it is {size:.3g} "
+                "long; use a face with another parameter along its edge"
+            )
 
 
 def _degrees(one: FloatArray, other: FloatArray) -> float:
@@ -193,6 +211,11 @@ def _matching(
     by[LAMBDA, 0] = wanted[0, 3] / derivatives[0, 0, 3] if rational else 1.0
     extent = float(np.abs(wanted[0]).max()) or 1.0
     per_u = float(np.linalg.norm(wanted[min(1, order)])) / extent
+    if per_u == 0:
+        raise EdgeError(
+            f"joint {joint}: a derivative across the contact vanishes there, expected faces that leave it; use faces "
+            "that have no pole at the joint"
+        )
     for j in range(1, order + 1):
         rest = wanted[j] - end_values(derivatives, by)[j]
         columns = {W: by[LAMBDA, 0] * derivatives[1, 0]} | ({LAMBDA: derivatives[0, 0]} if rational else {})
@@ -326,7 +349,7 @@ def _left_over(
         float(np.linalg.norm(before[order])),
         float(np.linalg.norm(after[order])),
         float(np.linalg.norm(values[order])) / float(spans.min()),
-        along * (float(np.linalg.norm(values[1])) / along) ** order if along else 0.0,
+        along * (float(np.linalg.norm(values[1])) / along) ** order,
     )
     return _LeftOver(rest, scale or 1.0)
 
@@ -359,7 +382,7 @@ def _curvature(derivatives: FloatArray) -> float:
         second = (second[:3] - second[3] * position - 2 * first[3] * slope) / point[3]
         first = slope
     speed = float(np.linalg.norm(first))
-    return float(np.linalg.norm(np.cross(first, second))) / speed**3 if speed else 0.0
+    return float(np.linalg.norm(np.cross(first, second))) / speed**3
 
 
 def _beyond_rounding(one: FloatArray, other: FloatArray) -> float:

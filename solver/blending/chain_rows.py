@@ -29,6 +29,8 @@ _INNER_ORDER = 2
 _LEAST_WEIGHT = 0.25
 # A knot that is not needed changes no value by more than this, relative to its order.
 _NO_KNOT = 1e-12
+# Along a chain, at which its extent is seen.
+_PLACES = 65
 
 
 def positive_rows(jets: FloatArray, along: Basis, width: float) -> tuple[FloatArray, float]:
@@ -53,12 +55,14 @@ def positive_rows(jets: FloatArray, along: Basis, width: float) -> tuple[FloatAr
     return rows, width
 
 
-def well_told_width(jets: FloatArray) -> float:
+def well_told_width(jets: FloatArray, along: Basis) -> float:
     """Return how wide a strip may be before it leaves the contact further than that is long.
 
     Rows of a strip of a width hold its derivatives of order k to some roundings of their points over width^k.
     """
-    points = jets[0, :, :3] if jets.shape[2] == 3 else jets[0, :, :3] / jets[0, :, 3:]
+    # Not of control points: those of half circles lie at infinity.
+    points = basis_matrix(along.degree, along.knots, np.linspace(along.knots[0], along.knots[-1], _PLACES)) @ jets[0]
+    points = points if jets.shape[2] == 3 else points[:, :3] / points[:, 3:]
     extent = float(np.ptp(points, axis=0).max()) / 2
     sizes = [float(np.linalg.norm(jet[:, :3], axis=1).max()) for jet in jets[1:]]
     return min(float((extent * factorial(k) / size) ** (1 / k)) for k, size in enumerate(sizes, start=1) if size > 0)

@@ -117,11 +117,11 @@ class Chain:
     def _strip(self, joined: JoinedPieces, jets: FloatArray, along: Basis) -> Strip:
         first = self.edges[0]
         low, high = first.surface.domain["uv".index(first.side[0])]
-        wide = well_told_width(jets)
-        shown, surface = (
-            self._surface(jets, along, width)
-            for width in (high - low, wide if wide > _SMALL * (high - low) else high - low)
-        )
+        wide = high - low
+        # To second order narrow rows tell enough.
+        if len(jets) > 3 and (told := well_told_width(jets, along)) > _SMALL * wide:
+            wide = told
+        shown, surface = (self._surface(jets, along, width) for width in (high - low, wide))
         cuts = np.concatenate([[0.0], np.cumsum(joined.spans)])
         joints = tuple(joint if joint is None else joint.moved_by(self.origin) for joint in joined.joints)
         return Strip(surface, shown, self.edges, self.turned, joined.spans, tuple(cuts.tolist()), joints)
@@ -301,11 +301,7 @@ def _as_conic(
     pieces: list[Piece], joined: JoinedPieces, *, closed: bool, tolerance: float
 ) -> tuple[FloatArray, Basis] | None:
     """Return pieces that are one conic together, joined continuously: `blend` runs through it by a smooth circle."""
-    if (
-        len(pieces) < 2
-        or pieces[0].jets.shape[2] == 3
-        or any(x is not None and x.kind != "smooth" for x in joined.joints)
-    ):
+    if pieces[0].jets.shape[2] == 3 or any(x is not None and x.kind != "smooth" for x in joined.joints):
         return None
     jets, along = assembled(only_continuous(pieces, joined, closed=closed, tolerance=tolerance))
     return None if recognised_conic(rows_of_jets(jets, 1.0), along) is None else (jets, along)

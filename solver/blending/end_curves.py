@@ -31,8 +31,9 @@ from semispline.solver.splines import (
 _MOST_RAISED = 4
 _STEPS = 6
 _FADE = 3
-# Distances are taken at so many points for each added degree, and so many more.
-_PER_DEGREE, _MORE = 8, 7
+# Distances are taken at so many points for each row that is moved, and so many more: of fewer than two in the middle,
+# where they are widest apart, rows would swing between them.
+_PER_ROW, _MORE = 4, 7
 
 
 @dataclass(frozen=True, eq=False)
@@ -118,9 +119,9 @@ def _moved_end(
 ) -> EndOnFace:
     """Move the end points of the rows that no contact reads along the face's normals, by Gauss-Newton steps."""
     low, high = surface.domain[0]
-    u = low + (high - low) * (1 - np.cos(np.linspace(0, np.pi, _PER_DEGREE * raised + _MORE))) / 2
-    v = surface.domain[1][end]
     rows = np.arange(orders[0] + 1, len(surface.control_points) - orders[1] - 1)
+    u = low + (high - low) * (1 - np.cos(np.linspace(0, np.pi, _PER_ROW * len(rows) + _MORE))) / 2
+    v = surface.domain[1][end]
     fade = _fade(Basis(surface.degree_v, surface.knots_v), end)
     across = basis_matrix(surface.degree_u, surface.knots_u, u).toarray()
     net = surface.control_points.copy()

@@ -146,7 +146,7 @@ def _through(x: FloatArray, y: FloatArray, stops: FloatArray) -> VMap:
     for low, high in pairwise(stops):
         inside = (x >= low) & (x <= high)
         own = x[inside], y[inside]
-        piece: PPoly = CubicSpline(*own) if inside.sum() > 2 else _monotone(*own)
+        piece: PPoly = CubicSpline(*own)
         if not _rises(piece, *own):
             piece, smooth = _monotone(*own), False
         pieces.append(piece)

@@ -34,7 +34,7 @@ def profile_record(profile: Profile) -> dict[str, Any]:
     """Return what a JSON file holds of how measures run along the edge: their means, and values over the length."""
     values = {name: value.tolist() for name, value in profile.values.items()}
     record = {"parameter": profile.parameter.tolist(), "length": profile.length.tolist(), **values}
-    return {"mean": finite(profile.means), "profile": finite(record)}
+    return {"mean": finite(profile.means), "left_out": profile.left_out, "profile": finite(record)}
 
 
 def plot_limits(contact: Contact) -> dict[str, float]:
@@ -70,6 +70,8 @@ def print_contact(contact: Contact, profile: Profile, unit: str | None, required
         typer.echo(
             "the edges are one curve with two parametrisations: each point is compared with its foot on the other"
         )
+    if profile.left_out:
+        typer.echo(f"left out: {profile.left_out} of {len(profile.length)} places, where a side has no proper normal")
     for bare in contact.no_normal:
         typer.echo(f"{bare.surface.upper()}: {bare}")
 

@@ -44,6 +44,8 @@ _TURNED = (
 # Files write angles with some 10 to 16 digits: ends of a range that are this near, in fractions of a turn of 2 pi or
 # of the range, are meant to be the same.
 _SNAP = 2e-9
+# Spacings of its ends that a turn is shortened by where it begins anywhere; twice what is needed.
+_ROUNDINGS = 2
 # The kernel's word for infinity.
 _INFINITE = 1e100
 # What was converted exactly agrees to this fraction of the size.
@@ -177,7 +179,11 @@ def _exact(geometry: Any, ends: Ends) -> BSplineSurface:
         shift = low_u - first_u
         geometry = geometry.Rotated(geometry.Axis(), shift)
     # A full turn from the start of the period on is not a trimming: the kernel refuses to cut a period out of itself.
-    spline = _as_spline(_trimmed(geometry, ends, not full_u, not (full_v and low_v == first_v)))
+    cut_v = not (full_v and low_v == first_v)
+    if full_v and cut_v:
+        # A turn that rounds up beyond one is none to the kernel, which adds and subtracts once more.
+        high_v -= _ROUNDINGS * np.spacing(max(abs(low_v), abs(high_v)))
+    spline = _as_spline(_trimmed(geometry, (low_u, high_u, low_v, high_v), not full_u, cut_v))
     surface = _read_out(spline, shift)
     widths = [x[1] - x[0] for x in surface.domain]
     if not np.allclose(widths, [high_u - low_u, high_v - low_v], rtol=_SNAP, atol=0):

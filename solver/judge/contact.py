@@ -45,7 +45,8 @@ class NoNormal:
 class Contact:
     """How two surfaces meet along an edge; the worst over samples in every span of both, and between them.
 
-    Angle and curvature are not a number where a side has no normal somewhere along the edge.
+    Where a side has no normal, as in a pole, nothing but the gap is told: angle and curvature are those of all other
+    places, and not a number where there is none.
 
     Rates are those of the curvature of the section of each side with the plane square to the edge, by arc length, with
     one normal and in one direction; None where they were not asked for. They mean something only where all measures of

@@ -15,7 +15,7 @@ from semispline.solver.judge.contact import Contact
 from semispline.solver.judge.correspondence import Correspondence, correspond, corresponding
 from semispline.solver.judge.de_boor import edge_curves
 from semispline.solver.judge.edge_normals import places_without_normal
-from semispline.solver.judge.edge_samples import Edges, Samples, Worst
+from semispline.solver.judge.edge_samples import Edges, Samples, Worst, most
 from semispline.solver.judge.limits import CEILINGS, GAP_LIMIT, allowed_measures
 from semispline.solver.judge.pairs import Pairs, foot_pairs, places_between
 from semispline.solver.judge.rounding import rounding_causes
@@ -194,7 +194,7 @@ def corresponding_points(a: Base, b: Base, matched: Correspondence, s: FloatArra
 def _with_worst_between(edges: Edges, pairs: Pairs, found: Samples, of_gap: float) -> Samples:
     """Return the samples with the worst places between them, for values that are more than rounding."""
     noises = (of_gap, float(np.degrees(found.noises[0])), *found.noises[1:])
-    telling = [k for k, noise in enumerate(noises) if found.values[k].max() > noise]
+    telling = [k for k, noise in enumerate(noises) if most(found.values[k]) > noise]
     if not telling:
         return found
 

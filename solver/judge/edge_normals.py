@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
 from semispline.solver.arrays import FloatArray
 from semispline.solver.errors import EdgeError
@@ -45,12 +47,9 @@ def places_without_normal(base: Base, surface: Literal["a", "b"]) -> tuple[NoNor
     >>> print(*places_without_normal(Base(fan, "u0"), "a"))
     no proper normal at parameter 0, (0, 0, 0): the derivative across the edge vanishes
     """
-    breaks = base.breakpoints_along()
-    inside = (breaks[:-1, None] + np.diff(breaks)[:, None] * np.arange(_PER_SPAN) / _PER_SPAN).ravel()
-    s = np.append(inside, breaks[-1])
+    s = _samples(base)
     values = _sizes(base, s)
-    # Where all of one kind vanishes there is no mean; a sine needs none.
-    means = np.array([*(mean if mean > 0 else 1.0 for mean in values[:2].mean(axis=1)), 1.0])
+    means = _means(values)
     values /= means[:, None]
     found = []
     for kind, row in enumerate(values):
@@ -58,6 +57,16 @@ def places_without_normal(base: Base, surface: Literal["a", "b"]) -> tuple[NoNor
             x, y, z = base.derivative(np.array([at]), 0, 0)[0].tolist()
             found.append(NoNormal(surface, at, (x, y, z), _REASONS[kind], value))
     return tuple(sorted(found, key=lambda place: place.parameter))
+
+
+def beside_poles(base: Base, s: FloatArray, places: Iterable[NoNormal]) -> NDArray[np.bool_]:
+    """Tell which parameters lie so near to places at which there is no normal at all that there is no proper one.
+
+    Derivatives of order k are noise there: rounding over the distance to the power of k.
+    """
+    if not any(place.fraction <= _NOTHING for place in places):
+        return np.zeros(len(s), dtype=np.bool_)
+    return np.asarray((_sizes(base, s) <= VANISHES * _means(_sizes(base, _samples(base)))[:, None]).any(axis=0))
 
 
 def check_regular_edge(base: Base) -> None:
@@ -74,6 +83,17 @@ def check_regular_edge(base: Base) -> None:
                 f"edge {base.edge}: no normal at parameter {place.parameter:.6g} along it ({place.reason}); choose an "
                 "edge where the surface is regular"
             )
+
+
+def _samples(base: Base) -> FloatArray:
+    breaks = base.breakpoints_along()
+    inside = (breaks[:-1, None] + np.diff(breaks)[:, None] * np.arange(_PER_SPAN) / _PER_SPAN).ravel()
+    return np.append(inside, breaks[-1])
+
+
+def _means(sizes: FloatArray) -> FloatArray:
+    """Return what sizes are measured by, shape (3,): where all of one kind vanishes nothing; a sine needs none."""
+    return np.array([*(mean if mean > 0 else 1.0 for mean in sizes[:2].mean(axis=1)), 1.0])
 
 
 def _sizes(base: Base, s: FloatArray) -> FloatArray:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any, TypeAlias
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from semispline.solver.arrays import FloatArray
 from semispline.solver.judge.base import Base
@@ -28,7 +29,7 @@ Jet: TypeAlias = Mapping[tuple[int, int], FloatArray]
 
 @dataclass(frozen=True)
 class Worst:
-    """The largest of some values, or the first that is not a number, and where it is."""
+    """The largest of some values, and where it is."""
 
     value: float
     place: Place
@@ -44,7 +45,8 @@ class Samples:
     points : ndarray, shape (K, 3)
         On edge a, counted from the origin of the edges.
     values : ndarray, shape (3, K) and more
-        Gap, angle (degrees) and jump; and of the rates of curvature, as far as they are asked for.
+        Gap, angle (degrees) and jump; and of the rates of curvature, as far as they are asked for. All but the gap are
+        not a number where a side has no normal; what follows is of the other samples.
     curvature : float
         Largest of either side, across the edge.
     bend : float
@@ -68,8 +70,8 @@ class Samples:
     rates: tuple[float, ...]
 
     def worst(self, k: int, origin: FloatArray) -> Worst:
-        """Return the largest of one kind of values."""
-        i = int(self.values[k].argmax())
+        """Return the largest of one kind of values; one that is not a number only where all are."""
+        i = int(np.nan_to_num(self.values[k], nan=-np.inf).argmax())
         x, y, z = (self.points[i] + origin).tolist()
         return Worst(float(self.values[k, i]), Place(float(self.s_a[i]), (x, y, z)))
 
@@ -80,14 +82,14 @@ class Samples:
             return parts[0]
 
         def largest(name: str) -> tuple[float, ...]:
-            return tuple(np.max([getattr(part, name) for part in parts], axis=0).tolist())
+            return tuple(most(x) for x in np.array([getattr(part, name) for part in parts]).T)
 
         return Samples(
             np.concatenate([part.s_a for part in parts]),
             np.concatenate([part.points for part in parts]),
             np.concatenate([part.values for part in parts], axis=1),
-            float(np.max([part.curvature for part in parts])),
-            float(np.max([part.bend for part in parts])),
+            most([part.curvature for part in parts]),
+            most([part.bend for part in parts]),
             *(largest(name) for name in ("differences", "derivatives", "noises", "rates")),
         )
 
@@ -171,11 +173,11 @@ class Edges:
             s_a,
             side_a.point,
             np.stack([*_values(side_a, side_b), *(rate.jumps for rate in rates)]),
-            curvature=float(np.max(np.abs([k_a, k_b]))),
-            bend=float(np.max(np.abs([k_a, k_b, side_a.curvature_along(), side_b.curvature_along()]))),
+            curvature=most(np.abs([k_a, k_b])),
+            bend=most(np.abs([k_a, k_b, side_a.curvature_along(), side_b.curvature_along()])),
             differences=(_longest(side_a.x_w - self._sign * side_b.x_w), _longest(side_a.x_ww - side_b.x_ww)),
             derivatives=(_longest(side_a.x_w, side_b.x_w), _longest(side_a.x_ww, side_b.x_ww)),
-            noises=(float(of_angle.max()), float(of_curvature.max()), *(rate.noise for rate in rates)),
+            noises=(most(of_angle), most(of_curvature), *(rate.noise for rate in rates)),
             rates=tuple(rate.largest for rate in rates),
         )
 
@@ -190,8 +192,8 @@ class Edges:
         # The first rate is an odd derivative, the second an even one.
         for k, turn in enumerate((self._sign, 1.0)[: order - 2]):
             rate_a, rate_b = rates_a.values[k], rates_b.values[k]
-            noise = float(np.max(rates_a.noises[k] + rates_b.noises[k]))
-            found.append(_Rate(np.abs(rate_a - turn * rate_b), float(np.max(np.abs([rate_a, rate_b]))), noise))
+            noise = most(rates_a.noises[k] + rates_b.noises[k])
+            found.append(_Rate(np.abs(rate_a - turn * rate_b), most(np.abs([rate_a, rate_b])), noise))
         return found
 
 
@@ -258,6 +260,13 @@ def _cross(a: FloatArray, b: FloatArray) -> FloatArray:
     """Return the cross product of vectors along axis 1, in memory one coordinate after the other."""
     (x, y, z), (u, v, w) = a.T, b.T
     return np.stack([y * w - z * v, z * u - x * w, x * v - y * u]).T
+
+
+def most(values: ArrayLike) -> float:
+    """Return the largest value that is a number, as where a surface has a normal; else not a number."""
+    known = np.asarray(values, dtype=np.float64)
+    known = known[~np.isnan(known)]
+    return float(known.max()) if known.size else float("nan")
 
 
 def _longest(*vectors: FloatArray) -> float:

@@ -13,6 +13,7 @@ from semispline.solver.errors import InputError
 from semispline.solver.judge.base import Base, local_origin
 from semispline.solver.judge.contact import Contact, Place
 from semispline.solver.judge.correspondence import Correspondence
+from semispline.solver.judge.edge_normals import beside_poles
 from semispline.solver.judge.edge_samples import Edges
 from semispline.solver.judge.sections import just_inside
 
@@ -41,7 +42,8 @@ class Profile:
     length : ndarray, shape (K,)
         Of the edge from its start, model units, as that of chords.
     values : mapping
-        Name of a measure, as `Contact` has it -> ndarray, shape (K,).
+        Name of a measure, as `Contact` has it -> ndarray, shape (K,); not a number where a side has no proper
+        normal, as in a pole and all but in it.
     """
 
     parameter: FloatArray
@@ -51,12 +53,22 @@ class Profile:
 
     @property
     def means(self) -> dict[str, float]:
-        """Mean of each measure over the length of the edge; not a number where it is none somewhere."""
-        total = self.length[-1] - self.length[0]
-        return {
-            name: float(np.trapezoid(value, self.length) / total) if total > 0 else float(value.mean())
-            for name, value in self.values.items()
-        }
+        """Mean of each measure over the length of the edge, as far as it is a number; else not a number."""
+        return {name: _mean(value, self.length) for name, value in self.values.items()}
+
+    @property
+    def left_out(self) -> int:
+        """At how many places a side has no proper normal: there only the gap is a number."""
+        return int(np.isnan(self.values["angle_degrees"]).sum())
+
+
+def _mean(value: FloatArray, length: FloatArray) -> float:
+    known = ~np.isnan(value)
+    value, length = value[known], length[known]
+    if not len(value):
+        return float("nan")
+    total = length[-1] - length[0]
+    return float(np.trapezoid(value, length) / total) if total > 0 else float(value.mean())
 
 
 def measure_profile(a: Base, b: Base, contact: Contact) -> Profile:
@@ -99,6 +111,9 @@ def measure_profile(a: Base, b: Base, contact: Contact) -> Profile:
     worst = [getattr(contact, place).parameter for _, place, _ in kinds]
     s = np.unique(np.concatenate([_places(pairs.breaks), worst]))
     found = edges.values(s, pairs.along_b(s), range(len(kinds)))
+    for base, at, name in ((a, s, "a"), (b, pairs.along_b(s), "b")):
+        places = [place for place in contact.no_normal if place.surface == name]
+        found[1:, beside_poles(base, at, places)] = np.nan
     values = {}
     for (name, _, relative), value in zip(kinds, found, strict=True):
         values[name] = value

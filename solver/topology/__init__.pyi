@@ -24,7 +24,6 @@ from .face_edges import is_of_a_face as is_of_a_face
 from .face_edges import list_edges as list_edges
 from .face_meshes import EdgeLine as EdgeLine
 from .face_meshes import FaceMesh as FaceMesh
-from .face_runs import ReplacedRun as ReplacedRun
 from .face_runs import replaced_run as replaced_run
 from .free_contact import FreeContact as FreeContact
 from .free_contact import measure_free_contact as measure_free_contact

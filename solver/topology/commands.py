@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import shlex
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from math import floor, log10
 from pathlib import Path
@@ -62,7 +62,7 @@ def with_commands(
     for face in place.faces:
         between = betweens[face]
         ends = end_edges(graph, face, (between.a.uses, between.b.uses))
-        word = "" if _has_faces_beyond(relations, ends) else "--surfaces"
+        word = "" if _is_sewn(graph, [face]) else "--surfaces"
         if not word and going_on(graph, relations, ends):
             word = "--keep-ends"
         commands.append(replacing(graph.path, [face], _edges_to_name(graph, relations, between), word=word))
@@ -70,20 +70,22 @@ def with_commands(
 
 
 def _of_run(graph: EdgeGraph, relations: Relations, place: Place, chains: Sequence[Sequence[int]]) -> str | None:
-    """Return the command that replaces a chain, or the one that a fillet belongs to; None where none does."""
+    """Return the command that replaces a chain, or the one that a fillet belongs to; None where none can."""
     (faces,) = [list(chain) for chain in chains if set(place.faces) <= set(chain)][:1] or [list(place.faces)]
     try:
         run = face_run(graph, relations, faces)
     except EdgeError:
         return None
-    if run.is_plain or not _has_faces_beyond(relations, run.ends(graph)):
+    if run.is_plain or not _is_sewn(graph, run.faces):
         return None
     return replacing(graph.path, run.faces, word="--keep-ends" if runs_on(graph, relations, run) else "")
 
 
-def _has_faces_beyond(relations: Relations, ends: Iterable[int]) -> bool:
-    """Tell whether a blend can end on faces, or in edges of faces: else it comes as a surface."""
-    return all(relations.partner[row] != NONE for row in ends)
+def _is_sewn(graph: EdgeGraph, faces: Sequence[int]) -> bool:
+    """Tell whether each edge of some faces is one of another face too, or a seam: else no solid comes back."""
+    uses = graph.uses
+    rows = [row for face in faces for row in range(*uses.of_face(face).indices(len(uses)))]
+    return all(uses.other[row] != NONE or uses.twin[row] != NONE or uses.seam[row] for row in rows)
 
 
 def _words(

@@ -34,6 +34,7 @@ from semispline.solver.topology.parallels import (
     turns_over,
 )
 from semispline.solver.topology.self_meeting import meeting_distance
+from semispline.solver.topology.swept import distance_to, finer
 from semispline.solver.topology.trim_curves import TrimCurve
 
 _PARAMETER = re.compile(r"([uv])=(.+)")
@@ -47,6 +48,8 @@ _MOST_PLACES, _SHARE, _NEWTON = 2600, 0.1, 4
 _SNAP = 1e-9
 # Of the size of a face: what is farther is hardly in it; where one begins to look how far it goes, and how closely.
 _FAR, _NEAREST = 2.0, 1e-3
+# Times a distance: so far one looks, as what is met between paths may be a little nearer than it seems.
+_FURTHER = 1.02
 _BEYOND, _OVER_A_POLE, _TO_ITSELF = "beyond the face", "over a pole of the face", "round the face to itself"
 _INTERVALS = 16
 _GAUSS = np.polynomial.legendre.leggauss(6)
@@ -187,9 +190,7 @@ def _to_distance(
 ) -> tuple[EdgeName | BSplineCurve, str]:
     """Return the line, or the curve in the parameters, that a contact is moved to, and what is said of it."""
     # Of a closed curve the first places come again a turn later.
-    inside = curve.ends[0] + (np.arange(_PATHS + _AGAIN * curve.closed) + 0.5) / _PATHS * (
-        curve.ends[1] - curve.ends[0]
-    )
+    inside = curve.ends[0] + (np.arange(_PATHS + _AGAIN * curve.closed) + 0.5) / _PATHS * np.ptp(curve.ends)
     paths = _checked_paths(face, curve, inside, distance, outline, title)
     said = f", {distance:g} inside"
     if name is not None:
@@ -271,49 +272,55 @@ def _checked_paths(face: Face, curve: _Curve, x: FloatArray, distance: float, ou
     Steps of a distance that is far too large tell nothing: how far one can go is found by doubling a small one.
     """
     good, tried = 0.0, distance if distance <= _FAR * face.size else _NEAREST * face.size
-    paths = curve.paths(face, x, tried)
-    reach, why = _reach(face, curve, x, paths, outline)
+    reach, why = _reach(face, curve, x, tried, outline)
     if tried == distance:
         if distance < reach:
-            return paths
+            return curve.paths(face, x, distance)
         tried = min(_NEAREST * face.size, distance / 2)
-        paths = curve.paths(face, x, tried)
-        reach, why = _reach(face, curve, x, paths, outline)
+        reach, why = _reach(face, curve, x, tried, outline)
     while tried < reach:
         if tried == distance:
-            return paths
+            return curve.paths(face, x, distance)
         good, tried = tried, min(2 * tried, distance)
-        paths = curve.paths(face, x, tried)
-        reach, why = _reach(face, curve, x, paths, outline)
+        reach, why = _reach(face, curve, x, tried, outline)
     # Where paths are lost is known by steps alone, and what was passed before is no end.
     while not (reach > good and why != _OVER_A_POLE) and tried - good > _NEAREST * tried:
         middle = (good + tried) / 2
-        further, then = _reach(face, curve, x, curve.paths(face, x, middle), outline)
+        further, then = _reach(face, curve, x, middle, outline)
         good, tried, why = (middle, tried, why) if middle < further else (good, middle, then)
         reach = good
     raise EdgeError(f"{title}: {distance:g} reaches {why}, expected a distance below {reach:.4g}")
 
 
-def _reach(face: Face, curve: _Curve, x: FloatArray, paths: Paths, outline: Outline) -> tuple[float, str]:
+def _reach(face: Face, curve: _Curve, x: FloatArray, distance: float, outline: Outline) -> tuple[float, str]:
     """Return the distance at which paths leave the face or cross, or all have run out, and what is there.
 
-    It is infinite where they do not.
+    It is infinite, or larger than the distance that one looks at, where they do not.
     """
-    leaves, first = (
-        crossings(paths, lines, outline.periods).min(axis=0, initial=np.inf) for lines in (outline.others, outline.ends)
-    )
+
+    def paths_at(x: FloatArray, far: float) -> Paths:
+        return curve.paths(face, x, far)
+
+    far, periods = _FURTHER * distance, outline.periods
+    # Beside its ends only holes can lie between paths: other edges run there along those that end the face.
+    more = bool(outline.holes) and not curve.closed
+    wide = np.concatenate([curve.ends[:1], x, curve.ends[1:]]) if more else x
+    swept = paths_at(wide, far)
+    paths = swept.between(1, -1) if more else swept
+    first = crossings(paths, outline.ends, periods).min(axis=0, initial=np.inf)
     # An edge that touches this one and is met between paths that go on ends nothing: the face ends there.
     inner = first < np.minimum(np.maximum.accumulate(first), np.maximum.accumulate(first[::-1])[::-1])
-    leaves = np.where(inner, np.minimum(leaves, np.nextafter(first, 0.0)), leaves)
-    own = crossings(paths, outline.own, outline.periods, again=True).min(axis=0, initial=np.inf)
-    beyond, again, pole = (
-        float(np.where(x < first, x, np.inf).min()) for x in (leaves, own, lost_distances(face, paths))
-    )
+    beyond = float(np.where(inner, first, np.inf).min())
+    own = crossings(paths, outline.own, periods, again=True).min(axis=0, initial=np.inf)
+    again, pole = (float(np.where(x < first, x, np.inf).min()) for x in (own, lost_distances(face, paths)))
     round_ = _PATHS if curve.closed else None
-    itself = meeting_distance(paths, x, lambda x, far: curve.paths(face, x, far), outline.periods, round_, first)
+    itself = meeting_distance(paths, x, paths_at, periods, round_, first)
     # Where all run out at the ends the contact has shrunk to nothing.
     nothing = float(first.max())
-    largest = min(beyond, nothing, focal_distance(paths))
+    largest = min(
+        beyond, nothing, focal_distance(paths), distance_to(paths, x, paths_at, outline.others, outline.ends, periods)
+    )
+    largest = min(largest, distance_to(swept, wide, paths_at, outline.holes, outline.ends, periods))
     return min((largest, _BEYOND), (min(again, itself), _TO_ITSELF), (pole, _OVER_A_POLE))
 
 
@@ -331,10 +338,17 @@ def _to_parameter(face: Face, name: EdgeName, cut: Cut, outline: Outline, title:
     period = float(outline.periods[axis])
     reach = period or np.inf
     for value in low + (np.arange(_PATHS) + 0.5) / _PATHS * (high - low):
-        ends, others = (_met(outline, lines, 1 - axis, value, edge, into) for lines in (outline.ends, outline.others))
+        ends, others = (_met(outline, lines, 1 - axis, value, edge, into) for lines in (outline.ends, outline.beyond))
         reach = min(reach, others if others < ends else np.inf)
     middle = (low + high) / 2
     reach = min(reach, _met(outline, outline.ends, 1 - axis, middle, edge, into))
+    # Between those lines.
+    half = (high - low) / (2 * _PATHS)
+    reach = min(
+        reach,
+        _least_along(outline, outline.others, axis, edge, into, (low + half, high - half)),
+        _least_along(outline, outline.holes, axis, edge, into, (low, high)),
+    )
     if period and not 0 < (at - edge) * into < reach and domain[axis][0] <= at <= domain[axis][1]:
         at += into * period
     if not 0 < (at - edge) * into < reach:
@@ -344,6 +358,28 @@ def _to_parameter(face: Face, name: EdgeName, cut: Cut, outline: Outline, title:
             f"{first:.6g} and {last:.6g}"
         )
     return _line(face, name, at, middle, outline, title)
+
+
+def _least_along(
+    outline: Outline, lines: Sequence[FloatArray], axis: int, edge: float, into: float, part: tuple[float, float]
+) -> float:
+    """Return how far into a face, from a part of a line of constant parameter, the nearest points of polylines lie."""
+    nearest, low, high = np.inf, np.empty(2), np.empty(2)
+    low[1 - axis], high[1 - axis] = part
+    low[axis], high[axis] = sorted((edge, edge + into * (float(outline.periods[axis]) or np.inf)))
+    for line in lines:
+        for turn in turns_over(line, outline.periods, low, high):
+            points = line + turn
+            away = into * (points[:, axis] - edge)
+            inside = (away > 0) & (points[:, 1 - axis] > part[0]) & (points[:, 1 - axis] < part[1])
+            for row in np.flatnonzero(inside)[np.argsort(away[inside])]:
+                if away[row] >= nearest:
+                    break
+                value = float(points[row, 1 - axis])
+                if away[row] < _met(outline, outline.ends, 1 - axis, value, edge, into):
+                    nearest = float((into * (finer(points, points[row], outline.periods)[:, axis] - edge)).min())
+                    break
+    return nearest
 
 
 def _exactly(face: Face, paths: Paths, axis: int, distance: float) -> float:
@@ -385,7 +421,7 @@ def _line(
     own, period = name.part or (first, last), float(outline.periods[1 - axis])
 
     def reach(sign: float) -> float:
-        ends, others = (_met(outline, lines, axis, at, middle, sign) for lines in (outline.ends, outline.others))
+        ends, others = (_met(outline, lines, axis, at, middle, sign) for lines in (outline.ends, outline.beyond))
         beside = sign * (own[1 if sign > 0 else 0] - middle)
         return ends if np.isfinite(ends) and ends <= others else min(others, beside)
 

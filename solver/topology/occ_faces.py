@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -137,7 +137,7 @@ def with_faces(
     shell = next(
         (x for x in parts(shape, "SHELL") if any(face.IsSame(faces[beside]) for face in parts(x, "FACE"))), None
     )
-    if shell is None and len(children(shape)) == len(faces):
+    if has_loose_faces(shape):
         return _with_loose_faces(shape, faces, made, new)
     if shell is None or not shell.Location().IsIdentity():
         raise EdgeError(
@@ -161,18 +161,29 @@ def _with_loose_faces(
     shape: Any, faces: Sequence[Any], made: Mapping[int, Any], new: Sequence[Any]
 ) -> tuple[Any, Callable[[Any], Any]]:
     """Return faces that are in no shell as one, some rebuilt, new ones behind them: files keep shared edges so."""
-    from OCP.BRep import BRep_Builder
     from OCP.BRepTools import BRepTools_ReShape
-    from OCP.TopoDS import TopoDS_Shell
 
     reshape = BRepTools_ReShape()
     for n, face in made.items():
         reshape.Replace(forward(faces[n]), forward(face))
+    return shell_of([*children(reshape.Apply(shape)), *new]), reshape.Value
+
+
+def has_loose_faces(shape: Any) -> bool:
+    """Tell whether a shape is nothing but faces."""
+    return not parts(shape, "SHELL") and len(children(shape)) == len(parts(shape, "FACE"))
+
+
+def shell_of(faces: Iterable[Any]) -> Any:
+    """Return the shell of some faces, open or not."""
+    from OCP.BRep import BRep_Builder
+    from OCP.TopoDS import TopoDS_Shell
+
     found, builder = TopoDS_Shell(), BRep_Builder()
     builder.MakeShell(found)
-    for one in (*children(reshape.Apply(shape)), *new):
+    for one in faces:
         builder.Add(found, one)
-    return found, reshape.Value
+    return found
 
 
 def evenly(line: FloatArray, count: int = 65) -> FloatArray:

@@ -17,14 +17,13 @@ from semispline.solver.errors import EdgeError
 from semispline.solver.io import occ_surface
 from semispline.solver.splines import BSplineSurface
 from semispline.solver.topology.occ_edges import wires
-from semispline.solver.topology.occ_faces import closed_face, edges_of_wire, new_face, seam_edge
+from semispline.solver.topology.occ_faces import closed_face, new_face, rebuilt, seam_edge
 from semispline.solver.topology.occ_new_edges import end_edge, foot_on, line_on, settle
 from semispline.solver.topology.occ_replacing import Rim, contact_edges, rim_line
 from semispline.solver.topology.occ_shapes import (
     CONFUSION,
     EdgeUsers,
     add_pcurve,
-    children,
     ends,
     forward,
     is_reversed,
@@ -113,7 +112,7 @@ def joined(shape: Any, numbers: tuple[int, int], surfaces: Sequence[BSplineSurfa
     made, replaced = _new_faces(divided, surfaces, faces, against=against[0])
     edges = {
         users.number(edge): [
-            next(new for old, new in replaced if old.IsSame(piece))
+            (next(new for old, new in replaced if old.IsSame(piece)), False)
             for piece in one.pieces.get(users.number(edge), [edge])
         ]
         for cap, one in zip(caps, divided, strict=True)
@@ -121,7 +120,7 @@ def joined(shape: Any, numbers: tuple[int, int], surfaces: Sequence[BSplineSurfa
     }
     rims = {face for cap in caps for face in cap.rim.faces}
     became = {
-        number: rebuilt_with(face, edges, users) if number in rims else face
+        number: rebuilt(face, edges, users, []) if number in rims else face
         for number, face in enumerate(faces)
         if number not in numbers
     }
@@ -295,29 +294,6 @@ def _sides(
         settle(edge, [blank[k], blank[k - 1]])
         found.append(edge)
     return found
-
-
-def rebuilt_with(face: Any, edges: Mapping[int, list[Any]], users: EdgeUsers) -> Any:
-    """Return a face with others in the places of some edges, which are given by their numbers."""
-    from OCP.BRep import BRep_Builder
-    from OCP.TopoDS import TopoDS_Wire
-
-    builder, own = BRep_Builder(), forward(face)
-    found = forward(own.EmptyCopied())
-    for wire in children(own):
-        made = TopoDS_Wire()
-        builder.MakeWire(made)
-        for edge in edges_of_wire(forward(wire), own):
-            new = edges.get(users.number(edge))
-            if new is None:
-                builder.Add(made, edge)
-                continue
-            for one in new[::-1] if is_reversed(edge) else new:
-                builder.Add(made, turned(one, backwards=is_reversed(edge)))
-        made.Closed(wire.Closed())
-        builder.Add(found, turned(made, backwards=is_reversed(wire)))
-    builder.NaturalRestriction(found, False)
-    return turned(found, backwards=is_reversed(face))
 
 
 def _solid(shape: Any, numbers: tuple[int, int], became: Mapping[int, Any], made: Any) -> Any:

@@ -17,7 +17,7 @@ from semispline.solver.errors import EdgeError
 from semispline.solver.io import occ_surface
 from semispline.solver.splines import BSplineSurface, iso_curve
 from semispline.solver.topology.occ_edges import wires
-from semispline.solver.topology.occ_faces import closed_face, evenly, new_face, seam_edge
+from semispline.solver.topology.occ_faces import closed_face, evenly, has_loose_faces, new_face, seam_edge, shell_of
 from semispline.solver.topology.occ_new_edges import (
     add_across_border,
     add_along_border,
@@ -35,6 +35,7 @@ from semispline.solver.topology.occ_shapes import (
     CONFUSION,
     EdgeUsers,
     add_pcurve,
+    children,
     ends,
     forward,
     is_reversed,
@@ -194,7 +195,9 @@ def put_in(shape: Any, places: Sequence[Opening], news: Sequence[NewFace]) -> tu
         reshape.Replace(forward(one.old), one.edge)
     for place, (walk, inwards) in zip(places, borders, strict=True):
         reshape.Replace(place.face, closed_face(own[place.number], walk, inwards=inwards))
-    return reshape.Apply(shape), reshape.Value
+    changed = reshape.Apply(shape)
+    # Files keep the edges that faces share in shells alone.
+    return shell_of(children(changed)) if has_loose_faces(changed) else changed, reshape.Value
 
 
 def _border(

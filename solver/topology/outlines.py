@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -34,11 +34,13 @@ class Outline:
     ends : list of ndarray, shape (S, 2)
         Edges that touch it: they end what runs beside it.
     others : list of ndarray, shape (S, 2)
-        All other edges: beyond them the face is left.
+        The other edges of the same wire: beyond them the face is left.
     own : list of ndarray, shape (S, 2)
         The edge itself, where nothing but itself is met a turn later.
     periods : ndarray, shape (2,)
         After how much of each parameter all of it comes again; 0 where it does not.
+    holes : list of ndarray, shape (S, 2)
+        The edges of other wires; as of `others`, but none of them touches what ends the face beside the edge.
     """
 
     trim: TrimCurve | None
@@ -46,6 +48,12 @@ class Outline:
     others: list[FloatArray]
     own: list[FloatArray]
     periods: FloatArray
+    holes: list[FloatArray] = field(default_factory=list)
+
+    @property
+    def beyond(self) -> list[FloatArray]:
+        """All edges beyond which the face is left."""
+        return [*self.others, *self.holes]
 
 
 def curved_edges(graph: EdgeGraph, row: int) -> list[int]:
@@ -60,13 +68,15 @@ def outline_of(graph: EdgeGraph, row: int, surface: BSplineSurface, curves: Mapp
     face = Face(surface)
     ends: list[FloatArray] = []
     others: list[FloatArray] = []
+    holes: list[FloatArray] = []
     for x in _drawn(graph, row):
         if x != row and not (graph.uses.seam[x] and _on_seam(own_parameters(graph, x, surface), face)):
             line = _polyline(graph, x, surface, curves.get(x))
-            (ends if x in near or _touches(graph, x, row) else others).append(line)
+            apart = others if graph.uses.wire[x] == graph.uses.wire[row] else holes
+            (ends if x in near or _touches(graph, x, row) else apart).append(line)
     trim = curves.get(row)
     moved = None if trim is None else _beside(trim, own_parameters(graph, row, surface))
-    return Outline(moved, ends, others, [], face.periods)
+    return Outline(moved, ends, others, [], face.periods, holes)
 
 
 def _on_seam(samples: FloatArray, face: Face) -> bool:

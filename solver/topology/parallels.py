@@ -54,6 +54,11 @@ class Paths:
         """Distance between two steps."""
         return self.distance / (len(self.at) - 1)
 
+    def between(self, first: int, last: int) -> Paths:
+        """Return some of the paths, numbered as for a slice."""
+        at, point, ahead, beside = (x[:, first:last] for x in (self.at, self.point, self.ahead, self.beside))
+        return Paths(at, point, ahead, beside, self.distance)
+
 
 @np.errstate(over="ignore", invalid="ignore", divide="ignore")
 def paths_from(face: Face, at: FloatArray, slope: FloatArray, sign: float, distance: float) -> Paths:

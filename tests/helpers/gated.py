@@ -9,8 +9,9 @@ from OCP.TopoDS import TopoDS_Shell, TopoDS_Solid
 from helpers.parts import compound, graph_of
 from semispline import Base, blend, plane
 from semispline.solver.topology.occ_replacing import change_of, opening, put_in
-from semispline.solver.topology.occ_shapes import copy_of
-from semispline.solver.topology.solid_orders import NewFace
+from semispline.solver.topology.occ_rounding import rounded
+from semispline.solver.topology.occ_shapes import copy_of, ends, parts
+from semispline.solver.topology.solid_orders import NewFace, Rounding
 
 
 @cache
@@ -63,3 +64,11 @@ def solid_of(faces, *voids):
         shell.Closed(True)
         builder.Add(solid, shell)
     return compound([solid])
+
+
+def edge_rounded(shape, face, k, surface, *, grows):
+    """The shape with one edge rounded, and what is meant to have happened."""
+    vertices = ends(parts(parts(shape, "FACE")[face], "EDGE")[k])
+    order = Rounding(face, ((face, k),), surface, (), vertices[0].IsSame(vertices[1]), grows)
+    after, _, change = rounded(copy_of(shape)[0], order.edges, order)
+    return after, change

@@ -173,6 +173,14 @@ def test_no_module_of_the_paper_is_overwritten(made_up_paper, tmp_path, name):
     assert (folder / name).read_text() == before
 
 
+def test_a_paper_without_a_text_for_its_reader_is_told_before_it_is_decided(made_up_paper, tmp_path):
+    result = run("verify", made_up_paper(), "--erratum", tmp_path / "REPORT.md")
+    assert result.exit_code == 2
+    assert "found no module erratum" in result.stderr
+    assert "n = 1" not in result.stdout
+    assert not (tmp_path / "REPORT.md").exists()
+
+
 def test_record_and_report_are_two_files(made_up_paper, tmp_path):
     result = run("verify", made_up_paper(), "--json", tmp_path / "x", "--markdown", tmp_path / "." / "x")
     assert result.exit_code == 2

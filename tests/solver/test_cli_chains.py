@@ -120,21 +120,29 @@ def test_what_is_refused(tubes, tmp_path, words, said):
     assert not out.exists()
 
 
-def commands(path):
-    """What `list --pairs` proposes for chains and gaps, as printed."""
+def commands(path, sign):
+    """What `list --pairs` proposes, as printed: commands with a sign in them."""
     lines = run("list", path, "--pairs").stdout.splitlines()
-    return [line.strip() for line in lines if "semispline blend" in line and ("*" in line or "+" in line)]
+    return [shlex.split(line) for line in lines if "semispline blend" in line and sign in line]
 
 
-def test_proposed_chains_run_as_printed(tubes, tmp_path, monkeypatch):
-    """The gap between two rims of four and three edges, and a ring of eight rounds."""
+def test_a_proposed_gap_of_chains_runs_as_printed(tubes, tmp_path, monkeypatch):
+    """Between two rims of four and three edges."""
+    monkeypatch.chdir(tmp_path)
+    (words,) = [words for words in commands(tubes, "*") if {words[5], words[7]} == {"0:e1*", "4:e3*"}]
+    done = run(*words[1:], *QUICK)
+    assert done.exit_code == 0, done.output
+    assert (tmp_path / words[-1]).exists()
+
+
+def test_a_proposed_ring_of_rounds_runs_as_printed(tmp_path, monkeypatch):
+    """Eight faces that go on into each other: all of them at once, and one solid comes back."""
     monkeypatch.chdir(tmp_path)
     rounded = written(rounded_box(), tmp_path / "rounded.brep")
-    for path, edges in ((tubes, {"0:e1*", "4:e3*"}), (rounded, {"7:e0*", "0:e1*"})):
-        found = [shlex.split(line) for line in commands(path)]
-        assert edges in [{words[5], words[7]} for words in found]
-        for words in found:
-            if {words[5], words[7]} == edges:
-                done = run(*words[1:], *QUICK)
-                assert done.exit_code == 0, done.output
-                assert (tmp_path / words[-1]).exists()
+    rings = [words for words in commands(rounded, "--replace") if words[4].count(",") == 7]
+    # The command of the chain and of each fillet in it.
+    assert len({words[4] for words in rings}) == 1
+    done = run(*rings[0][1:], *QUICK)
+    assert done.exit_code == 0, done.output
+    assert "one sound" in done.output
+    assert (tmp_path / rings[0][-1]).exists()

@@ -218,15 +218,66 @@ def test_yes_is_qualified_by_a_place_without_a_normal(tmp_path):
     assert done.stdout.splitlines()[-1] == "C0: yes"
 
 
-def test_no_where_a_sample_has_no_normal(tmp_path):
+def test_a_place_without_a_normal_is_left_out_whether_a_sample_meets_it_or_not(tmp_path):
     flat = BSplineSurface(1, 2, K1, K2, [[[x, y, 0.0] for y in (0, 0.5, 1)] for x in (-1.0, 0.0)])
     files = write_pair(tmp_path, flat, cusp(0.5))
     done = run("check", *files, *edges(), "--require", "G1", "--json", "-")
+    assert done.exit_code == 0
+    record = json.loads(done.stdout)
+    assert record["angle_degrees"] == 0
+    assert record["misses"] == []
+    assert record["doubts"][0].startswith("B has no proper normal at parameter 0.5,")
+
+
+def fan(*corner):
+    """A flat triangle: the origin, (3, 0, 0) and a corner; the edge u0 runs from the first to the second."""
+    return BSplineSurface(1, 1, K1, K1, [[[0, 0, 0], [3, 0, 0]], [[0, 0, 0], corner]])
+
+
+def test_along_an_edge_from_a_pole_measures_are_those_away_from_it(tmp_path):
+    t = np.radians(30)
+    files = write_pair(tmp_path, fan(0, 3, 0), fan(0, -3 * np.cos(t), 3 * np.sin(t)))
+    done = run("check", *files, "--edge-a", "u0", "--edge-b", "u0", "--require", "G1", "--json", "-")
     assert done.exit_code == 1
     record = json.loads(done.stdout)
-    assert record["angle_degrees"] is record["allowed"]["angle_degrees"] is None
-    assert record["misses"] == ["angle degrees does not exist where there is no normal"]
-    assert record["doubts"][0].startswith("B has no proper normal at parameter 0.5,")
+    # That in the pole, and that just inside of the edge; the next is a four hundredth of it away.
+    assert record["left_out"] == sum(s < 5e-4 for s in record["profile"]["parameter"]) == 2
+    assert record["angle_degrees"] == pytest.approx(30)
+    assert record["mean"]["angle_degrees"] == pytest.approx(30)
+    assert record["curvature_jump_relative"] == pytest.approx(0, abs=1e-9)
+    assert record["profile"]["angle_degrees"][:3] == [None, None, pytest.approx(30)]
+    assert None not in record["profile"]["gap"]
+    assert [place["parameter"] for place in record["no_normal"]] == [0, 0]
+    done = run("check", *files, "--edge-a", "u0", "--edge-b", "u0")
+    said = f"left out: 2 of {len(record['profile']['gap'])} places, where a side has no proper normal"
+    assert said in done.stdout.splitlines()
+
+
+def wedge(first, last):
+    """Of a ball of radius 3, from a quarter's meridian at one angle to that at another; v runs to the pole."""
+    half = (last - first) / 2
+    turns = ((first, 1.0), (first + half, np.cos(half)), (last, 1.0))
+    arc, weights = np.array([[3.0, 0], [3, 3], [0, 3]]), np.array([1, np.sqrt(0.5), 1])
+    net = [[[r / w * np.cos(t), r / w * np.sin(t), z] for r, z in arc] for t, w in turns]
+    return BSplineSurface(2, 2, K2, K2, net, np.outer([w for _, w in turns], weights))
+
+
+def test_beside_a_pole_rounding_is_no_jump(tmp_path):
+    files = write_pair(tmp_path, wedge(0.0, 1.0), wedge(1.0, 2.2))
+    done = run("check", *files, "--edge-a", "u1", "--edge-b", "u0", "--require", "G2", "--json", "-")
+    record = json.loads(done.stdout)
+    assert record["misses"] == []
+    assert done.exit_code == 0
+    assert record["left_out"] == 1
+    assert all(place["parameter"] == pytest.approx(1) for place in record["no_normal"])
+
+
+def test_where_no_place_has_a_normal_nothing_is_said(tmp_path):
+    """An edge that is a point has none anywhere."""
+    files = write_pair(tmp_path, fan(0, 3, 0), fan(0, -3, 0))
+    done = run("check", *files, "--edge-a", "v0", "--edge-b", "v0", "--require", "G1")
+    assert done.exit_code == 1
+    assert "angle degrees does not exist where there is no normal" in done.stdout
 
 
 def test_a_blend_of_a_base_without_a_normal_somewhere_says_so():

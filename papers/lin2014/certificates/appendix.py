@@ -22,6 +22,7 @@ from semispline.papers.recheck import (
     contained,
     curve_jet,
     derivative,
+    different,
     end_jets,
     identity,
     lets,
@@ -176,8 +177,11 @@ def _composed(order: int) -> Text:
 _W, _V, _U = sp.symbols("w v u")
 
 
-def instances(order: int, condition: Any) -> Iterator[Statement]:
-    """Yield blends off the graph z = x^2 - x y/2 + y^3/3 + y/7, and off a plane with R_w = 0, judged by F = 0."""
+def instances(order: int, condition: Any, *, admitted: bool = False) -> Iterator[Statement]:
+    """Yield blends off the graph z = x^2 - x y/2 + y^3/3 + y/7, and off a plane with R_w = 0, judged by F = 0.
+
+    With `admitted` those alone whose functions satisfy the condition of (15) and (16).
+    """
     third, half = sp.Rational(1, 3), sp.Rational(1, 2)
     x, y = _W + third * _W**2 + half * _W * _V, _V + _W**2 / 5 + third * _V**2
     curved = [x, y, x**2 - x * y / 2 + y**3 / 3 + y / 7]
@@ -192,7 +196,8 @@ def instances(order: int, condition: Any) -> Iterator[Statement]:
         ("p_1 = v - 1/2, zero at one point", curved, (_V - half, 0, 0, 0), False),
         ("R_w = 0 on the contact", flat, (-1, 0, 0, 0), False),
     ):
-        yield from joined(f"order {order}, {label}", order, base, functions, condition, meets=meets)
+        if meets or not admitted:
+            yield from joined(f"order {order}, {label}", order, base, functions, condition, meets=meets)
 
 
 def joined(
@@ -306,17 +311,53 @@ def special_contact(order: int) -> Iterator[Statement]:
         yield from second_order(pr.EQ_16.relation.rhs, own=False)
 
 
-def shape_parameters() -> Iterator[Statement]:
-    """Yield values of alpha: the patch by p_1 = -alpha^2 touches the base, and is regular unless alpha is 0."""
-    yield from special_contact(1)
+def shape_parameters(sign: int = -1) -> Iterator[Statement]:
+    """Yield values of alpha: the patch by p_1 = -alpha^2 touches the base, and is regular unless alpha is 0.
+
+    With `sign` 1 the one by p_1 = alpha^2, as (17) has it.
+    """
+    if sign < 0:
+        yield from special_contact(1)
+    else:
+        yield from first_order(pr.EQ_15.relation.rhs, own=False)
     third, half = sp.Rational(1, 3), sp.Rational(1, 2)
     x, y = _W + third * _W**2 + half * _W * _V, _V + _W**2 / 5 + third * _V**2
     base = [x, y, x**2 - x * y / 2 + y**3 / 3 + y / 7]
     for alpha in (sp.Integer(1), half, sp.Integer(-2), sp.Integer(0)):
-        functions = (-(alpha**2), 0, 0, 0)
+        functions = (sign * alpha**2, 0, 0, 0)
         yield from joined(f"alpha = {alpha}", 1, base, functions, pr.EQ_15.relation.rhs, meets=alpha != 0)
     flat = [_W**2, _V, sp.Integer(0)]
-    yield from joined("alpha = 1, a base with R_w = 0", 1, flat, (-1, 0, 0, 0), pr.EQ_15.relation.rhs, meets=False)
+    yield from joined("alpha = 1, a base with R_w = 0", 1, flat, (sign, 0, 0, 0), pr.EQ_15.relation.rhs, meets=False)
+
+
+def sides() -> Iterator[Statement]:
+    """Yield on which side of the contact P_u points: P_u . n = p_1 n . n, n = R_w less its part along the contact."""
+    across, along = vector(pr.R_w), vector(pr.R_v)
+    share = dot(across, along) / dot(along, along)
+    inwards: list[tuple[str, str]] = []
+    n = _named(inwards, "n", [a - share * b for a, b in zip(across, along, strict=True)])
+    slope = [Text("p_1") * a + Text("q_1") * b for a, b in zip(across, along, strict=True)]
+    yield identity("P_u . n = p_1 n . n, any R", dot(slope, n), Text("p_1") * dot(n, n), where=inwards, own=False)
+
+
+def equation_17(claim: Claim) -> Draft:
+    """Return (17) as tangent planes see it, and as a blend that goes on from R."""
+    first, second = (given(reading.parts[0].formula) for reading in claim.readings)
+    chosen = ((text(pr.p_1), text(pr.alpha**2)), (text(pr.q_1), "0"))
+    planes: list[Statement] = [
+        identity("(15) with p_1 = alpha^2", first.relation.rhs, pr.EQ_15.relation.rhs, where=chosen, own=False),
+        *shape_parameters(1),
+    ]
+    join = [*sides(), *special(second, 1, equal=False)]
+    return Draft([planes, join], [*sides(), *special(claim.corrected_formulas[0], 1)], (PLANES,))
+
+
+def special_choice(_: Claim) -> Draft:
+    """Return that the special choice suffices, and blends with contact of order 2 that it does not have."""
+    others = [*instances(2, pr.EQ_16.relation.rhs, admitted=True)]
+    for letter, value in (("p_2", "1"), ("q_2", "-1/3"), ("q_1", "1/2")):
+        others.append(different(f"one of them has {letter} = {value}", Text(value, 2), 0))
+    return Draft([special_contact(2), others], believed=(PLANES, FORMS))
 
 
 def substitution(claim: Claim) -> Draft:
@@ -420,7 +461,7 @@ def similarly(claim: Claim) -> Draft:
 DRAFTS = {
     "eq-15": general(1),
     "eq-16": general(2),
-    "eq-17": lambda claim: Draft([special(claim.formulas[0], 1, equal=False)], special(claim.corrected_formulas[0], 1)),
+    "eq-17": equation_17,
     "eq-18": lambda claim: Draft([special(claim.formulas[0], 2)]),
     "app-d1": first_derivatives,
     "app-d2": second_derivatives,
@@ -428,4 +469,5 @@ DRAFTS = {
     "sec-A.17-gives-2.1": gives_2_1,
     "sec-A.18-gives-3.1": lambda claim: Draft([[solved_row(claim.formulas[0], 2)]]),
     "sec-A.similarly": similarly,
+    "sec-A.special-choice": special_choice,
 }

@@ -16,6 +16,7 @@ from semispline.papers.lin2014.certificates.contact import (
     INDUCTION,
     Pairs,
     closed_derivative,
+    excess_cases,
     induction,
     letters,
     row_cases,
@@ -30,6 +31,7 @@ from semispline.papers.lin2014.checks.contact_rows import (
     t_ks1,
     u_before,
     u_last,
+    w_kr1,
 )
 from semispline.papers.lin2014.claims.section_3_conditions import TRUE_2_2, TRUE_3_1, TRUE_3_2
 from semispline.papers.lin2014.printed import CUBIC
@@ -138,10 +140,20 @@ def sufficient_g2(claim: Claim) -> Draft:
 
 
 def initial_value(claim: Claim) -> Draft:
-    """Return that the rows of a C2 blend satisfy the G2 conditions with alpha = beta = 1."""
-    shape = claim.formulas[0].relation.rhs
+    """Return whether a C2 blend satisfies the G2 conditions with alpha = beta = 1: printed, with squares, corrected."""
+    readings: list[list[Statement]] = []
+    for reading in claim.readings[:2]:
+        first, second = (part.formula for part in reading.parts)
+        printed = row_cases(second, "start", 2, "parametric", equal=False)
+        readings.append([*row_cases(first, "start", 1, "parametric"), *printed])
+    shape = given(claim.readings[2].parts[0].formula).relation.rhs
+    return Draft([*readings, [*c2_rows(shape)]], believed=(INDUCTION,))
+
+
+def c2_rows(shape: Any) -> Iterator[Statement]:
+    """Yield that the rows of a C2 blend satisfy the corrected G2 conditions with a value of alpha and beta."""
     conditions = {"start": (pr.COND_1_1, pr.COND_2_1, TRUE_3_1), "end": (pr.COND_1_2, TRUE_2_2, TRUE_3_2)}
-    cases: list[Statement] = [*induction()]
+    yield from induction()
     sides: tuple[Side, Side] = ("start", "end")
     for side in sides:
         for row, condition in enumerate(conditions[side]):
@@ -153,15 +165,12 @@ def initial_value(claim: Claim) -> Draft:
                 (text(condition.relation.lhs), text(condition.relation.rhs)),
             )
             sign = Text(f"(-1)^{row}", 3)
-            cases.append(
-                identity(
-                    f"row {row} from the {side}: derivative {row} is that of the base run backwards",
-                    closed_derivative(side, "blend", row),
-                    sign * closed_derivative(side, "base", row),
-                    where=where,
-                )
+            yield identity(
+                f"row {row} from the {side}: derivative {row} is that of the base run backwards",
+                closed_derivative(side, "blend", row),
+                sign * closed_derivative(side, "base", row),
+                where=where,
             )
-    return Draft([cases], believed=(INDUCTION,))
 
 
 def undisturbed(claim: Claim) -> Draft:
@@ -257,42 +266,93 @@ def figure_row(
 
 
 def c2_figure(claim: Claim) -> Draft:
-    """Return a figure whose blend is said to be C2, with one middle curve."""
-    printed, squared, corrected = (given(reading.parts[0].formula) for reading in claim.readings)
-    readings = [
-        figure_row(formula, "start", 6, "parametric", equal=equal)
-        for formula, equal in ((printed, False), (squared, False), (corrected, True))
-    ]
-    return Draft(readings, figure_row(claim.corrected_formulas[0], "start", 6, "parametric"), (INDUCTION,))
+    """Return a figure whose blend is said to be C2, with one middle curve: on which bases (3.1) is right, and others.
+
+    Rows that step as the condition says; what is left for any rows is a sum over R_1 - R_0 and R_2 - R_1, and the
+    condition says where it is zero.
+    """
+    readings = []
+    for squares, reading in enumerate(claim.readings[:2]):
+        printed, excess = (given(part.formula) for part in reading.parts)
+        step = "H2*(1/4 + H1)/(1/4*(2*H1 - H2))" if squares else "1/2*H2/(H1*(1/2 - H2))"
+        knots = dict(letters("start"))
+        distances = tuple((name, knots[name]) for name in ("H1", "H2"))
+
+        def stepping(factor: str, distances: Pairs = distances) -> Pairs:
+            return (*distances, (text(pr.R_2), f"{text(pr.R_1)} + {factor}*({text(pr.R_1)} - {text(pr.R_0)})"))
+
+        left = excess_of_rows(excess, printed)
+        readings.append(
+            [
+                *figure_row(printed, "start", 6, "parametric", stepping(step)),
+                left,
+                *figure_row(printed, "start", 6, "parametric", equal=False, own=False, meets=False),
+                *figure_row(
+                    printed, "start", 6, "parametric", stepping("H2/H1 - 1"), equal=False, own=False, meets=False
+                ),
+            ]
+        )
+    corrected = given(claim.readings[2].parts[0].formula)
+    return Draft(
+        [*readings, [*figure_row(corrected, "start", 6, "parametric")]],
+        figure_row(claim.corrected_formulas[0], "start", 6, "parametric"),
+        (INDUCTION,),
+    )
 
 
-_EQUAL = ((text(t_ks1), text(pr.t_s + 2 * (pr.t_ks - pr.t_s))),)
+def excess_of_rows(excess: Formula, printed: Formula) -> Statement:
+    """Return what a printed row 2 leaves of C2 for any rows and knots, k = k_r = 4, u_1 = 1/4, u_2 = 1/2."""
+    relation = printed.relation
+    where = (
+        (text(pr.k), str(CUBIC)),
+        (text(pr.k_r), str(CUBIC)),
+        (text(pr.u_1), "1/4"),
+        (text(pr.u_2), "1/2"),
+        *letters("start", "parametric"),
+        *rows_before("start", 2),
+        (text(relation.lhs), text(relation.rhs)),
+        (text(pr.P_uu), str(closed_derivative("start", "blend", 2))),
+        (text(pr.R_ww), str(closed_derivative("start", "base", 2))),
+    )
+    return identity("any rows and knots: P_uu - R_ww", *excess.relation.args, where=where)
 
 
-def g2_figure(m: int) -> Any:
-    """Return the draft of a figure whose blend is said to be G2, with a curved base S."""
+def g2_figure(m: int, side: Side = "end") -> Any:
+    """Return the draft of a figure whose blend is said to be G2, with a base that may be curved across."""
 
     def draft(claim: Claim) -> Draft:
-        printed, squared, corrected = (given(reading.parts[0].formula) for reading in claim.readings)
-        spans = [
-            *figure_row(squared, "end", m, "normal", _EQUAL),
-            *figure_row(squared, "end", m, "normal", equal=False, own=False, meets=False),
-        ]
-        readings = [figure_row(printed, "end", m, "normal", equal=False), spans, figure_row(corrected, "end", m)]
-        return Draft(readings, figure_row(claim.corrected_formulas[0], "end", m), (INDUCTION,))
+        base = BASE_ROWS[side]
+        start, first, second = (pr.w_s, pr.w_kr, w_kr1) if side == "start" else (pr.t_s, pr.t_ks, t_ks1)
+        straight = ((text(base[2]), text(base[0])),)
+        spans = (
+            ((text(second), text(start + sp.Rational(2, m - 2))),),
+            ((text(second), text(start + 2 * (first - start))),),
+        )
+        readings = []
+        for reading, right in zip(claim.readings[:2], spans, strict=True):
+            printed, excess = (given(part.formula) for part in reading.parts)
+            readings.append(
+                [
+                    *figure_row(printed, side, m, "normal", right),
+                    *figure_row(printed, side, m, "normal", straight),
+                    *excess_cases(excess, side, printed_row(side, squares=right is spans[1])),
+                    *figure_row(printed, side, m, "normal", equal=False, own=False, meets=False),
+                ]
+            )
+        corrected = given(claim.readings[2].parts[0].formula)
+        return Draft(
+            [*readings, [*figure_row(corrected, side, m)]],
+            figure_row(claim.corrected_formulas[0], side, m),
+            (INDUCTION,),
+        )
 
     return draft
 
 
-def straight_figure(claim: Claim) -> Draft:
-    """Return Fig. 10: by accident on a base that is straight across, not on a curved one."""
-    printed, corrected = (given(reading.parts[0].formula) for reading in claim.readings)
-    straight = ((text(pr.R_2), text(pr.R_0)),)
-    cases = [
-        *figure_row(printed, "start", 5, "normal", straight),
-        *figure_row(printed, "start", 5, "normal", equal=False, own=False, meets=False),
-    ]
-    return Draft([cases, figure_row(corrected, "start", 5)], believed=(INDUCTION,))
+def printed_row(side: Side, *, squares: bool) -> Formula:
+    """Return (3.1) or (3.2) as printed, or with both distances squared."""
+    rows = {"start": (pr.COND_3_1, pr.COND_3_1_SQUARES), "end": (pr.COND_3_2, pr.COND_3_2_SQUARES)}
+    return rows[side][squares]
 
 
 DRAFTS = {
@@ -310,5 +370,5 @@ DRAFTS = {
     "fig-9.c2": c2_figure,
     "fig-6.g2": g2_figure(6),
     "fig-11.g2": g2_figure(5),
-    "fig-10.g2": straight_figure,
+    "fig-10.g2": g2_figure(5, "start"),
 }

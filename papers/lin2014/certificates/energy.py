@@ -56,6 +56,7 @@ def density(claim: Claim) -> Draft:
     there = printed.subs({s: sp.Symbol(f"A_{s.name[2:]}") for s in (pr.P_uu, pr.P_uv, pr.P_vv)}, simultaneous=True)
     cases: list[Statement] = [
         identity("the derived density", Text(f"({text(printed)})*1", 2), thin_plate_density()),
+        *curvatures(Text("kappa_1^2 + kappa_2^2", 1), printed),
         identity("rotation by every angle, t the tangent of its half", there, printed, where=turned),
         *sharp_continuity(own=False),
         line(),
@@ -73,7 +74,7 @@ def density(claim: Claim) -> Draft:
         cases.append(
             rank(f"{label}: what costs nothing has dimension {2 if meets else 3}", gram, affirmed=meets, **own)
         )
-    return Draft([cases], believed=(RECURRENCE, NO_ENERGY))
+    return Draft([cases], believed=(RECURRENCE, NO_ENERGY, CURVATURES))
 
 
 def gram_entries(label: str, d: int, space: Any, **flags: Any) -> Iterator[Statement]:
@@ -116,16 +117,20 @@ def strain(claim: Claim) -> Draft:
     return Draft([cases(first, equal=False), cases(second, equal=True)], cases(claim.corrected_formulas[0], equal=True))
 
 
+def curvatures(squares: Any, plate: Any, **flags: Any) -> list[Statement]:
+    """Return the sum of squared curvatures by their sum and product, which are trace and determinant."""
+    where = (("S", "P_uu + P_vv"), ("Q", "P_uu*P_vv - P_uv^2"))
+    both = Text("(kappa_1 + kappa_2)^2 - 2*(kappa_1*kappa_2)", 1)
+    return [
+        identity("by sum and product of the curvatures", squares, both, **flags),
+        identity("which are trace and determinant", Text("S^2 - 2*Q", 1), plate, where=where, **flags),
+    ]
+
+
 def thin_plate(claim: Claim) -> Draft:
     """Return (11) as the strain energy where lengths and angles are kept, and plane pieces where they are not."""
     relation = given(claim.readings[0].parts[0].formula).relation
-    where = (("S", "P_uu + P_vv"), ("Q", "P_uu*P_vv - P_uv^2"))
-    kept: list[Statement] = [
-        identity(
-            "by sum and product of the curvatures", relation.lhs, Text("(kappa_1 + kappa_2)^2 - 2*(kappa_1*kappa_2)", 1)
-        ),
-        identity("which are trace and determinant", Text("S^2 - 2*Q", 1), relation.rhs, where=where),
-    ]
+    kept = curvatures(relation.lhs, relation.rhs)
     flat: list[Statement] = [
         different(
             "the square as (u + c u^2, v, 0): P_uu = 2 c",
@@ -480,7 +485,6 @@ DRAFTS: dict[str, Callable[[Claim], Draft]] = {
     "eq-12": problem,
     "sec-3.strain-energy": strain,
     "sec-3.thin-plate": thin_plate,
-    "sec-3.fewer-better": fewer_rows,
     "sec-1.fairness": fairness,
     "sec-4.quadratic": degree_draft(2, geometric=False),
     "sec-4.normal-equation": normal_equation(2),

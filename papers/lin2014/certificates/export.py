@@ -9,15 +9,31 @@ from semispline.papers.lin2014.certificates import (
     conditions,
     contact,
     controls,
+    converted,
     counts,
     energy,
     figures,
+    many_rows,
     others,
     surfaces,
+    written_anew,
 )
 from semispline.papers.recheck import Export, export_of
 
-MODULES = (surfaces, bezier, counts, contact, conditions, appendix, energy, figures, others)
+MODULES = (
+    surfaces,
+    bezier,
+    counts,
+    contact,
+    conditions,
+    appendix,
+    energy,
+    figures,
+    others,
+    converted,
+    many_rows,
+    written_anew,
+)
 
 
 def export(paper: Paper) -> Export:

@@ -307,7 +307,6 @@ DRAFTS: dict[str, Callable[[Claim], Draft]] = {
     "fig-7.inference": inference,
 }
 NOT_EXPRESSIBLE = {
-    "sec-3.sides": "which letters stand in which formula: nothing is computed",
     "sec-4.cvv-indices": "an index read off the sum (1): nothing is computed",
     "sec-5.validation": "unit normals and mean curvature: square roots",
 }

@@ -325,15 +325,3 @@ def bezier_end_cases(formula: Formula | None) -> Iterator[Case]:
             de_boor(CUBIC, knots, points, Fraction(1)) == points[-1],
         )
         yield Case(f"{name}: {len(points)} points", all(ends) and len(points) == len(inner) + CUBIC)
-
-
-def side_cases() -> Iterator[Case]:
-    """Yield the six conditions: those with R concern P_0 .. P_2, those with S concern P_{m-2} .. P_m."""
-    start, end = {pr.P_0, pr.P_1, pr.P_2}, {pr.P_m, pr.P_m1, pr.P_m2}
-    of_r, of_s = {pr.R_0, pr.R_1, pr.R_2}, {pr.S_0, pr.S_1, pr.S_2}
-    for name, rows, base, others in (
-        *((f"({i}.1)", start, of_r, end | of_s) for i in (1, 2, 3)),
-        *((f"({i}.2)", end, of_s, start | of_r) for i in (1, 2, 3)),
-    ):
-        letters = getattr(pr, f"COND_{name[1]}_{name[3]}").relation.free_symbols
-        yield Case(name, bool(letters & rows) and bool(letters & base) and not letters & others)

@@ -191,14 +191,19 @@ def _slope_and_mixed() -> tuple[sp.Matrix, sp.Matrix]:
     return tuple(x.xreplace(values).xreplace(back) for x in (slope, slope.diff(_V)))
 
 
-def special_contact_cases(order: int) -> Iterator[Case]:
-    """Yield that P_u = -alpha^2 R_w, and P_uu = alpha^4 R_ww, are contact of an order, any regular R, alpha not 0."""
-    chosen = {pr.p_1: -(pr.alpha**2), pr.q_1: 0, pr.p_2: 0, pr.q_2: 0}
+def special_contact_cases(order: int, sign: int = -1) -> Iterator[Case]:
+    """Yield that P_u = -alpha^2 R_w, and P_uu = alpha^4 R_ww, are contact of an order, any regular R, alpha not 0.
+
+    With `sign` 1 for P_u = alpha^2 R_w: tangent planes alone do not tell the two apart.
+    """
+    chosen = {pr.p_1: sign * pr.alpha**2, pr.q_1: 0, pr.p_2: 0, pr.q_2: 0}
     for n in range(1, order + 1):
         printed = (pr.EQ_15, pr.EQ_16)[n - 1].relation.rhs.subs(chosen)
-        true = special_conditions(n)[n].xreplace({sp.Symbol(str(s)): s for s in _DERIVATIVES}).subs(A, pr.alpha**2)
+        true = (
+            special_conditions(n)[n].xreplace({sp.Symbol(str(s)): s for s in _DERIVATIVES}).subs(A, -sign * pr.alpha**2)
+        )
         residual = sp.expand(printed - true)
-        yield Case(f"the condition of order {n} with p_1 = -alpha^2", bool(residual == 0), residual=residual)
+        yield Case(f"the condition of order {n} with p_1 = {sign} alpha^2", bool(residual == 0), residual=residual)
     yield from first_order_cases(pr.EQ_15.relation.rhs)
     if order == 2:
         yield from second_order_cases(pr.EQ_16.relation.rhs)
@@ -211,13 +216,13 @@ def _singular_case() -> Case:
     return Case("necessity, the plane as (w^2, v, 0)", exists, own=False, meets=False)
 
 
-def shape_parameter_cases(order: int) -> Iterator[Case]:
+def shape_parameter_cases(order: int, sign: int = -1) -> Iterator[Case]:
     """Yield why P_u = -alpha^2 R_w (and P_uu = alpha^4 R_ww) is contact of that order, and values of alpha."""
-    yield from premises(special_contact_cases(order))
+    yield from premises(special_contact_cases(order, sign))
     _, base, implicit, _, _ = next(_instances())
     condition = {1: pr.p_1 * pr.R_w, 2: pr.p_1**2 * pr.R_ww}[order]
     for alpha in (sp.Integer(1), sp.Rational(1, 2), sp.Integer(-2), sp.Integer(0)):
-        functions = {pr.p_1: -(alpha**2), pr.q_1: sp.Integer(0)}
+        functions = {pr.p_1: sign * alpha**2, pr.q_1: sp.Integer(0)}
         patch = _patch(order, base, functions, condition)
         true = _touches(patch, implicit, order) and _regular(patch)
         yield Case(f"alpha = {alpha}", true, own=alpha != 0, meets=alpha != 0)
@@ -225,6 +230,32 @@ def shape_parameter_cases(order: int) -> Iterator[Case]:
     patch = _patch(order, singular, {pr.p_1: sp.Integer(-1), pr.q_1: sp.Integer(0)}, condition)
     true = _touches(patch, flat, order) and _regular(patch)
     yield Case("alpha = 1, a base with R_w = 0 on the contact", true, own=False, meets=False)
+
+
+def tangent_plane_cases(formula: Formula | None) -> Iterator[Case]:
+    """Decide (17) as tangent planes see it: (15) with p_1 = alpha^2, and for which alpha and bases the planes agree."""
+    yield from premises(substitution_cases(1, formula))
+    yield from shape_parameter_cases(1, 1)
+
+
+def join_cases(formula: Formula | None) -> Iterator[Case]:
+    """Decide (17) as a join: the blend goes on from the base, on the other side of the contact.
+
+    R lies where w >= w_s and P where u >= 0. In the tangent plane, n = R_w less its part along the contact points into
+    R, and P_u into P; so they lie on two sides exactly if P_u . n < 0, which is p_1 n . n, whatever q_1 is.
+    """
+    r_w, r_v = _ANY[pr.R_w], _ANY[pr.R_v]
+    inwards = r_w - r_w.dot(r_v) / r_v.dot(r_v) * r_v
+    side = sp.cancel((pr.p_1 * r_w + pr.q_1 * r_v).dot(inwards) - pr.p_1 * inwards.dot(inwards))
+    yield from premises([Case("P_u . n = p_1 n . n, any R, p_1 and q_1", bool(side == 0), residual=side)])
+    left, right = _sides(formula, pr.P_u)
+    residual = sp.factor(right - left + pr.alpha**2 * pr.R_w)
+    yield Case("p_1 = -alpha^2, the one of both signs with p_1 < 0", bool(residual == 0), residual=residual)
+    _, base, _, _, _ = next(_instances())
+    patch = _patch(1, base, {}, (right - left).subs(pr.alpha, sp.Rational(2, 3)))
+    # This base lies over x >= 0 near the contact, which lies over x = 0.
+    beyond = [patch[0].subs({_U: sp.Rational(1, 50), _V: v}) for v in (0, sp.Rational(1, 2), 1)]
+    yield Case("a bent base over x >= 0, alpha = 2/3: the blend lies over x < 0", all(x < 0 for x in beyond))
 
 
 def substitution_cases(order: int, formula: Formula | None) -> Iterator[Case]:

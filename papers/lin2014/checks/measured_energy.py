@@ -12,9 +12,11 @@ from semispline.papers.ledger import Consequence
 from semispline.papers.lin2014.checks.energy import printed_system
 from semispline.papers.lin2014.checks.measured_rows import made_blend
 from semispline.papers.lin2014.examples.made_pair import made_pair
+from semispline.papers.lin2014.examples.stand_ins import cylinders
 from semispline.solver.arrays import FloatArray
 from semispline.solver.blending import BlendResult, blend, thin_plate_energy
 from semispline.solver.judge import local_geometry, surface_points
+from semispline.solver.options import Continuity
 from semispline.solver.splines import (
     SemiStructuredSurface,
     affine_knots,
@@ -51,30 +53,41 @@ def _strain(surface: SemiStructuredSurface) -> tuple[float, float]:
 
 
 @cache
-def _blend_with(middle_curves: int) -> BlendResult:
-    return blend(*made_pair(), continuity="C2", middle_curves=middle_curves, alpha="energy")
+def least_energy(continuity: Continuity, middle_curves: int, *, all_knots: bool = False) -> tuple[float, int]:
+    """Return the energy of a blend of the made pair, and how many control points it has.
+
+    Middle curves have the rule's knots, or all knots of both contacts.
+    """
+    knots = [_knots_of_both()] * middle_curves if all_knots else "paper"
+    result = blend(*made_pair(), continuity=continuity, middle_curves=middle_curves, middle_knots=knots, alpha="energy")
+    return result.energy, result.surface.n_control_points
 
 
-def more_curves() -> Consequence:
-    """Measure the energy of C2 blends with no, one and four middle curves."""
-    measured = {}
-    for count in (0, 1, 4):
-        result = _blend_with(count)
-        measured[f"energy (11) with {result.surface.n_control_points} control points"] = result.energy
-    return Consequence("C2 blends of the made pair with no, one and four middle v-control curves", measured)
+def _knots_of_both() -> list[float]:
+    a, b = (side.surface for side in made_pair())
+    return sorted({*a.knots_v[4:-4].tolist(), *b.knots_v[4:-4].tolist()})  # type: ignore[union-attr]
 
 
 def union_knots() -> Consequence:
     """Measure the energy of a C2 blend whose middle curve has the rule's knots, and one that has all knots of both."""
     own = made_blend("C2")
-    a, b = (side.surface for side in made_pair())
-    inner = sorted({*a.knots_v[4:-4].tolist(), *b.knots_v[4:-4].tolist()})  # type: ignore[union-attr]
-    refined = blend(*made_pair(), continuity="C2", alpha="energy", middle_knots=[inner])
+    refined = blend(*made_pair(), continuity="C2", alpha="energy", middle_knots=[_knots_of_both()])
     measured = {
         f"energy (11), {own.surface.n_control_points} control points": own.energy,
         f"energy (11) on the union of knots, {refined.surface.n_control_points} control points": refined.energy,
     }
     return Consequence("C2 blends of the made pair, the middle curve by the paper's rule and on all knots", measured)
+
+
+def other_direction() -> Consequence:
+    """Blend the cylinders of Fig. 8 with the middle knot that the rule gives in one direction of v and in the other."""
+    there, back = (blend(*cylinders(), continuity="C2", alpha="energy", middle_knots=[[knot]]) for knot in (0.4, 0.6))
+    measured = {
+        "energy (11), middle knot 0.4": there.energy,
+        "energy (11), middle knot 0.6, as from the other end": back.energy,
+        "largest displacement": _largest_change(there.surface, back.surface),
+    }
+    return Consequence("C2 blends of the cylinders with the knots of Fig. 8, the last knot dropped", measured)
 
 
 def zero_system() -> Consequence:

@@ -21,7 +21,7 @@ from semispline.papers.reproduction import cad_verdict, turn_between
 from semispline.solver.blending import BlendResult, blend, make_side
 from semispline.solver.judge import Base, measure_contact
 from semispline.solver.options import Continuity
-from semispline.solver.splines import BSplineCurve, SemiStructuredSurface
+from semispline.solver.splines import BSplineCurve, BSplineSurface, SemiStructuredSurface, insert_knots
 
 ROWS_BY_SIDE = {"start": (pr.P_0, pr.P_1, pr.P_2), "end": (pr.P_m, pr.P_m1, pr.P_m2)}
 
@@ -116,3 +116,27 @@ def measured_rows(
         measured["relative C2 residual"] = contact.c2_residual
         measured["relative C2 residual with the corrected formula"] = kept.c2_residual
     return Consequence(what, measured, {"Open CASCADE": cad_verdict(*ends, flipped=flipped)})
+
+
+def rewritten_base(formulas: Mapping[int, Formula]) -> Consequence:
+    """Set rows at one base of the made pair, written in three ways, by formulas, and measure the curvature jumps."""
+    result = _blend_of(made_pair, "G2")
+    base, other = made_pair()
+    if not isinstance(base.surface, BSplineSurface) or not isinstance(result.alpha2, float):
+        raise ValueError("made pair: expected a B-spline surface and one alpha")
+    across = f"knots_{base.edge[0]}"
+    knots = getattr(base.surface, across)
+    first, second = np.unique(knots)[:2] if base.edge[1] == "0" else np.unique(knots)[-2:]
+    inserted = insert_knots(base.surface, **{across: [(first + second) / 2]})
+    measured = {}
+    for name, surface, factor in (
+        ("as it is", base.surface, 1.0),
+        ("in units half as long", replace(base.surface, **{across: 2 * knots}), 2.0),
+        ("with one knot inserted", inserted, 1.0),
+    ):
+        written = Base(surface, base.edge)
+        same = replace(result, alpha2=factor * result.alpha2)
+        blended = with_printed_rows((written, other), same, "start", formulas)
+        contact = measure_contact(written, Base(blended, "u0"), flip="no")
+        measured[f"relative curvature jump, the base {name}"] = contact.curvature_jump_relative
+    return Consequence("The made pair with rows 1 and 2 as printed; one base, written in three ways", measured)

@@ -58,15 +58,16 @@ def top_last_row() -> Consequence:
 
 
 def missing_first_row() -> Consequence:
-    """Leave out the rows with s = 0, which the printed range does not define."""
+    """Take for rows with s = 0, which the printed range does not define, what a reader takes: those of the patch."""
 
-    def wrong(net: Any) -> Any:
-        return [*division_rows(net, _FUNCTION, "top")[:-1], ()]
+    def read(net: Any) -> Any:
+        return [*division_rows(net, _FUNCTION, "top")[:-1], [column[-1] for column in net]]
 
-    change = _largest_change(wrong, lambda net: division_rows(net, _FUNCTION, "top"))
+    change = _largest_change(read, lambda net: division_rows(net, _FUNCTION, "top"))
+    # Exact, so that zero is no rounding: a whole number.
     return Consequence(
-        f"{_PATCH}: a program that follows the range has no Q_n^0 and leaves zeros there",
-        {"largest displacement": change},
+        f"{_PATCH}: a reader takes the edge v = 1 of the patch for Q_n^0, with its m + 1 points, and loses nothing",
+        {"largest displacement": change or 0},
     )
 
 

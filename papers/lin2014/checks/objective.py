@@ -291,6 +291,13 @@ def tangential_cases() -> Iterator[Case]:
         yield Case(name, bool(sp.expand(residual) == 0))
 
 
+def density_cases(formula: Formula | None) -> Iterator[Case]:
+    """Decide the integrand of (11): the squared curvatures where lengths and angles are kept; rotation of (u, v)."""
+    right = given(formula).relation.rhs
+    yield from isometric_cases(Formula(sp.Eq(pr.kappa_1**2 + pr.kappa_2**2, right, evaluate=False), ()))
+    yield from energy.density_cases(formula)
+
+
 def isometric_cases(formula: Formula | None) -> Iterator[Case]:
     """Decide that the integrand of (11) is k1^2 + k2^2 for every parametrisation that keeps lengths and angles.
 

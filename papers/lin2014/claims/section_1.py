@@ -8,10 +8,14 @@ from semispline.papers.ledger import (
     Case,
     Check,
     Claim,
+    Correction,
+    Formula,
     Reading,
     Strength,
     ambiguous,
+    consistent,
     count_check,
+    definition,
     holds,
     holds_if,
     not_checkable,
@@ -20,9 +24,11 @@ from semispline.papers.ledger import (
 )
 from semispline.papers.lin2014 import printed as pr
 from semispline.papers.lin2014.checks import construction, hartmann, other_methods
+from semispline.papers.lin2014.checks import converted_blends as converted
 from semispline.papers.lin2014.checks import printed_numbers as numbers
 from semispline.papers.lin2014.checks.contact_rows import row_check
 from semispline.papers.lin2014.checks.counts import knot_count_instances
+from semispline.papers.lin2014.checks.printed_pairs import PRINTED_PAIRS, printed_pair
 from semispline.papers.lin2014.checks.rows_along_normal import along_normal
 from semispline.papers.lin2014.claims.section_3_conditions import TRUE_3_1
 
@@ -37,6 +43,13 @@ def _different_counts() -> Iterator[Case]:
         yield Case(figure, len({len(pr.KNOTS[name]) for name in pair}) == 2)
 
 
+def _different_vectors(_: Formula | None) -> Iterator[Case]:
+    """Yield the printed pairs of contact curves, true where their vectors differ."""
+    for name in PRINTED_PAIRS:
+        first, second = printed_pair(name)
+        yield Case(name, first != second)
+
+
 CLAIMS: tuple[Claim, ...] = (
     holds("sec-0.undisturbed", "Abstract", "Both bases are met exactly without changing them.",
           part(proved(construction.contact_curve_cases,
@@ -49,11 +62,23 @@ CLAIMS: tuple[Claim, ...] = (
                       label="G2 by the conditions as printed, for all knots of the bases"),
               Reading((part(row_check("start", 2, "normal"), along_normal(pr.COND_3_1_SQUARES, "start")),),
                       label="the same with both distances squared, if the scan lost that"),
+              cause="second-derivative",
               remark="At R; for S see cond-3.2, for C2 by the printed conditions sec-3.parametric-c2: it fails too. "
               "With squares, G2 fails where the first two spans of the base across differ, with uniform u_i."),
     not_checkable("sec-0.validated", "Abstract", "The examples validate that the method is effective and efficient.",
                   "no measure of either is named, and the control points of the examples are not printed; what rivals "
                   "do on bases of our own is in the study's findings"),
+    not_checkable("sec-1.standard", "Abstract, sections 1 and 6", "NURBS are the standard of CAD systems in industry.",
+                  "a statement on an industry and its years, with no number"),
+    definition("sec-1.terms", "Section 1", "What a blending surface, base surfaces and contact curves are.",
+               "the surface that connects two or more others; these; the curves along which it meets them"),
+    holds("sec-1.mismatched", "Sections 1 and 3", "The knot vectors of the two contact curves differ, in general.",
+          part(consistent(_different_vectors, "the printed vectors of each pair: all that is printed, and no measure "
+                          "of how general that is")),
+          remark="Where the two vectors are equal the method is not needed: one classical surface carries both."),
+    not_checkable("sec-1.processing", "Section 1", "Superfluous knots complicate what is done with a surface later.",
+                  "no later step is named; how many knots and control points there are is decided in "
+                  "sec-1.superfluous-knots and, for the method itself, in sec-1.after-conversion"),
     holds("sec-1.superfluous-knots", "Section 1",
           "Giving contact curves with different knots the same ones by knot insertion adds control points.",
           part(proved(numbers.added_cases, "multiplicities of any knot in both vectors and in their union")),
@@ -61,6 +86,25 @@ CLAIMS: tuple[Claim, ...] = (
                       Strength.RATIONAL)),
           remark="To each curve as many as the other one has knots that it lacks: none to a curve whose knots contain "
           "the other's. How many are lots is not said."),
+    ambiguous("sec-1.after-conversion", "Sections 1 and 2",
+              "The blend, which can be exchanged as a B-spline surface, does without the knots that direct insertion "
+              "adds.",
+              Reading((part(Check(converted.saved_cases, Strength.SYMBOLIC_ORDER, "control points counted for every "
+                                  "order and number of knots", proof=True), converted.SAVED_OWN),),
+                      label="as a semi-structured surface, rows on their own knots"),
+              Reading((part(Check(converted.no_more_cases, Strength.RATIONAL, "inner knots of all rows and of both "
+                                  "contact curves, printed knots: one counterexample is enough", proof=True)),),
+                      label="as a classical surface, once it is converted"),
+              correction=Correction("With a middle curve the converted blend has one inner knot more than both contact "
+                                    "curves together for each pair of the rule: more as soon as there are two "
+                                    "different inner knots, whether knots are shared or the vectors equal. Without one "
+                                    "it has as many.",
+                                    (part(converted.CONVERTED_CHECK, converted.CONVERTED),)),
+              counterexample=converted.converted_counterexample, consequence=converted.saving_consequence,
+              cause="knots-rule",
+              remark="The paper says that conversion is easy, and never that it keeps the saving. Averages belong to "
+              "neither base. What becomes of an unpaired knot decides for Figs. 5, 8 and 9: averaging all three gives "
+              "a knot that is there already, and then the converted blend has as many knots as direct insertion."),
     holds("sec-1.knot-insertion", "Section 1", "Knot insertion makes the knots of both contact curves identical.",
           part(proved(construction.nested_space_cases,
                       "knot insertion by induction on the order, every order and knots; spline spaces over the "
@@ -95,6 +139,10 @@ CLAIMS: tuple[Claim, ...] = (
                       label="for B-spline bases with a common parameter"),
               remark="f is rational with a positive denominator: for spline bases the blend is exactly rational, of "
               "degree p + n + 1 across."),
+    definition("sec-1.two-types", _RELATED, "Blending methods are of two types, by the number of base surfaces.",
+               "methods for two base surfaces, and those for more"),
+    not_checkable("sec-1.history", _RELATED, "Who published which method, and what it extends.",
+                  "statements on other publications, which are not here"),
     not_checkable("sec-1.bezier-shapes", _RELATED, "[9, 10] reach C1 G2 by moving control points.", _OTHERS),
     not_checkable("sec-1.ref-13", _RELATED, "[13] needs equal knot vectors and reaches just G1 (or C1).", _OTHERS),
     not_checkable("sec-1.only-work", _RELATED, "Only [13] blends two B-spline surfaces with a B-spline surface.",
@@ -138,5 +186,11 @@ CLAIMS: tuple[Claim, ...] = (
           part(count_check(knot_count_instances(pr.n_i, pr.ell), "counting knots and basis functions, orders 1 to 6"),
                pr.V_LAST),
           remark="Order and knot vector fix the number of control points, and a classical surface has one of each."),
+    not_checkable("sec-6.applications", "Section 6", "The algorithm will have wide applications.",
+                  "a statement on the future"),
+    not_checkable("sec-6.knots", "Section 6", "The main difficulty is how to arrange the knots of U and along v.",
+                  "no measure of difficulty is named. What the paper's own arrangement does is decided where it is "
+                  "made: sec-3.averaging and its neighbours, sec-1.after-conversion, sec-3.fewer-better, "
+                  "sec-3.minimum-over-rows"),
     not_checkable("sec-1.divided-patches", _RELATED, "[24, 25] did not note how divided patches are built.", _OTHERS),
 )  # fmt: skip

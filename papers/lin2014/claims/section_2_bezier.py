@@ -128,6 +128,7 @@ CLAIMS: tuple[Claim, ...] = (
                                 (Part(_RANGE, Q_RANGE_FROM_0),
                                  Part(_identity(division.row_formula_cases(0), "the row of the patch itself"), ROW_0))),
           counterexample=_range_counterexample, consequence=missing_first_row,
+          cause="misprints",
           remark="The counts in the text do include Q_0^0 with its m + 1 points."),
     holds("sec-2.blossom-1", _WHERE, "First step of the blossom recursion.",
           part(_identity(bezier.blossom_cases(True), _POLAR), pr.BLOSSOM_1), _TRIANGLE_PART),
@@ -145,6 +146,7 @@ CLAIMS: tuple[Claim, ...] = (
           correction=Correction("The last row is Q_n^0, the edge v = 1 of the patch.",
                                 (Part(_identity(division.last_row_cases, _COUNTING), TRUE_TOP_LAST),)),
           counterexample=_top_last_counterexample, consequence=top_last_row,
+          cause="misprints",
           remark="Indices exchanged, or misread by the scan: with Q_n^0 it is right. Q_0^n is the row on the dividing "
           "curve, which the same sentence names first, with m+nk+1 points."),
     ambiguous("sec-2.subpatch-kind", _WHERE, "Therefore both sub-patches are semi-structured patches.",

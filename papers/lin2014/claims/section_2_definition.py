@@ -21,6 +21,7 @@ from semispline.papers.ledger import (
     Strength,
     Verdict,
     clamped,
+    consistent,
     count_check,
     data_formula,
     given,
@@ -29,9 +30,10 @@ from semispline.papers.ledger import (
     premises,
     proof_check,
     proved,
+    question,
 )
 from semispline.papers.lin2014 import printed as pr
-from semispline.papers.lin2014.checks import representation
+from semispline.papers.lin2014.checks import order_of_evaluation, representation
 from semispline.papers.lin2014.checks.counts import knot_count_instances
 from semispline.papers.lin2014.checks.definitions import CURVE_CHECK, SURFACE_CHECK, curve_instances
 from semispline.papers.lin2014.checks.measured_section_2 import one_function_for_all
@@ -155,6 +157,7 @@ CLAIMS = (
         Correction("The family is B_{j,l}(v; V_i), as in (1).", (Part(CURVE_CHECK, pr.EQ_2),)),
         _wrong_basis_counterexample,
         one_function_for_all,
+        cause="misprints",
         remark="One index misprinted, or misread by the scan: with j for i it is right, as in (1) and (2).",
     ),
     Claim(
@@ -217,12 +220,9 @@ CLAIMS = (
             Reading(
                 (
                     Part(
-                        Check(
+                        consistent(
                             _figure_1_cases,
-                            Strength.RATIONAL,
-                            "counts against Definition 1 and (13) for a bicubic surface: the claim is on seven "
-                            "printed numbers, and all are checked",
-                            proof=True,
+                            "counts against Definition 1 and (13) for a bicubic surface, all seven printed numbers",
                         ),
                         _figure_1(),
                     ),
@@ -246,6 +246,41 @@ CLAIMS = (
         "The surface is evaluated by de Boor's algorithm first along v on each curve, then along u.",
         Verdict.HOLDS,
         (Reading((Part(SURFACE_CHECK, pr.EQ_1),)),),
+    ),
+    Claim(
+        "sec-2.evaluation-order",
+        "Section 2, evaluation",
+        "It has to be evaluated first along v: the other way is wrong.",
+        Verdict.AMBIGUOUS,
+        (
+            Reading(
+                (
+                    Part(
+                        question(
+                            order_of_evaluation.columns_first_cases,
+                            "triangles first along u on columns of control points, rows of equal length, any control "
+                            "points; orders 2 to 4",
+                        )
+                    ),
+                ),
+                label="on the control points as they stand",
+                condition="the knot vectors differ",
+            ),
+            Reading(
+                (
+                    Part(
+                        proved(
+                            order_of_evaluation.merged_first_cases,
+                            "triangles first along u after knot insertion, any control points: one example is enough",
+                            Strength.RATIONAL,
+                        )
+                    ),
+                ),
+                label="whatever is done before",
+            ),
+        ),
+        remark="Rows of unequal length have no columns at all. After all rows have been given all knots, as the paper "
+        "says they can be, either order gives the surface.",
     ),
     Claim(
         "sec-2.evaluation-classical",

@@ -19,7 +19,7 @@ from semispline.papers.ledger import (
     Strength,
     ambiguous,
     count_check,
-    fails,
+    definition,
     holds,
     holds_if,
     not_checkable,
@@ -30,11 +30,17 @@ from semispline.papers.ledger import (
 )
 from semispline.papers.lin2014 import printed as pr
 from semispline.papers.lin2014.checks import construction, energy, objective
+from semispline.papers.lin2014.checks import converted_blends as converted
 from semispline.papers.lin2014.checks import fewer_control_points as fewer
+from semispline.papers.lin2014.checks import many_rows as many
 from semispline.papers.lin2014.checks.contact_rows import row_check
 from semispline.papers.lin2014.checks.counts import domain_instances, inner_knots_count, knot_count_instances
 from semispline.papers.lin2014.checks.definitions import SURFACE_CHECK, base_check
-from semispline.papers.lin2014.checks.measured_energy import more_curves, parameter_dependence, union_knots
+from semispline.papers.lin2014.checks.measured_energy import (
+    other_direction,
+    parameter_dependence,
+    union_knots,
+)
 
 _BASES = "Section 3, base surfaces"
 _ENERGY = "Section 3, energy"
@@ -95,6 +101,7 @@ def _fairness_counterexample() -> Counterexample:
 _INSIDE = "the domain by the supports of functions, every order and count; knots strictly inside clamped vectors"
 _AVERAGED = "the rule for every n and i, indices against v_1 .. v_n; on the printed knot vectors as well"
 
+_MIRRORED = "the rule for v_1 .. v_n and for 1 - v_n .. 1 - v_1, every n and i"
 _STRIPS = "least energy (11) of strips with C2 contact, exactly"
 
 CLAIMS: tuple[Claim, ...] = (
@@ -146,6 +153,7 @@ CLAIMS: tuple[Claim, ...] = (
               correction=Correction("The integral is over the surface: the area element |P_u x P_v| belongs to it.",
                                     (Part(_STRAIN_CHECK, TRUE_STRAIN),)),
               counterexample=_strain_counterexample, consequence=parameter_dependence,
+              cause="energy-for-quality",
               remark="(11) itself does depend on the parametrisation, and so does the blend of least energy."),
     ambiguous("sec-3.thin-plate", _ENERGY, "The thin-plate energy (11) approximates the strain energy.",
               Reading((part(Check(objective.isometric_cases, Strength.SYMBOLIC_ORDER,
@@ -153,21 +161,25 @@ CLAIMS: tuple[Claim, ...] = (
                       label="for a parametrisation that keeps lengths and angles"),
               Reading((part(proved(objective.planar_cases, "(11) of plane pieces, whose strain energy is zero")),),
                       label="for any parametrisation"),
+              cause="energy-for-quality",
               remark="No bound holds in general: the ratio is unbounded for plane pieces whose nets are not affine."),
     holds_if("eq-11", _ENERGY, "The thin-plate energy as the integral of |P_uu|^2 + 2|P_uv|^2 + |P_vv|^2.",
              "the surface is C1, that is, no inner knot has the full multiplicity of its degree",
-             part(Check(energy.density_cases, Strength.SYMBOLIC_ORDER, "the thin-plate density; rotation of (u, v)",
-                        proof=True), pr.EQ_11),
+             part(Check(objective.density_cases, Strength.SYMBOLIC_ORDER, "the sum of squared principal curvatures "
+                        "of surfaces that keep lengths and angles; rotation of (u, v)", proof=True), pr.EQ_11),
              part(proved(objective.crease_cases,
                          "C1 splines that are lines on each span, every order and knots; null space of exact Gram "
                          "matrices; for a crease an example is enough")),
-             remark="Across a knot of full multiplicity a crease costs nothing, taken span by span."),
+             remark="As the name of an energy (11) could not be false. What can be: that it is the strain energy where "
+             "lengths and angles are kept, that turning (u, v) does not change it, and that zero energy means no "
+             "bend. Across a knot of full multiplicity a crease costs nothing, taken span by span."),
     ambiguous("eq-12", _ENERGY, "Minimise E over the control points under the continuity condition.",
               Reading((part(objective.minimum_check(2)),),
                       label="alpha and beta given: there is exactly one minimum"),
               Reading((part(objective.SHAPE_CHECK),),
                       label="alpha and beta unknown too, as G1 and G2 need: the minimum is a G1 blend",
                       condition="the energy over alpha^2, beta^2 is not least at zero"),
+              cause="energy-for-quality",
               remark="The printed problem lists the control points alone as unknowns."),
     holds("eq-13", _BLEND, "The blend is the surface (1) over [0, 1] x [v_s, v_e].",
           part(SURFACE_CHECK, pr.EQ_13)),
@@ -182,6 +194,7 @@ CLAIMS: tuple[Claim, ...] = (
              part(Check(construction.layout_cases, Strength.SYMBOLIC_ORDER,
                         "rows of the first and last curves for every k >= 4 and every m admitted, and for k = 2 to 7; "
                         "for smaller k an example is enough", proof=True), pr.M_BOUND),
+             cause="indices-for-cubics",
              remark="Six different rows need m >= 5, whatever k is. For k = 3 the bound admits m = 4, where curve 2 "
              "would need both knot vectors; for k > 4 it asks for more than is needed."),
     holds("sec-3.uniform-knots", _BLEND, "u_i = i / (m - k + 2) spaces the inner knots uniformly.",
@@ -192,18 +205,45 @@ CLAIMS: tuple[Claim, ...] = (
           part(proved(construction.three_row_cases, "the derived rows: combinations of R_0 .. R_2, with R_2 in row 2")),
           part(construction.row_check_of(lambda at_start, _: at_start), FIRST_THREE),
           part(construction.row_check_of(lambda _, at_end: at_end), LAST_THREE)),
-    fails("sec-3.fewer-better", _BLEND, "In general, the fewer control points the blend has, the better its quality.",
-          part(Check(fewer.fewer_cases, Strength.RATIONAL, _STRIPS), pr.FEWER_IS_BETTER),
-          correction=Correction(
-              "For strips, whose rows do not vary along v, a blend without middle curve costs more than one with it by "
-              "a sum of two squares in the contact data, so that it is never the better one; and wherever one space of "
-              "surfaces contains another, each control point more can only lower (11).",
-              (Part(Check(fewer.difference_cases, Strength.SYMBOLIC_ORDER, _STRIPS + ", all contact data",
-                          proof=True), fewer.FEWER_COSTS_MORE),
-               Part(Check(fewer.nested_cases, Strength.SYMBOLIC_ORDER, "the minimum of a quadratic energy over one "
-                          "more control point", proof=True), fewer.NESTED))),
-          counterexample=fewer.fewer_counterexample, consequence=more_curves,
-          remark="By the measure of the paper itself, a surface without a middle curve is the worse one."),
+    ambiguous("sec-3.fewer-better", _BLEND,
+              "In general, the fewer control points the blend has, the better its quality.",
+              Reading((part(Check(fewer.fewer_cases, Strength.RATIONAL, _STRIPS), pr.FEWER_IS_BETTER),),
+                      label="no middle curve against one, the paper's two kinds, by the energy that measures quality"),
+              Reading((part(many.TO_ZERO_CHECK, many.TO_ZERO),
+                       part(proved(many.outside_cases, "spline spaces over the printed pairs and over their averages, "
+                                   "exact rank", Strength.RATIONAL))),
+                      label="ever more middle curves, all of them over the averaged knots"),
+              correction=Correction(
+                  "For strips, whose rows do not vary along v, a blend without middle curve costs more than one with "
+                  "it by a sum of two squares in the contact data, so that it is never the better one; and wherever "
+                  "one space of surfaces contains another, each control point more can only lower (11). Spaces with "
+                  "more rows over averaged knots contain no other: there the least energy is 3 d^2 / (3 h)^3 at least, "
+                  "h the span of U and d the part of a contact curve that splines over the averages leave out, and "
+                  "grows beyond every bound.",
+                  (Part(Check(fewer.difference_cases, Strength.SYMBOLIC_ORDER, _STRIPS + ", all contact data",
+                              proof=True), fewer.FEWER_COSTS_MORE),
+                   Part(Check(fewer.nested_cases, Strength.SYMBOLIC_ORDER, "the minimum of a quadratic energy over "
+                              "one more control point", proof=True), fewer.NESTED))),
+              counterexample=fewer.fewer_counterexample, consequence=many.rows_over_averages,
+              cause="energy-for-quality",
+              remark="By the measure of the paper itself a surface without a middle curve is the worse one; but a "
+              "reader who adds rows by the rule comes to the paper's sentence in the end."),
+    ambiguous("sec-3.minimum-over-rows", _ENERGY,
+              "Problem (12) has a solution: a blend of least energy among those that meet the C2 condition.",
+              Reading((part(objective.minimum_check(2)),), label="for a given number of v-control curves"),
+              Reading((part(proved(many.attained_cases, "least energies of strips, exactly, against their limit: one "
+                                   "counterexample is enough", Strength.RATIONAL)),),
+                      label="whatever their number"),
+              correction=Correction(
+                  "As rows are added the least energy of a strip tends to that of the cubic with the prescribed values "
+                  "and slopes, the C1 solution: it exceeds it by h / 2 times the sum of the squares of what that "
+                  "cubic lacks of the prescribed second derivatives, at the most, and reaches it for no number of "
+                  "rows.",
+                  (part(many.EXTRA_CHECK, many.EXTRA_ENERGY),)),
+              consequence=many.curvature_is_lost, cause="energy-for-quality",
+              remark="The prescribed curvature is left in a layer of three spans of U: refined, a C2 blend by (11) "
+              "looks like a C1 blend. With none or one middle curve, as in the paper, little of this shows. On "
+              "surfaces it is measured."),
     ambiguous("sec-1.fairness", "Section 1",
               "Inserting knots until both contact curves share theirs worsens the fairness.",
               Reading((part(question(construction.knot_line_cases, "knot lines counted in the printed pairs")),),
@@ -214,6 +254,7 @@ CLAIMS: tuple[Claim, ...] = (
                                    "holds the smaller one; spline spaces over the printed pairs"))),
                       label="fairness as the least energy (11), the paper's measure of quality"),
               counterexample=_fairness_counterexample, consequence=union_knots,
+              cause="energy-for-quality",
               remark="No measure of fairness is named. Inserting a knot alone changes no surface; by (11) the best "
               "surface over more knots is never worse."),
     holds("sec-3.two-kinds", _BLEND, "With k = 4 the blend has no middle curve (m = 5), or just P_3 (m = 6).",
@@ -232,14 +273,31 @@ CLAIMS: tuple[Claim, ...] = (
                             pr.AVERAGED_KNOT),), label="complete pairs, the last knot dropped where n is odd"),
               Reading((part(Check(construction.sliding_cases, Strength.SYMBOLIC_ORDER, _AVERAGED, proof=True)),),
                       label="each knot with the next one"),
+              cause="knots-rule",
               remark="No range of i is printed. For Figs. 5, 8 and 9 n = 3: v_4 does not exist. Dropping the last knot "
               "makes the blend depend on the direction of v."),
+    ambiguous("sec-3.averaging-direction", _MIDDLE,
+              "The knots of P_3 follow from those of the two contact curves, whichever way v runs.",
+              Reading((part(Check(converted.mirrored_pair_cases, Strength.SYMBOLIC_ORDER, _MIRRORED, proof=True),
+                            pr.AVERAGED_KNOT),),
+                      label="pairs from v_1 on, and the last knot of an odd number dropped, kept or averaged with v_e"),
+              Reading((part(proved(lambda: converted.mirrored_neighbour_cases(None), _MIRRORED)),),
+                      label="each knot with the next one"),
+              counterexample=converted.mirrored_counterexample, consequence=other_direction, cause="knots-rule",
+              remark="Pairs agree exactly where n is even. In Figs. 5, 8 and 9 n = 3: read from the other end the "
+              "blend is another one. Our own examples pair from both ends, so that the middle three make one mean."),
+    holds_if("sec-3.averaging-few", _MIDDLE, "The rule gives P_3 inner knots.", "V_n has two knots or more",
+             part(question(converted.few_knots_cases, "the rule on vectors with no, one and more knots, shared ones "
+                           "and equal vectors among them", Strength.RATIONAL)),
+             cause="knots-rule",
+             remark="With n = 0 or 1 there are no adjacent knots, and P_3 is one polynomial piece whatever the bases "
+             "do. For equal vectors the averages are still new: the blend of two bases that one classical surface "
+             "could join directly gets knots that neither has."),
     holds("sec-3.middle-ends", _MIDDLE, "l-fold v_s and v_e complete the averages to a clamped knot vector.",
           part(Check(construction.bezier_end_cases, Strength.SYMBOLIC_ORDER,
                      "where the domain starts and ends and values there, every order and count; end points by de "
                      "Boor's triangle", proof=True), CLAMP)),
-    holds("sec-3.sides", "Section 3, continuity conditions",
-          "(1.1), (2.1), (3.1) concern R and P, (1.2), (2.2), (3.2) concern S and P.",
-          part(proved(construction.side_cases,
-                      "letters of the six printed formulas, which are all that the claim is on", Strength.RATIONAL))),
+    definition("sec-3.sides", "Section 3, continuity conditions",
+               "(1.1), (2.1), (3.1) concern R and P, (1.2), (2.2), (3.2) concern S and P.",
+               "the conditions at R and those at S; whether each of them is right is decided in cond-1.1 to cond-3.2"),
 )  # fmt: skip

@@ -36,8 +36,9 @@ from semispline.papers.lin2014.checks.contact_rows import (
     w_kr1,
 )
 from semispline.papers.lin2014.checks.geometric_continuity import shape_parameter_cases, special_contact_cases
-from semispline.papers.lin2014.checks.measured_rows import measured_rows
+from semispline.papers.lin2014.checks.measured_rows import measured_rows, rewritten_base
 from semispline.papers.lin2014.checks.objective import direction_check
+from semispline.papers.lin2014.checks.one_surface import one_surface_check, one_surface_counterexample
 from semispline.papers.lin2014.checks.rows_along_normal import (
     EXCESS_3_1,
     EXCESS_3_1_SQUARES,
@@ -193,6 +194,7 @@ CLAIMS = (
         (Reading((Part(row_check("end", 1), pr.COND_2_2),), condition="k = 4 (the last inner knot is u_{m-k+1})"),),
         Correction("The last inner knot of U has the index m-k+1.", (Part(row_check("end", 1), TRUE_2_2),)),
         partial(row_counterexample, "end", 1, pr.COND_2_2),
+        cause="indices-for-cubics",
         remark="For k < 4 the printed u_{m-3} is an earlier inner knot; for k > 4 it is past the inner knots, where U "
         "is 1 and row m-1 would fall on row m. " + _MISREAD + " " + _MINUS,
     ),
@@ -218,14 +220,17 @@ CLAIMS = (
         ),
         partial(normal_counterexample, "start", (pr.COND_3_1, pr.COND_3_1_SQUARES)),
         partial(measured_rows, "start", {2: pr.COND_3_1}, _SECOND_ORDER_TEXT),
-        remark="G2 leaves the part of P_uu within the tangent plane free, by (16), so the part along the normal alone "
-        "is judged. As printed it is that of the base times (w_{k_r+1} - w_s) / u_2: right for every base exactly "
-        "where w_{k_r+1} - w_s = u_2. With squares it is right exactly where (w_{k_r} - w_s) / (w_{k_r+1} - w_s) "
-        "= u_1 / u_2: with the paper's uniform u_i, where the first two spans of the base across the contact have "
-        "one length. Either reading is right, too, where R_ww has no part along the normal, as for k_r = 2 or a "
-        "base that is straight across. Why both fail: W is given, the paper asks neither equation of it, and in its "
-        "own setting a base with inner knots across may meet neither: with w_{k_r} - w_s = 1, w_{k_r+1} - w_s = 3 and "
-        "uniform u_i the blend has 3 / u_2 times, with squares 3/2 times, what the base has along the normal. "
+        cause="second-derivative",
+        remark="Not even a condition on the surfaces: it depends on the units of w, and with squares on knots inserted "
+        "into the base (sec-3.one-surface). G2 leaves the part of P_uu within the tangent plane free, by (16), so the "
+        "part along the normal alone is judged. As printed it is that of the base times (w_{k_r+1} - w_s) / u_2: "
+        "right for every base exactly where w_{k_r+1} - w_s = u_2. With squares it is right exactly where "
+        "(w_{k_r} - w_s) / (w_{k_r+1} - w_s) = u_1 / u_2: with the paper's uniform u_i, where the first two spans of "
+        "the base across the contact have one length. Either reading is right, too, where R_ww has no part along the "
+        "normal, as for k_r = 2 or a base that is straight across. Why both fail: W is given, the paper asks neither "
+        "equation of it, and in its own setting a base with inner knots across may meet neither: with w_{k_r} - w_s "
+        "= 1, w_{k_r+1} - w_s = 3 and uniform u_i the blend has 3 / u_2 times, with squares 3/2 times, what the base "
+        "has along the normal. "
         + _MINUS,
     ),
     Claim(
@@ -248,6 +253,7 @@ CLAIMS = (
         ),
         partial(normal_counterexample, "end", (pr.COND_3_2, pr.COND_3_2_SQUARES)),
         partial(measured_rows, "end", {2: pr.COND_3_2}, _SECOND_ORDER_TEXT),
+        cause="second-derivative",
         remark="Two errors in one formula: that of (3.1), and for k other than 4 the index of (2.2). For k = 4 it is "
         "right for every base exactly where t_{k_s+1} - t_s = 1 - u_{m-k}; with squares exactly where (t_{k_s} - "
         "t_s) / (t_{k_s+1} - t_s) = (1 - u_{m-k+1}) / (1 - u_{m-k}), with uniform u_i where the first two spans "
@@ -266,9 +272,28 @@ CLAIMS = (
                          "tangent planes for any regular base and alpha; the implicit equation of a base; for "
                          "alpha = 0 and a singular base an example is enough")),
              counterexample=partial(row_counterexample, "end", 1, pr.COND_2_2, least_order=5),
+             cause="indices-for-cubics",
              remark="For k > 4 (2.2) puts row m-1 on row m, so that P_u = 0 at S; for k < 4 P_u is a multiple of S_t, "
              "by another factor than beta^2. At alpha = 0 rows 0 and 1 of the blend coincide and it has no tangent "
              "plane at the contact; nothing in the method keeps the search away from there (see sec-4.unconstrained)."),
+    Claim("sec-3.one-surface", _WHERE,
+          "(3.1) is a condition on two surfaces: it gives one row 2, up to the tangent plane, however the base is "
+          "written.", Verdict.FAILS,
+          (Reading((part(one_surface_check(flat=True), along_normal(pr.COND_3_1, "start")),),
+                   label="u_1 and w_{k_r} - w_s as printed"),
+           Reading((part(one_surface_check(flat=True), along_normal(pr.COND_3_1_SQUARES, "start")),),
+                   label="both squared, if the scan lost that")),
+          correction=Correction("With each second difference one of divided differences it does.",
+                                (Part(one_surface_check(flat=False), TRUE_3_1),)),
+          counterexample=one_surface_counterexample,
+          consequence=partial(rewritten_base, {1: pr.COND_2_1, 2: pr.COND_3_1}),
+          cause="second-derivative",
+          remark="From the text alone, in three lines. Count w in units in which it is c times as large: R, as a "
+          "surface, and by (2.1) row 1 stay if alpha^2 is c times as large too; row 2 by (3.1) then moves by c - 1 "
+          "times its part in R_0 - 2 R_1 + R_2, since alpha^4 is c^2 times as large and w_{k_r} - w_s just c times; "
+          "but rows 0 and 1 and the surface R fix what G2 asks of row 2 along the normal. Squares, if the scan lost "
+          "them, pass this. They do not pass a knot inserted into the first span across, which leaves R as it is too, "
+          "as the paper says of knot insertion: w_{k_r} - w_s becomes smaller, and row 2 moves."),
     Claim("sec-3.sufficient-g2", _WHERE, "(1.1) to (3.2) together suffice for G2.", Verdict.FAILS,
           (Reading((*_PRINTED_FIRST_ROWS, _normal_part("start", pr.COND_3_1), _normal_part("end", pr.COND_3_2)),
                    label="as printed"),
@@ -284,6 +309,7 @@ CLAIMS = (
           counterexample=_no_g2,
           consequence=partial(measured_rows, "start", {1: pr.COND_2_1, 2: pr.COND_3_1},
                               "The made pair with rows 1 and 2 as printed, the rest as in the checked G2 blend"),
+          cause="second-derivative",
           remark="Three of the six fail, each alone: (3.1), and (3.2) likewise, as printed and with squares, and "
           "(2.2) for k other than 4; for k > 4 it puts row m-1 on row m, so that there is no tangent plane. When they "
           "suffice: k = 4 for (2.2), and what cond-3.1 and cond-3.2 say for (3.1) and (3.2)."),
@@ -293,6 +319,7 @@ CLAIMS = (
                       label="in the parameters w of R and u of P as they are, P_u = R_w"),
               Reading((part(direction_check(-1), PARAMETRIC_2_1),),
                       label="with R run backwards, P_u = -R_w"),
+              cause="sign-of-p1",
               remark="At S the parameters run the same way and P_u = S_t."),
     Claim("sec-3.parametric-c2", "Section 3, parametric continuity",
           "With alpha = beta = 1 the G2 conditions become C2 conditions.", Verdict.FAILS,
@@ -305,6 +332,7 @@ CLAIMS = (
                                  parametric=True),
           consequence=partial(measured_rows, "start", {2: pr.COND_3_1}, "The made pair's C2 blend, row 2 as printed",
                               "C2"),
+          cause="second-derivative",
           remark="With squares it fails too where they give G2, on a base whose first two spans across have one "
           "length: in the direction of R_w."),
 )  # fmt: skip

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from functools import partial
 
 import sympy as sp
 from sympy import Eq
@@ -17,7 +18,9 @@ from semispline.papers.ledger import (
     Formula,
     Meaning,
     Part,
+    Reading,
     Strength,
+    ambiguous,
     difference_case,
     fails,
     given,
@@ -30,9 +33,18 @@ from semispline.papers.ledger import (
 )
 from semispline.papers.lin2014 import printed as pr
 from semispline.papers.lin2014.checks import construction, energy, objective
-from semispline.papers.lin2014.checks.contact_rows import BASE_ROWS, ROWS, Side, knots_as_spans
+from semispline.papers.lin2014.checks import facing_bases as facing
+from semispline.papers.lin2014.checks.contact_counterexamples import row_counterexample
+from semispline.papers.lin2014.checks.contact_rows import BASE_ROWS, ROWS, Side, knots_as_spans, row_check
 from semispline.papers.lin2014.checks.measured_energy import single_integrals, third_term, vector_lengths, zero_system
-from semispline.papers.lin2014.claims.section_3_conditions import TRUE_2_2, TRUE_3_1, TRUE_3_2
+from semispline.papers.lin2014.claims.section_3_conditions import (
+    PARAMETRIC_2_1,
+    PARAMETRIC_3_1,
+    PARAMETRIC_3_1_SQUARES,
+    TRUE_2_2,
+    TRUE_3_1,
+    TRUE_3_2,
+)
 
 _WHERE = "Section 4"
 _GRAM = objective.GRAM_CHECK
@@ -167,6 +179,7 @@ CLAIMS: tuple[Claim, ...] = (
           part(proved(objective.integrals_vanish_cases,
                       "end values of inner rows, every order and knots; integrals of B_i' and B_i'', orders 3 to 6")),
           correction=_TRUE_GRAM, counterexample=_gram_counterexample(pr.EQ_14), consequence=zero_system,
+          cause="linear-system",
           remark="B_i' and B_i'' of a row away from the ends integrate to zero, so that a_ij = c_ij = 0 for every "
           "unknown control point, whatever the knots: as printed, (14) says 0 = 0."),
     fails("sec-4.single-integrals", _WHERE,
@@ -174,11 +187,13 @@ CLAIMS: tuple[Claim, ...] = (
           part(_GRAM, pr.EQ_14_THIRD_TERM),
           correction=_TRUE_GRAM, counterexample=_gram_counterexample(pr.EQ_14_THIRD_TERM),
           consequence=single_integrals,
+          cause="linear-system",
           remark="Decided with C_vv^T C_vv as third term. A sum of three products of a column and a row has rank 3 at "
           "most; the rank needed is the number of unknown control points."),
     fails("sec-4.third-term", _WHERE, "The third term of A is C_uv^T C_vv, that of B is C_uv^T D_vv.",
           part(_GRAM, pr.EQ_14_PRODUCTS),
           correction=_TRUE_GRAM, counterexample=_gram_counterexample(pr.EQ_14_PRODUCTS), consequence=third_term,
+          cause="misprints",
           remark="Decided with products integrated last. C_vv^T C_vv and C_vv^T D_vv are right, as (11) shows: P_uv "
           "and P_vv do not meet there. With the printed term A is not symmetric. One letter of an index: it may be a "
           "misprint, or a misread of the scan."),
@@ -188,6 +203,7 @@ CLAIMS: tuple[Claim, ...] = (
                                 tuple(Part(_CVV, formula)
                                       for formula in TRUE_CVV)),
           counterexample=_cvv_counterexample, consequence=vector_lengths,
+          cause="misprints",
           remark="Misprints, or misreads by the scan: C_uu and C_uv beside it have the right indices."),
     holds("sec-4.g1-degree", _WHERE, "With the G1 conditions put in, the objective is of degree four.",
           part(objective.degree_check(1, True), pr.DEGREE_G1),
@@ -203,12 +219,37 @@ CLAIMS: tuple[Claim, ...] = (
     holds_if("sec-4.unconstrained", _WHERE, "With the G1 or G2 conditions put in, the problem has no constraint left.",
              "the energy over alpha^2, beta^2 is not least at zero",
              part(objective.SHAPE_CHECK),
+             cause="energy-for-quality",
              remark="alpha, beta = 0 must be kept out: for two parallel plates, joined by a turn of 180 degrees, the "
-             "least energy lies there, where the blend has no tangent plane at either contact."),
-    holds("sec-4.initial-value", _WHERE, "The C2 solution is an admissible start for the G2 search.",
-          part(Check(_initial_cases, Strength.SYMBOLIC_ORDER,
-                     "C2 rows solved from end derivatives, put into the corrected G2 conditions, every order and knots",
-                     proof=True), SHAPE_ONE)),
+             "least energy lies there, where the blend has no tangent plane at either contact. It may lie there "
+             "between bases that face each other too: sec-4.facing."),
+    holds_if("sec-4.facing", _WHERE,
+             "Between bases that face each other the search ends at a blend with tangent planes, alpha, beta not zero.",
+             "39 cos theta > 25 cos phi cos(theta - phi), and the same with theta and phi exchanged, these being the "
+             "angles that the ways out of R and into S make with the chord (straight bases of unit speed)",
+             part(facing.FACING_CHECK, facing.BEST_ALPHA),
+             counterexample=facing.facing_counterexample, consequence=facing.facing_shares, cause="energy-for-quality",
+             remark="Facing: both angles are acute. With equal angles, in an arch or an S, the condition always holds; "
+             "it fails first where one angle is half of the other, from the cosine 25/53 on, 62 degrees. There (11), "
+             "over all alpha^2, is least where the blend would leave a base backwards, so that over alpha it is least "
+             "at alpha = 0."),
+    ambiguous("sec-4.initial-value", _WHERE, "The C2 solution is a blend among which the G2 search may start.",
+              Reading((part(row_check("start", 1, "parametric"), PARAMETRIC_2_1),
+                       part(row_check("start", 2, "parametric"), PARAMETRIC_3_1)),
+                      label="a surface that is C2, and the G2 conditions as printed, alpha = beta = 1"),
+              Reading((part(row_check("start", 1, "parametric"), PARAMETRIC_2_1),
+                       part(row_check("start", 2, "parametric"), PARAMETRIC_3_1_SQUARES)),
+                      label="the same with both distances in (3.1) squared, if the scan lost that"),
+              Reading((part(Check(_initial_cases, Strength.SYMBOLIC_ORDER,
+                                  "C2 rows solved from end derivatives, put into the corrected G2 conditions, every "
+                                  "order and knots", proof=True), SHAPE_ONE),),
+                      label="a surface that is C2, and the corrected conditions, alpha = beta = 1"),
+              counterexample=partial(row_counterexample, "start", 2, PARAMETRIC_3_1, PARAMETRIC_3_1_SQUARES,
+                                     parametric=True),
+              cause="second-derivative",
+              remark="The paper's own program does start within its problem: its C2 solution is by definition what its "
+              "G2 conditions give with alpha = beta = 1. How good that start is depends on the units of w and t, which "
+              "(2.1) multiplies by alpha^2; from there the search found the least energy wherever the study ran it."),
     not_checkable("sec-4.fminunc", _WHERE, "fminunc is a BFGS quasi-Newton method with a cubic line search.",
                   "a statement on a version of another program, which is not here"),
     not_checkable("sec-4.few-steps", _WHERE, "Started there, fminunc needs several steps to reach a local minimum.",

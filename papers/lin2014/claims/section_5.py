@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import replace
 from functools import partial
 from typing import Any
 
 from sympy import Eq, Symbol
 
 from semispline.papers.ledger import (
-    Case,
     Check,
     Claim,
     Correction,
@@ -20,6 +17,7 @@ from semispline.papers.ledger import (
     Reading,
     Strength,
     ambiguous,
+    consistent,
     fails,
     holds,
     holds_if,
@@ -31,13 +29,22 @@ from semispline.papers.ledger import (
 )
 from semispline.papers.lin2014 import printed as pr
 from semispline.papers.lin2014 import printed_figures as printed
+from semispline.papers.lin2014.checks import closed_seam as seam
 from semispline.papers.lin2014.checks import conditions_in_figures as conditions
 from semispline.papers.lin2014.checks import curvature_pictures as pictures
 from semispline.papers.lin2014.checks import hartmann
 from semispline.papers.lin2014.checks import printed_numbers as numbers
+from semispline.papers.lin2014.checks.contact_rows import Side
 from semispline.papers.lin2014.checks.exact_blends import exact_contact
 from semispline.papers.lin2014.checks.measured_rows import measured_rows
-from semispline.papers.lin2014.checks.rows_along_normal import along_normal
+from semispline.papers.lin2014.checks.rows_along_normal import (
+    EXCESS_3_1,
+    EXCESS_3_1_SQUARES,
+    EXCESS_3_2,
+    EXCESS_3_2_SQUARES,
+    along_normal,
+    excess_check,
+)
 from semispline.papers.lin2014.claims.section_3_conditions import TRUE_3_1, TRUE_3_2
 from semispline.papers.lin2014.examples.stand_ins import cylinders, plane_and_curved, planes
 
@@ -47,7 +54,6 @@ _SIZES = "printed sizes against printed knots, the text and each other, exactly"
 _NO_DATA = "control points, program and machine of the examples are not printed"
 _ITERATIONS = "iterations depend on data and program, which are not printed"
 _CYLINDERS = "Cylinders with the knots and sizes of Fig. 8, contact along arcs"
-_ACROSS: tuple[conditions.Kind, conditions.Kind] = ("straight", "curved")
 _PRINTED_ROWS = {1: pr.COND_2_1, 2: pr.COND_3_1}
 _VECTOR_10 = "V^r"
 _DIRECTION = tuple(
@@ -68,12 +74,12 @@ REPAIRED_VECTOR = Formula(
 
 
 def _vector(key: str) -> Part:
-    return part(of_data(numbers.knot_cases(key), _KNOTS), printed.VECTORS[key])
+    return part(consistent(numbers.knot_cases(key), _KNOTS), printed.VECTORS[key])
 
 
 def _sizes(figure: str) -> tuple[Part, ...]:
     sizes = enumerate(printed.SIZE[figure])
-    return tuple(part(of_data(numbers.size_cases(figure, model), _SIZES), formula) for model, formula in sizes)
+    return tuple(part(consistent(numbers.size_cases(figure, model), _SIZES), formula) for model, formula in sizes)
 
 
 _AS_PRINTED, _CORRECTED = "with the conditions as they are printed", "with the corrected ones"
@@ -82,66 +88,82 @@ _SQUARED = "with both distances in (3.1) and (3.2) squared, if the scan lost tha
 
 def _c2(identifier: str, where: str, statement: str, **more: Any) -> Claim:
     """Return a record of a claim of C2 contact with one middle curve."""
-    check = conditions.row_2_check("start", 6, "any", parametric=True)
-    corrected = Part(check, conditions.at_figure(TRUE_3_1, 6, parametric=True))
+    corrected = Part(conditions.row_2_check("start", 6, "any", parametric=True),
+                     conditions.at_figure(TRUE_3_1, 6, parametric=True))  # fmt: skip
+    printed = (
+        Reading(
+            (
+                part(conditions.for_which_bases("start", 6, parametric=True, squares=squares),
+                     conditions.at_figure(formula, 6, parametric=True)),
+                part(conditions.excess_of_c2_check(6, squares=squares), conditions.excess_of_c2(6, squares=squares)),
+            ),
+            label=label, condition=conditions.STEPS[squares],
+        )
+        for label, formula, squares in (
+            (_AS_PRINTED, pr.COND_3_1, False), (_SQUARED, pr.COND_3_1_SQUARES, True))
+    )  # fmt: skip
     return ambiguous(
-        identifier, where, statement,
-        Reading((part(check, conditions.at_figure(pr.COND_3_1, 6, parametric=True)),), label=_AS_PRINTED),
-        Reading((part(check, conditions.at_figure(pr.COND_3_1_SQUARES, 6, parametric=True)),), label=_SQUARED),
-        Reading((corrected,), label=_CORRECTED),
+        identifier, where, statement, *printed, Reading((corrected,), label=_CORRECTED),
         correction=Correction("(3.1) as at cond-3.1, here with k = k_r = 4, u_1 = 1/4, u_2 = 1/2, alpha = 1: then C2.",
                               (corrected,)),
-        counterexample=conditions.straight_counterexample(6), **more)  # fmt: skip
+        counterexample=conditions.straight_counterexample(6), cause="second-derivative", **more)  # fmt: skip
 
 
-def _g2(identifier: str, where: str, statement: str, m: int, **more: Any) -> Claim:
-    """Return a record of a claim of G2 contact with a curved base S."""
-    as_printed, squared = (
-        along_normal(conditions.at_figure(formula, m, parametric=False), "end")
-        for formula in (pr.COND_3_2, pr.COND_3_2_SQUARES)
-    )
-    corrected = Part(conditions.row_2_check("end", m, "any", parametric=False),
-                     conditions.at_figure(TRUE_3_2, m, parametric=False))  # fmt: skip
+_ROW_2: dict[Side, tuple[Formula, Formula, Formula]] = {
+    "start": (pr.COND_3_1, pr.COND_3_1_SQUARES, TRUE_3_1),
+    "end": (pr.COND_3_2, pr.COND_3_2_SQUARES, TRUE_3_2),
+}
+_EXCESS: dict[Side, tuple[Formula, Formula]] = {
+    "start": (EXCESS_3_1, EXCESS_3_1_SQUARES),
+    "end": (EXCESS_3_2, EXCESS_3_2_SQUARES),
+}
+
+
+def _g2(identifier: str, where: str, statement: str, m: int, side: Side = "end", **more: Any) -> Claim:
+    """Return a record of a claim of G2 contact with a base that may be curved across."""
+    *printed, true = _ROW_2[side]
+    corrected = Part(conditions.row_2_check(side, m, "any", parametric=False),
+                     conditions.at_figure(true, m, parametric=False))  # fmt: skip
+    readings = (
+        Reading(
+            (
+                part(conditions.for_which_bases(side, m, parametric=False, squares=squares),
+                     along_normal(conditions.at_figure(formula, m, parametric=False), side)),
+                part(excess_check(side, formula), _EXCESS[side][squares]),
+            ),
+            label=label, condition=conditions.SPANS[squares],
+        )
+        for label, formula, squares in zip((_AS_PRINTED, _SQUARED), printed, (False, True), strict=True)
+    )  # fmt: skip
+    name, shape, base = ("(3.1)", "alpha", "k_r") if side == "start" else ("(3.2)", "beta", "k_s")
     return ambiguous(
-        identifier, where, statement,
-        Reading((part(conditions.row_2_check("end", m, "curved", parametric=False), as_printed),), label=_AS_PRINTED),
-        Reading((part(conditions.equal_spans_check("end", m), squared),), label=_SQUARED,
-                condition=conditions.EQUAL_SPANS),
-        Reading((corrected,), label=_CORRECTED),
-        correction=Correction(f"(3.2) as at cond-3.2, here with k = k_s = 4 and inner knots 1/{m - 2} apart: P_uu is "
-                              "beta^4 times that of the base, hence G2.", (corrected,)),
-        counterexample=conditions.row_counterexample("end", "curved", m), **more)  # fmt: skip
-
-
-def _straight_or_curved(m: int) -> Check:
-    """Return the check of (3.1) on a base that is straight across the contact, and on one that is not."""
-    straight, curved = (conditions.row_2_check("start", m, kind, parametric=False) for kind in _ACROSS)
-
-    def cases(formula: Formula | None) -> Iterator[Case]:
-        for case in straight.cases(formula):
-            yield replace(case, label=f"{case.label}, base straight across")
-        for case in curved.cases(formula):
-            yield replace(case, label=f"{case.label}, base curved across", own=False, meets=False)
-
-    return replace(straight, cases=cases)
+        identifier, where, statement, *readings, Reading((corrected,), label=_CORRECTED),
+        correction=Correction(f"{name} as at cond-{name[1:-1]}, here with k = {base} = 4 and inner knots 1/{m - 2} "
+                              f"apart: P_uu is {shape}^4 times that of the base, hence G2.", (corrected,)),
+        counterexample=conditions.row_counterexample(side, "curved", m), cause="second-derivative",
+        **more)  # fmt: skip
 
 
 CLAIMS: tuple[Claim, ...] = (
+    not_checkable("sec-5.machine", "Section 5", "In which languages the method was written, on which machine it ran.",
+                  "the program and the machine are not here"),
     holds("sec-5.bicubic", "Section 5", "All bases are bicubic: four rows and columns at least.",
-          part(of_data(numbers.bicubic_cases, "ends of the printed vectors, sizes in Table 1"), printed.BICUBIC)),
+          part(consistent(numbers.bicubic_cases, "ends of the printed vectors, sizes in Table 1"), printed.BICUBIC)),
     ambiguous("sec-5.cylinders", "Section 5", "The bases of Figs. 8 to 10 are cylinders, and bicubic.",
               Reading((part(proved(numbers.circle_cases, "leading coefficients of x^2 + y^2, every degree")),),
                       label="circular cylinders"),
-              Reading((part(proved(numbers.extrusion_cases, "a cubic curve moved along a line, degree raised to 3")),),
+              Reading((part(consistent(lambda _: numbers.extrusion_cases(), "a cubic curve moved along a line, "
+                                       "degree raised to 3: such cylinders exist")),),
                       label="cylinders over some other curve, which may be near a circle"),
               remark="No polynomial spline, which is what (7) is, runs along a circle; that takes weights. What is "
               "called radius is that of an approximation. The study runs Fig. 10 with exact, rational cylinders too."),
     holds("sec-5.cone", "Section 5", "The conical base of Fig. 11 is bicubic.",
-          part(proved(numbers.cone_patch_cases, "a patch in the implicit equation of a circular cone")),
+          part(consistent(lambda _: numbers.cone_patch_cases(),
+                          "a patch in the implicit equation of a circular cone: one of the kind exists")),
           remark="Possible on a circular cone too, between parabolas; between circles it is not, as for cylinders: "
           "that takes weights. The study runs Fig. 11 with such an exact cone too."),
     holds("sec-5.middle-curves", "Section 5", "Figs. 5, 6, 8, 9 have one middle curve, Figs. 10 and 11 none.",
-          part(of_data(numbers.middle_curve_cases, "the two kinds of section 3, what the paragraphs repeat, and the "
+          part(consistent(numbers.middle_curve_cases, "the two kinds of section 3, what the paragraphs repeat, and the "
                        "printed inner knots"), printed.MIDDLE_CURVES)),
     ambiguous("sec-5.validation", "Section 5",
               "Mean curvature and zebra stripes show the C2 or G2 continuity of the examples.",
@@ -175,14 +197,17 @@ CLAIMS: tuple[Claim, ...] = (
               remark="kappa_1^2 + kappa_2^2 = 4 H^2 - 2 K: on a saddle with kappa_2 = -kappa_1 the mean curvature is "
               "zero, and the energy of section 3 is not."),
     holds("fig-5.knots", "Fig. 5", "Contact curves over {1/2} and {1/3, 2/3}, in bases of 6 x 5 and 6 x 6 points.",
-          part(of_data(numbers.first_vector_5_cases, _KNOTS + "; against its second print"),
+          part(consistent(numbers.first_vector_5_cases, _KNOTS + "; against its second print"),
                printed.VECTORS["fig-5.first"]),
           _vector("fig-5.second")),
     _c2("fig-5.c2", "Fig. 5", "Two planar patches are blended C2.",
-                    consequence=partial(measured_rows, "start", _PRINTED_ROWS, "Planes with the knots of Fig. 5",
-                                        "C2", planes),
-                    remark="G2 all the same: rows of a plane stay in the plane, whatever their weights. So the error "
-                    "of (3.1) cannot be seen in this figure."),
+        consequence=partial(measured_rows, "start", _PRINTED_ROWS, "Planes of constant speed with the knots of Fig. 5",
+                            "C2", planes),
+        remark="Neither speeds nor knots across are printed. With (3.1) as printed C2 is reached, for instance, by "
+        "rows 0, 1, 11 on a line and knots 1/5 and 2/5 after the contact: P_u = -15 = -R_w, P_uu = 600 = R_ww. At "
+        "constant speed, the usual parametrisation, it never is, in either reading and whatever the knots: then "
+        "P_uu = 2 H_2 / (H_1 u_2) R_w as printed, and not zero. G2 all the same: rows of a plane stay in the plane, "
+        "whatever their weights, so that the error of (3.1) cannot be seen in this figure."),
     holds_if("fig-5.same-knots", "Fig. 5", "Both planar patches can be given the knots {1/2}.",
              "the patch over {1/3, 2/3} is polynomial across these knots",
              part(of_data(numbers.removable_cases, "spline spaces by exact rank; the vector against its first print"),
@@ -196,12 +221,13 @@ CLAIMS: tuple[Claim, ...] = (
     holds("fig-6.knots", "Fig. 6", "Contact curves with 6 and 4 inner knots, in bases of 5 x 10 and 5 x 8 points.",
           _vector("fig-6.planar"), _vector("fig-6.curved")),
     _g2("fig-6.g2", "Fig. 6", "A planar and a curved patch are blended G2.", 6,
-          consequence=partial(measured_rows, "end", {1: pr.COND_2_2, 2: pr.COND_3_2},
-                              "A plane and a curved patch with the knots and sizes of Fig. 6, at the curved side", "G2",
-                              plane_and_curved),
-          remark="As printed, the second derivative along the normal is that of the base times (t_{k_s+1} - t_s) / "
-          "u_2, with u_2 = 1/2 here: twice as much for a base of five rows with its one knot in the middle. With "
-          "squares that base is met with G2, and no other base of five rows."),
+        consequence=partial(measured_rows, "end", {1: pr.COND_2_2, 2: pr.COND_3_2},
+                            "A plane and a curved patch over [0, 1] with the knots and sizes of Fig. 6, at the curved "
+                            "side", "G2", plane_and_curved),
+        remark="As printed, the second derivative along the normal is that of the base times (t_{k_s+1} - t_s) / "
+        "u_2, with u_2 = 1/2. A base of five rows has one knot across, so that t_{k_s+1} - t_s is its whole length: "
+        "over [0, 1/2] it is met with G2, over [0, 1], the usual domain, with twice its curvature. With squares it is "
+        "met with G2 exactly if that knot is in the middle. The planar side is G2 whatever its rows."),
     not_checkable("fig-6.iterations", "Fig. 6", "fminunc needs 5 iterations.", _ITERATIONS),
     holds("fig-7.hull", "Fig. 7", "Hartmann's blend lies in the convex hull of the pieces that it combines.",
           part(proved(hartmann.hull_cases, "signs and ends of f and 1 - f, every t, n and mu"))),
@@ -224,51 +250,57 @@ CLAIMS: tuple[Claim, ...] = (
     holds("fig-8.knots", "Fig. 8", "Contact curves over {0.3, 0.7} and {0.5}, in bases of 6 x 6 and 6 x 5 points.",
           _vector("fig-8.larger"), _vector("fig-8.smaller")),
     _c2("fig-8.c2", "Fig. 8", "Two part cylinders are blended C2.",
-                    consequence=partial(measured_rows, "start", _PRINTED_ROWS,
-                                        _CYLINDERS, "C2", cylinders),
-                    remark="Decided for contact along arcs, where the base is straight across; then the contact is G2 "
-                    "all the same. For contact along rulings it is not even that: see fig-6.g2."),
+        consequence=partial(measured_rows, "start", _PRINTED_ROWS, _CYLINDERS, "C2", cylinders),
+        remark="As fig-5.c2, for contact along arcs; along arcs the base is straight across and the contact is G2 all "
+        "the same, in either reading. Met along its rulings a cylinder is curved across, and C2 takes straight rows: "
+        "then it fails as printed and with squares, and G2 is decided as for fig-6.g2."),
     _c2("fig-9.c2", "Fig. 9", "The same are blended C2 in another posture.",
-                    consequence=partial(measured_rows, "start", _PRINTED_ROWS,
-                                        _CYLINDERS, "C2", cylinders),
-                    remark="As fig-8.c2: the posture does not enter."),
+        consequence=partial(measured_rows, "start", _PRINTED_ROWS, _CYLINDERS, "C2", cylinders),
+        remark="As fig-8.c2: the posture does not enter."),
     holds("fig-9.same-bases", "Fig. 9", "The bases are those of Fig. 8.",
-          *(part(of_data(numbers.same_model_cases(model), "sizes in Table 1"), formula)
+          *(part(consistent(numbers.same_model_cases(model), "sizes in Table 1"), formula)
             for model, formula in enumerate(printed.SIZE["fig-9"]))),
     fails("fig-10.first-knots", "Fig. 10", "The first contact curve has the printed knots, three zeros to begin with.",
-          part(of_data(numbers.first_vector_10_cases, _KNOTS10), printed.VECTORS["fig-10.first"]),
+          part(consistent(numbers.first_vector_10_cases, _KNOTS10), printed.VECTORS["fig-10.first"]),
           correction=Correction("Four zeros, as Bezier end conditions and Table 1 need.",
-                                (Part(of_data(numbers.first_vector_10_cases, _KNOTS10), REPAIRED_VECTOR),)),
+                                (Part(consistent(numbers.first_vector_10_cases, _KNOTS10), REPAIRED_VECTOR),)),
           counterexample=numbers.knot_10_counterexample, consequence=numbers.knot_10_consequence,
+          cause="misprints",
           remark="Misprinted, or lost by the scan: with a fourth zero all numbers agree."),
     holds("fig-10.sevenths", "Fig. 10", "Its inner knots are 0.142857, .., 0.857143.",
-          part(of_data(numbers.seventh_cases, "sevenths rounded to six places"), printed.SEVENTHS)),
+          part(consistent(numbers.seventh_cases, "sevenths rounded to six places"), printed.SEVENTHS)),
     holds("fig-10.second-knots", "Fig. 10", "The second contact curve has four inner knots, in a base of 8 x 8 points.",
           _vector("fig-10.second")),
-    ambiguous("fig-10.g2", "Fig. 10", "Two complete cylinders are blended G2, without a middle curve.",
-              Reading((part(_straight_or_curved(5),
-                            along_normal(conditions.at_figure(pr.COND_3_1, 5, parametric=False),
-                                                    "start", straight=True)),),
-                      label=_AS_PRINTED,
-                      condition="the base is met across its rulings and its parameter runs along them"),
-              Reading((part(conditions.row_2_check("start", 5, "any", parametric=False),
-                            conditions.at_figure(TRUE_3_1, 5, parametric=False)),),
-                      label=_CORRECTED),
-              consequence=partial(exact_contact, 10, "Exact, rational cylinders, not polynomial stand-ins, blended "
-                                  "with derived rows, worst of both contacts"),
-              remark="With (3.1) as printed it holds by accident: a complete cylinder is met along a closed curve and, "
-              "with a parameter along its rulings, which is not said to be so, is straight across; only the second "
-              "derivative along the normal matters, and it is zero whatever multiple of the base's is taken. So this "
-              "figure says nothing for or against (3.1)."),
+    _g2("fig-10.g2", "Fig. 10", "Two complete cylinders are blended G2, without a middle curve.", 5, "start",
+        consequence=partial(exact_contact, 10, "Exact, rational cylinders, not polynomial stand-ins, blended "
+                            "with derived rows, worst of both contacts"),
+        remark="A complete cylinder is met along a closed curve and, with a parameter along its rulings, which is not "
+        "said to be so, is straight across: then either reading of (3.1) gives G2, since only the second derivative "
+        "along the normal matters, and it is zero whatever multiple of the base's is taken. So this figure says "
+        "nothing for or against (3.1)."),
+    ambiguous("fig-10.seam", "Fig. 10", "Blended from complete cylinders, the surface closes where v_s and v_e meet.",
+              Reading((part(Check(seam.closing_cases, Strength.SYMBOLIC_ORDER, "rows are combinations of the base's "
+                                  "rows with factors that do not depend on v, every order and knots", proof=True),
+                            seam.JUMP_OF_ROW_1),),
+                      label="without a middle curve, as the figure has it, if both bases close"),
+              Reading((part(proved(seam.free_middle_cases, "least energy between two curves that close with two "
+                                   "derivatives, exactly: one counterexample is enough", Strength.RATIONAL)),),
+                      label="with a middle curve over knots of its own, found by least (11) alone"),
+              consequence=seam.seam_gap, cause="energy-for-quality",
+              remark="Without a middle curve the blend closes with every derivative with which both bases do, for any "
+              "alpha, beta. With one (11) closes nothing, not even the position: the ends of P_3 have to be held "
+              "together. Whether the paper's bases close is not printed."),
     not_checkable("fig-10.iterations", "Fig. 10", "fminunc needs 6 iterations.", _ITERATIONS),
     holds("fig-11.counts", "Fig. 11", "The contact curves have 10 control points on the cone, 64 on the free form.",
-          part(of_data(numbers.cone_cases, "Table 1, 4 x 10 and 5 x 64"), printed.CONE_COUNTS_11)),
+          part(consistent(numbers.cone_cases, "Table 1, 4 x 10 and 5 x 64"), printed.CONE_COUNTS_11)),
     _g2("fig-11.g2", "Fig. 11", "A cone and a free form are blended G2, no middle curve.", 5,
-          consequence=partial(measured_rows, "end", {1: pr.COND_2_2, 2: pr.COND_3_2},
-                              "The made pair, whose second base stands for the free-form surface"),
-          remark="On the cone it holds by accident, as in Fig. 10; on the free-form side it does not as printed, and "
-          "with squares just where its one knot across is in the middle. With an exact, rational cone instead of a "
-          "stand-in derived rows are G2 as well, which the study measures."),
+        consequence=partial(measured_rows, "end", {1: pr.COND_2_2, 2: pr.COND_3_2},
+                            "The made pair, whose second base stands for the free-form surface"),
+        remark="The cone is straight across where it is met along a closed curve, as in Fig. 10. The free form has "
+        "five rows, so that t_{k_s+1} - t_s is its whole length across: as printed G2 exactly if that is u_2 = 2/3, "
+        "over [0, 1] it is met with 3/2 times its curvature; with squares exactly if its one knot across is in the "
+        "middle. With an exact, rational cone instead of a stand-in derived rows are G2 as well, which the study "
+        "measures."),
     holds("table-1.sizes", "Table 1", "Sizes of the control nets, across and along the contact.",
           *(size for figure in pr.SIZES for size in _sizes(figure)),
           remark="For Fig. 10 they agree with four zeros: fig-10.first-knots."),

@@ -15,21 +15,27 @@ from semispline.papers.ledger import (
     Reading,
     Strength,
     Verdict,
+    ambiguous,
     fails,
     holds,
     holds_if,
     part,
+    proved,
 )
 from semispline.papers.lin2014 import printed as pr
+from semispline.papers.lin2014.checks import special_choice as special
 from semispline.papers.lin2014.checks.contact_counterexamples import derivative_counterexample, row_counterexample
 from semispline.papers.lin2014.checks.contact_rows import derivative_check, mirror_check, w_kr1
 from semispline.papers.lin2014.checks.geometric_continuity import (
     derived_row_cases,
     derived_row_probe,
     general_check,
+    join_cases,
     special_check,
+    special_contact_cases,
     special_counterexample,
     substitution_cases,
+    tangent_plane_cases,
 )
 from semispline.papers.lin2014.checks.measured_rows import measured_rows
 
@@ -69,6 +75,21 @@ _REGULAR = "R is regular along the contact and p_1 has no zero (and p_1 < 0, if 
 _WHERE = "Appendix"
 
 
+_TANGENT_PLANES = Check(
+    tangent_plane_cases,
+    Strength.SYMBOLIC_ORDER,
+    "(15) with p_1 = alpha^2; tangent planes for any regular base; for alpha = 0 and a singular base an example is "
+    "enough",
+    proof=True,
+)
+_JOIN = Check(
+    join_cases,
+    Strength.SYMBOLIC_ORDER,
+    "on which side of the contact P_u points, any base and p_1, q_1; where a blend of a bent base lies",
+    proof=True,
+)
+
+
 def _derived(order: int) -> Check:
     cases, probe = partial(derived_row_cases, order), partial(derived_row_probe, order)
     return Check(cases, Strength.SYMBOLIC_ORDER, "solving for the row", proof=True, probe=probe)
@@ -85,7 +106,7 @@ CLAIMS = (
         remark="Where p_1 vanishes P has no tangent plane, although the equation holds; where R_w vanishes smooth "
         "continuations exist that satisfy no such equation. The equation does not see the sign of p_1: a fold "
         "(p_1 > 0 when both surfaces lie on the positive side of their parameters) satisfies it too, as tangent planes "
-        "alone are compared; eq-17 is judged by the join.",
+        "alone are compared; eq-17 is decided both ways.",
     ),
     Claim(
         "eq-16",
@@ -100,10 +121,17 @@ CLAIMS = (
     Claim(
         "eq-17",
         _WHERE,
-        "The blend leaves the base smoothly with P_u = +alpha^2 R_w at u = 0, w = w_s.",
-        Verdict.FAILS,
-        (Reading((Part(special_check(1), pr.EQ_17),)),),
-        Correction("The blend leaves R backwards, as (2.1) does: p_1 = -alpha^2.", (Part(special_check(1), TRUE_17),)),
+        "With p_1 = alpha^2 the surfaces are joined by P_u = +alpha^2 R_w at u = 0, w = w_s.",
+        Verdict.AMBIGUOUS,
+        (
+            Reading(
+                (Part(_TANGENT_PLANES, pr.EQ_17),),
+                label="one tangent plane along the contact, which is all that (15) asks",
+                condition="alpha is not zero and R is regular along the contact",
+            ),
+            Reading((Part(_JOIN, pr.EQ_17),), label="a blend that goes on from R on the other side of the contact"),
+        ),
+        Correction("The blend leaves R backwards, as (2.1) does: p_1 = -alpha^2.", (Part(_JOIN, TRUE_17),)),
         partial(special_counterexample, 1, pr.EQ_17),
         partial(
             measured_rows,
@@ -111,13 +139,14 @@ CLAIMS = (
             {1: ROW_1_BY_17},
             "The made pair with row 1 by (17) and the first derivatives of the appendix",
         ),
-        remark="The paper contradicts itself: (2.1), said to follow from (17), has the opposite sign, the right one. "
-        "R lies on w >= w_s and P on u >= 0: with the sign of (17) the blend runs back over the base, a fold with "
-        "one tangent plane, so that (15) holds and smoothness does not. Open CASCADE compares tangent planes and "
-        "curvatures with normals up to sign: it does not see a fold, so that its verdict stands beside a normal that "
-        "turns by 180 degrees. The scan loses minus signs elsewhere, in (2.1) to (3.2). Here it would have to lose "
-        "one in (17) and another in p_1 = alpha^2, which agree as they stand; with both, the formula is the corrected "
-        "one.",
+        cause="sign-of-p1",
+        remark="By (15) alone nothing is wrong: tangent planes do not see the sign. But the paper contradicts itself: "
+        "(2.1), said to follow from (17), has the opposite sign, the right one (sec-A.17-gives-2.1). R lies on "
+        "w >= w_s and P on u >= 0: with the sign of (17) the blend runs back over the base, a fold. Open CASCADE "
+        "compares tangent planes and curvatures with normals up to sign: it does not see a fold, so that its verdict "
+        "stands beside a normal that turns by 180 degrees. The scan loses minus signs elsewhere, in (2.1) to (3.2). "
+        "Here it would have to lose one in (17) and another in p_1 = alpha^2, which agree as they stand; with both, "
+        "the formula is the corrected one.",
     ),
     Claim(
         "eq-18",
@@ -166,9 +195,23 @@ CLAIMS = (
             {2: pr.COND_3_1},
             "The made pair with row 2 by (3.1), which is (18) with these derivatives",
         ),
+        cause="second-derivative",
         remark="Right for order 2, where both sides vanish, and where u_1 = u_2 = 1, as without inner knots over "
         "[0, 1]. With squares it holds where u_1 = u_2, that is where the first inner knot is double or there is none.",
     ),
+    ambiguous("sec-A.special-choice", _WHERE,
+              "(15) and (16) come to (17) and (18), with p_1 = -alpha^2, alpha constant and q_1 = p_2 = q_2 = 0.",
+              Reading((part(proved(partial(special_contact_cases, 2), "tangent planes and second fundamental forms for "
+                                   "any regular base, alpha not zero")),),
+                      label="as one choice that suffices"),
+              Reading((part(proved(special.only_special_cases, "blends with contact of order 2, judged by the implicit "
+                                   "equation of the base: one counterexample is enough", Strength.RATIONAL)),),
+                      label="as all that they allow"),
+              consequence=special.special_choice_cost,
+              remark="The paper calls its conditions sufficient, and says no more. What the choice leaves out: p_1 and "
+              "q_1 that vary along the contact, where alpha, beta are two numbers, and p_2, a free function that moves "
+              "row 2 along R_w. By (11) that costs little; by the fairness of the shape p_2 is worth more, and the "
+              "default of this package searches it."),
     holds("sec-A.substitution", _WHERE, "p_1 = alpha^2, q_1 = p_2 = q_2 = 0 turn (15), (16) into (17), (18).",
           part(Check(partial(substitution_cases, 1), Strength.SYMBOLIC_ORDER, "substitution", proof=True), pr.EQ_17),
           part(Check(partial(substitution_cases, 2), Strength.SYMBOLIC_ORDER, "substitution", proof=True), pr.EQ_18),
@@ -181,6 +224,7 @@ CLAIMS = (
           counterexample=partial(row_counterexample, "start", 1, ROW_1_BY_17),
           consequence=partial(measured_rows, "start", {1: ROW_1_BY_17},
                               "The made pair with the row that (17) gives"),
+          cause="sign-of-p1",
           remark="With a minus in (17), which the scan may have lost there and in p_1 = alpha^2, they do: that is the "
           "correction. As printed a fold, as for eq-17: Open CASCADE compares normals up to sign and does not see it; "
           "the normal, followed across the contact, turns by 180 degrees."),
@@ -189,6 +233,7 @@ CLAIMS = (
           remark="The step is right; its premise app-d2 is not, and so (3.1) is wrong."),
     holds_if("sec-A.similarly", _WHERE, "(1.2), (2.2), (3.2) follow like the others, at the other end.", "k = 4",
              *(part(mirror_check(row), formula) for row, formula in enumerate((pr.COND_1_2, pr.COND_2_2, pr.COND_3_2))),
+             cause="indices-for-cubics",
              remark="The last inner knot is u_{m-k+1}; u_{m-3} is that one for k = 4 only. The error of (3.1) is "
              "mirrored too."),
 )  # fmt: skip

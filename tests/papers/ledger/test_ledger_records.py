@@ -6,9 +6,10 @@ import pytest
 import sympy as sp
 
 from semispline.papers.ledger.loading import load_paper, paper_names
-from semispline.papers.ledger.record_checks import check_record
+from semispline.papers.ledger.record_checks import check_causes, check_record
 from semispline.papers.ledger.records import (
     Case,
+    Cause,
     Check,
     Claim,
     Consequence,
@@ -55,6 +56,7 @@ def labelled(*labels):
         ),
         (with_check(strength=9), "strength 9, expected one of SYMBOLIC_ORDER"),
         (with_check(strength=Strength.FLOAT, proof=True), "a proof in floating point"),
+        (with_check(strength=Strength.CONSISTENT, proof=True), "a proof by what is printed agreeing"),
         (replace(GOOD, readings=(replace(GOOD.readings[0], condition="x > 0"),)), "holds with a condition"),
         (replace(GOOD, readings=labelled("one", "one"), verdict=Verdict.AMBIGUOUS), "with one label"),
         (with_formula(replace(FORMULA, equivalent={"Eq(y, 3*x)": "why"})), "which is not made"),
@@ -76,6 +78,8 @@ def labelled(*labels):
         (replace(GOOD, verdict=Verdict.AMBIGUOUS), "at least 2"),
         (replace(GOOD, readings=GOOD.readings * 2), "without a label"),
         (replace(GOOD, readings=(), verdict=Verdict.NOT_CHECKABLE), "without a reason"),
+        (replace(GOOD, readings=(), verdict=Verdict.DEFINITION), "definition without what it names"),
+        (replace(GOOD, reason="the rows", verdict=Verdict.DEFINITION), "definition with readings"),
         (replace(GOOD, reason="why"), "with a reason"),
         (
             replace(
@@ -120,11 +124,32 @@ def test_a_bad_record_is_refused(claim, message):
         *(replace(GOOD, id=name) for name in ("def-1", "cond-3.2", "app-d1", "table-1.sizes", "sec-A.17-gives-2.1")),
         with_formula(replace(FORMULA, equivalent={"Eq(y, -2*x)": "why"})),
         with_check(strength=Strength.FLOAT),
+        with_check(strength=Strength.CONSISTENT),
+        replace(GOOD, readings=(), reason="the rows", verdict=Verdict.DEFINITION),
         replace(GOOD, readings=labelled("one", "other"), verdict=Verdict.AMBIGUOUS),
     ],
 )
 def test_what_is_well_formed_passes(claim):
     check_record(claim)
+
+
+SIGN = Cause("sign", "A sign", "It is plus.")
+
+
+def test_causes_belong_to_records_and_records_that_fail_have_one():
+    failing = replace(GOOD, verdict=Verdict.FAILS)
+    check_causes((GOOD,), ())
+    check_causes((failing,), ())
+    check_causes((replace(failing, cause="sign"), GOOD), (SIGN,))
+    for claims, causes, message in (
+        ((replace(GOOD, cause="sign"),), (), "cause 'sign', expected one of none"),
+        ((GOOD,), (SIGN,), "no record has it"),
+        ((failing, replace(GOOD, cause="sign")), (SIGN,), "fails without a cause, expected one of sign"),
+        ((replace(GOOD, cause="sign"),), (SIGN, SIGN), "found twice"),
+        ((replace(GOOD, cause="sign"),), (replace(SIGN, text=" "),), "without title or text"),
+    ):
+        with pytest.raises(LedgerError, match=message):
+            check_causes(claims, causes)
 
 
 def test_the_corrected_formula_is_checked_too():

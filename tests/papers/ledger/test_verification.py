@@ -10,6 +10,7 @@ import sympy as sp
 from semispline.papers.ledger.mutation import mutants, try_mutants
 from semispline.papers.ledger.records import (
     Case,
+    Cause,
     Check,
     CheckFailedError,
     Claim,
@@ -17,12 +18,13 @@ from semispline.papers.ledger.records import (
     Correction,
     Counterexample,
     Formula,
+    Paper,
     Part,
     Reading,
     Strength,
     Verdict,
 )
-from semispline.papers.ledger.verification import decide, verify
+from semispline.papers.ledger.verification import Ledger, decide, verify
 from semispline.solver.errors import ComputationError
 
 x, y = sp.symbols("x y", real=True)
@@ -84,12 +86,38 @@ def test_a_changed_verdict_is_noticed(made_up_paper):
         (replace(claim_of(TRUE, FALSE, verdict=Verdict.FAILS), **EVIDENCE), Verdict.FAILS),
         (claim_of(TRUE, ELSEWHERE, verdict=Verdict.HOLDS_IF, condition="k = 4"), Verdict.HOLDS_IF),
         (Claim("c", "w", "s", Verdict.NOT_CHECKABLE, reason="no data"), Verdict.NOT_CHECKABLE),
+        (Claim("c", "w", "s", Verdict.DEFINITION, reason="the rows"), Verdict.DEFINITION),
     ],
 )
 def test_verdicts_follow_from_the_cases(claim, verdict):
     decision = decide(claim)
     assert decision.verdict is verdict
     assert decision.ok
+
+
+def ledger_of(*claims, causes=()):
+    return Ledger(Paper("p", "t", "", claims, causes), tuple(decide(claim) for claim in claims))
+
+
+def test_what_is_printed_agreeing_is_counted_apart_and_definitions_are_not_decided():
+    agrees, contradicts = (
+        replace(claim_of(case), readings=(Reading((Part(replace(check_of(case), strength=Strength.CONSISTENT)),)),))
+        for case in (TRUE, FALSE)
+    )
+    contradicts = replace(contradicts, verdict=Verdict.FAILS, **EVIDENCE)
+    name = Claim("c", "w", "s", Verdict.DEFINITION, reason="the rows")
+    counts = ledger_of(agrees, contradicts, claim_of(TRUE, proof=True), name).counts()
+    assert counts["printed"] == 4
+    assert (counts["decided"], counts["proved"], counts["consistent"], counts["definition"]) == (3, 2, 1, 1)
+
+
+def test_one_fault_is_counted_once():
+    failing = replace(claim_of(FALSE, verdict=Verdict.FAILS), **EVIDENCE, cause="sign")
+    causes = (Cause("sign", "A sign", "It is plus."), Cause("index", "An index", "It is 2."))
+    holding = replace(claim_of(TRUE), cause="index")
+    ledger = ledger_of(replace(failing, id="one"), replace(failing, id="two"), holding, causes=causes)
+    assert [(cause.key, [d.id for d in found]) for cause, found in ledger.causes()] == [("sign", ["one", "two"])]
+    assert ledger.counts()["causes"] == 1
 
 
 def test_readings_that_differ_are_ambiguous_and_those_that_agree_are_not():

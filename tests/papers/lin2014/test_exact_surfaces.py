@@ -24,7 +24,7 @@ from semispline.papers.reproduction.comparison import run
 from semispline.papers.reproduction.measures import reached
 from semispline.solver.judge.de_boor import surface_points
 
-STORED = (Path(__file__).parents[3] / "papers" / "lin2014" / "REPORT.md").read_text(encoding="utf-8")
+STORED = (Path(__file__).parents[3] / "papers" / "lin2014" / "RECORDS.md").read_text(encoding="utf-8")
 ASKED = {
     "least energy, no middle curve, as the figure": {
         "continuity": "G2", "alpha": "energy", "middle_curves": 0, "degree_u": 3, "v_scale": "paper",

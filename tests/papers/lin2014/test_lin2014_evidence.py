@@ -19,7 +19,7 @@ from semispline.papers.lin2014.checks.conditions_in_figures import (
     _printed_derivatives,
     _rows_across,
     at_figure,
-    equal_spans_check,
+    for_which_bases,
     row_2_check,
     straight_counterexample,
 )
@@ -178,11 +178,12 @@ def test_the_tangent_condition_at_s_fails_beside_those_of_second_order():
 def test_the_squared_condition_of_a_figure_needs_equal_spans(m):
     """P_mm along the normal at numbers, by exact splines; S mirrored, so that its contact is at the start."""
     at = at_figure(pr.COND_3_2_SQUARES, m, parametric=False)
-    same, other = equal_spans_check("end", m).cases(at)
-    assert (same.true, same.meets, other.true, other.meets) == (True, True, False, False)
-    # As printed not even there, and the corrected one everywhere.
-    assert not any(case.true for case in equal_spans_check("end", m).cases(at_figure(pr.COND_3_2, m, parametric=False)))
-    assert all(case.true for case in equal_spans_check("end", m).cases(at_figure(TRUE_3_2, m, parametric=False)))
+    squared = for_which_bases("end", m, parametric=False, squares=True)
+    assert [(case.true, case.meets) for case in squared.cases(at)] == [(True, True), (True, True), (False, False)]
+    # As printed not there unless the base is straight across, and the corrected one everywhere.
+    printed, true = (at_figure(formula, m, parametric=False) for formula in (pr.COND_3_2, TRUE_3_2))
+    assert [case.true for case in squared.cases(printed)] == [False, True, False]
+    assert all(case.true for case in squared.cases(true))
     U = clamped(4, *(Fraction(i, m - 2) for i in range(1, m - 2)))
     S = [Fraction(0), Fraction(0), Fraction(1)]
     for second, g2 in ((2, True), (3, False)):
@@ -200,11 +201,12 @@ def test_the_counterexample_of_a_figure_refutes_both_readings_along_the_normal(m
         tuple(map(Fraction, re.findall(r"-?\d+(?:/\d+)?", text)))
         for text in (*found.printed.split(", with squares "), found.true)
     )
-    T = clamped(4, Fraction(1), Fraction(3), end=4)
+    # Five rows over [0, 1]; the last two have no part in it.
+    T = clamped(4, Fraction(1, 3))
     base = [(0, 0, 0), (1, 0, 0), (0, 0, 1)]
     assert tuple(vector_derivative(4, T, base, 2)) == true
     # By hand: H_2 / h_2 and H_2 h_1 / (h_2 H_1) times the base's third coordinate.
-    assert (printed[2], squared[2]) == (true[2] * Fraction(3 * (m - 2), 2), true[2] * Fraction(3, 2))
+    assert (printed[2], squared[2]) == (true[2] * Fraction(m - 2, 2), true[2] * Fraction(3, 2))
 
 
 def test_no_smaller_orders_are_a_counterexample_to_g2(whole):
@@ -365,13 +367,13 @@ def test_a_base_that_is_straight_across_hides_the_error_from_its_normal():
 
 
 def test_the_quartic_and_rows_on_a_line_at_numbers():
-    """Known answers, worked out by hand: the quartic meets G2 data; rows give 8 and 12, squared 5 and 12, for 0, -3."""
+    """Known answers, worked out by hand: the quartic meets G2 data; rows give 8 and 36, squared 7, 36, for 0, -27."""
     assert [case.true for case in quartic_cases()] == [False]
     found = straight_counterexample(6)()
-    assert (found.printed, found.true) == ("P_uu = 8, with squares 5", "R_ww = 0")
-    assert found.also.endswith("printed 12, with squares 12, true -3")
+    assert (found.printed, found.true) == ("P_uu = 8, with squares 7", "R_ww = 0")
+    assert found.also.endswith("printed 36, with squares 36, true -27")
     # The base's second derivative once more, from values of exact splines.
-    W = clamped(4, Fraction(1), Fraction(2), start=0, end=3)
-    for rows, wanted in (((0, Fraction(1, 3), 1), 0), ((0, 1, 2), -3)):
+    W = clamped(4, Fraction(1, 3), Fraction(2, 3))
+    for rows, wanted in (((0, Fraction(1, 9), Fraction(1, 3)), 0), ((0, 1, 2), -27)):
         points = [Fraction(x) for x in rows] + [Fraction(0)] * (len(W) - 7)
         assert second_derivative(4, W, points) == wanted

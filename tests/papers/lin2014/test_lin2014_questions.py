@@ -15,12 +15,15 @@ from semispline.papers.lin2014 import printed as pr
 from semispline.papers.lin2014.checks import (
     construction,
     contact_rows,
+    converted_blends,
     counts,
     definitions,
     energy,
     fewer_control_points,
     geometric_continuity,
+    many_rows,
     objective,
+    order_of_evaluation,
     printed_pairs,
     representation,
     rows_along_normal,
@@ -35,7 +38,15 @@ RECORDS = (claims_2_definition, claims_3_blending, claims_3_conditions, claims_4
 # Whatever remembers what it has computed.
 MODULES = (
     *(derivations_counts, exact, spline_facts, spline_spaces, construction, contact_rows, counts, definitions, energy),
-    *(fewer_control_points, geometric_continuity, objective, printed_pairs, representation, rows_along_normal),
+    *(
+        fewer_control_points,
+        geometric_continuity,
+        many_rows,
+        objective,
+        printed_pairs,
+        representation,
+        rows_along_normal,
+    ),
 )
 CLAIMS = {claim.id: claim for module in RECORDS for claim in module.CLAIMS}
 
@@ -70,6 +81,11 @@ def first_of(order, *vectors):
     return vectors[0]
 
 
+def repeated_last(order, knots, points, x):
+    """Insert a knot and repeat the last control point, instead of cutting corners."""
+    return sorted([*knots, x]), [*points, points[-1]]
+
+
 SADDLE = (objective, "thin_plate_density", saddle)
 # Least at a = gap - 3/2, so that plates that are close do not join.
 PLATES = (
@@ -84,6 +100,8 @@ PERTURBED = {
     ("sec-2.different-vectors", 0): [(Sample, "weights", lambda *_: [Fraction(2)])],
     ("sec-1.generalisation", 0): [BENT],
     ("sec-2.evaluation-classical", 0): [BENT],
+    ("sec-2.evaluation-order", 0): [(order_of_evaluation, "de_boor", lambda *_: 0), (Sample, "value", lambda *_: 0)],
+    ("sec-2.evaluation-order", 1): [(order_of_evaluation, "inserted", repeated_last)],
     ("sec-2.convex-hull", 0): [
         (spline_samples, "spline_basis", doubled_basis),
         (representation, "partition_residuals", lambda *_: [sp.Poly(1, sp.Symbol("x"))]),
@@ -111,11 +129,15 @@ PERTURBED = {
     ("eq-12", 0): [SADDLE],
     ("eq-12", 1): [PLATES],
     ("sec-3.three-curves", 0): [(construction, "contact_rows", lambda *_: sp.eye(3))],
+    ("sec-3.fewer-better", 0): [(many_rows, "contained", lambda *_: True)],
+    ("sec-3.minimum-over-rows", 0): [SADDLE],
+    ("sec-3.minimum-over-rows", 1): [(many_rows, "_lacks", lambda data: (0, 0))],
     ("sec-1.fairness", 0): [(construction, "PRINTED_PAIRS", {"one": ("fig-5.first", "fig-5.first")})],
     ("sec-1.fairness", 1): [(energy, "middle_knot_energies", lambda: (sp.Integer(1), sp.Integer(2)))],
     ("sec-1.fairness", 2): [(construction, "union", first_of)],
     ("sec-3.averaging", 0): [(construction, "merged", lambda name: (Fraction(3, 4), Fraction(1, 2), Fraction(1, 4)))],
-    ("sec-3.sides", 0): [(pr, "COND_2_1", pr.COND_2_2)],
+    ("sec-3.averaging-direction", 0): [(converted_blends, "_WEIGHTS", (sp.Rational(1, 3), sp.Rational(2, 3)))],
+    ("sec-3.averaging-few", 0): [(converted_blends, "pair_means", list)],
     ("sec-3.sufficient-g1", 0): [
         (geometric_continuity, "tangent_coordinates", lambda vector: (1, 1)),
         (geometric_continuity, "_regular", lambda patch: True),
@@ -137,6 +159,13 @@ PERTURBED = {
         (objective, "end_derivatives", lambda *_: sp.ones(3)),
     ],
     ("sec-4.unconstrained", 0): [PLATES],
+}
+PERTURBED |= {
+    ("sec-A.special-choice", 0): [
+        (geometric_continuity, "tangent_coordinates", lambda vector: (1, 1)),
+        (geometric_continuity, "special_conditions", lambda order: (0, *[sp.Symbol("R_w")] * order)),
+    ],
+    ("sec-A.special-choice", 1): [(geometric_continuity, "_instances", lambda: iter(()))],
 }
 # Its object is the list of parts of its own record.
 BY_HAND = {("sec-3.sufficient-g2", 0)}

@@ -46,12 +46,15 @@ def reading_holds(reading):
 # Decided at less than strength 2, and why that is enough, or that it is not a proof; it stands in the method.
 BY_INSTANCES = {
     "fig-1.counts": ["seven printed numbers"],
-    "sec-3.sides": ["all that the claim is on"],
+    "sec-2.evaluation-order": ["orders 2 to 4", "one example is enough"],
     "sec-2.different-vectors": ["one counterexample is enough", "one example is enough"],
-    "sec-3.fewer-better": ["least energy (11) of strips"],
+    "sec-3.averaging-few": ["the rule on vectors with no, one and more knots"],
+    "sec-3.fewer-better": ["least energy (11) of strips", "over the printed pairs"],
+    "sec-3.minimum-over-rows": ["one counterexample is enough"],
     "sec-1.fairness": ["counted in the printed pairs", "one counterexample is enough"],
     "eq-12": ["checked on plates"],
     "sec-4.unconstrained": ["checked on plates"],
+    "sec-A.special-choice": ["one counterexample is enough"],
 }
 # A proof of a general claim is none of these.
 ONLY_CHECKED = {"sec-1.fairness", "eq-12", "sec-4.unconstrained"}
@@ -80,12 +83,20 @@ def test_no_claim_of_sections_2_to_4_rests_on_instances_without_a_reason():
         ("sec-3.u-numbering", [True, False]),
         ("sec-1.fairness", [True, False]),
         ("sec-3.averaging", [False, True, True]),
+        ("sec-3.fewer-better", [False, True]),
+        ("sec-3.minimum-over-rows", [True, False]),
+        ("sec-3.averaging-direction", [False, True]),
         ("sec-3.parametric-c1", [False, True]),
+        ("sec-2.evaluation-order", [True, False]),
         ("sec-2.different-vectors", [False, True]),
         ("cond-3.1", [False, False]),
         ("cond-3.2", [False, False]),
         ("sec-3.sufficient-g2", [False, False]),
         ("sec-3.parametric-c2", [False, False]),
+        ("sec-4.initial-value", [False, False, True]),
+        ("eq-17", [True, False]),
+        ("sec-A.special-choice", [True, False]),
+        ("sec-3.one-surface", [False, False]),
     ],
 )
 def test_each_reading_of_a_claim(name, holds):

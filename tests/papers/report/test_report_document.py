@@ -1,4 +1,4 @@
-"""REPORT.md says what the study finds, and the study still finds it."""
+"""RECORDS.md says what the study finds, and the study still finds it."""
 
 from pathlib import Path
 
@@ -8,7 +8,7 @@ from semispline.papers.baselines.registry import methods
 from semispline.papers.lin2014.study import study
 from semispline.papers.reproduction.comparison import run
 
-STORED = (Path(__file__).parents[3] / "papers" / "lin2014" / "REPORT.md").read_text(encoding="utf-8")
+STORED = (Path(__file__).parents[3] / "papers" / "lin2014" / "RECORDS.md").read_text(encoding="utf-8")
 
 
 def test_the_document_has_the_erratum_first_then_findings_and_prior_art():

@@ -79,12 +79,14 @@ def test_markdown_has_the_same_tables(results, folder):
     assert len(widths) == 4  # Table 1, methods, pairs, ledger
 
 
-def test_the_report_has_the_ledger_first_and_verify_keeps_the_rest(results, folder):
-    text = (folder / "REPORT.md").read_text()
+def test_the_records_have_the_ledger_first_and_verify_keeps_the_rest(results, folder):
+    text = (folder / "RECORDS.md").read_text()
     ledger = ledger_markdown(results.ledger)
     assert text.startswith(ledger)
     assert text.index("## Erratum") < text.index(STUDY_HEADING) < text.index("Prior art:")
     assert with_study_kept(ledger, text) == text
+    # A paper without a text of its own gets no REPORT.md.
+    assert not (folder / "REPORT.md").exists()
 
 
 def test_the_page_is_written(folder):

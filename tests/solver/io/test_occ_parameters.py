@@ -102,6 +102,15 @@ def test_the_same_point_at_the_converted_parameter(name, part_u, part_v, whole, 
     assert np.abs(off).max() <= 1e-13
 
 
+def test_a_turn_of_a_tube_begins_anywhere():
+    """One in ten was refused: it had rounded up to more than a turn."""
+    geometry = Geom_ToroidalSurface(PLACE, 2.0, 0.5)
+    for low in (-3 + 12e-13, *np.random.default_rng(0).uniform(-3, 5, 40).tolist()):
+        surface = converted(geometry, snapped_ends(geometry, (0.0, TURN, low, low + TURN))).surface
+        start, end = surface.evaluate_grid([0.3], surface.domain[1])[0]
+        assert np.abs(start - end).max() <= 1e-13
+
+
 def test_equal_parameters_are_other_points():
     """What the conversion is for: without it a cylinder of radius 2 is off by 0.078."""
     geometry = Geom_CylindricalSurface(PLACE, 2.0)

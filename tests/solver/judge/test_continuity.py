@@ -165,16 +165,17 @@ def test_measured_in_parts_as_measured_at_once(monkeypatch, at_once, edges):
     np.testing.assert_allclose(other_places, places, rtol=1e-13)
 
 
-def test_a_part_without_a_normal_is_not_forgotten():
+def test_of_a_part_with_a_place_without_a_normal_the_rest_counts():
     # A control point of the second row moved onto the edge: the cross derivative vanishes at that end only.
     a, b = halves(3 * edge_samples._AT_ONCE // 7)
     points = b.surface.control_points.copy()
     points[1, -1] = points[0, -1]
     cusp = BSplineSurface(3, 3, b.surface.knots_u, b.surface.knots_v, points)
     contact = measure_contact(a, Base(cusp, "u0"))
-    assert np.isnan([contact.angle_degrees, contact.curvature_jump, contact.curvature_jump_relative]).all()
-    assert contact.angle_at.parameter == 1.0
-    assert np.isnan(contact.rounding["angle_degrees"])
+    assert np.isfinite([contact.angle_degrees, contact.curvature_jump, contact.curvature_jump_relative]).all()
+    assert np.isfinite([*contact.rounding.values()]).all()
+    assert contact.angle_at.parameter < 1
+    assert [place.parameter for place in contact.no_normal] == [1.0]
 
 
 @pytest.mark.parametrize("width", [1e-9, 1e-6, 0.1])

@@ -5,6 +5,7 @@ import shlex
 from dataclasses import replace
 from math import prod
 
+import numpy as np
 import pytest
 from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeFace, BRepBuilderAPI_MakePolygon
 from OCP.BRepPrimAPI import (
@@ -13,13 +14,15 @@ from OCP.BRepPrimAPI import (
     BRepPrimAPI_MakePrism,
     BRepPrimAPI_MakeSphere,
 )
-from OCP.gp import gp_Pnt, gp_Trsf, gp_Vec
+from OCP.gp import gp_Ax2, gp_Dir, gp_Pnt, gp_Trsf, gp_Vec
 from typer.testing import CliRunner
 
 from helpers.parts import compound, graph_of, moved, rounded_box, without, written
 from helpers.random_parts import known_part
+from helpers.solids import cut
 from semispline import FileError, find_places
 from semispline.solver.cli import app
+from semispline.solver.topology.clearance import clearance
 from semispline.solver.topology.commands import two_faces
 from semispline.solver.topology.listing import place_lines, places_record
 from semispline.solver.topology.place import KINDS
@@ -84,6 +87,10 @@ def test_commands_name_file_and_edges_for_a_shell(name):
             assert words[:2] == ["semispline", "blend"]
             assert words[-2] == "-o"
             path = f"./{name}" if name.startswith("-") else name
+            if place.faces and words[3] != "--replace":
+                # A chain that ends where a face was taken out: between its edges, no solid comes back.
+                assert words[2:4] == [path, path]
+                continue
             if place.faces:
                 if place.kind == "chain" and words[3] == path:
                     # It ends where no face is, and comes as a surface: words say the faces.
@@ -185,6 +192,19 @@ def test_the_clearance_of_sharp_edges_is_that_within_their_faces(tmp_path, shape
         # Nine samples, 5 / 8 apart, stand beside the foot of the apex: they see it too near by 4.8 / 1.4 times that at
         # the most.
         assert any(x - 5 / 16 * 4.8 / 1.4 <= place.measures["clearance"] <= x * (1 + 1e-9) for x in reached)
+
+
+@pytest.mark.parametrize("seam", [180.0, 25.0])
+def test_the_clearance_of_a_hole_does_not_end_at_a_seam(seam):
+    """A hole of radius 1 in a pin of radius 5: half way round to itself, less than half of its height."""
+    t = np.radians(seam)
+    axes = gp_Ax2(gp_Pnt(0, 0, 0), gp_Dir(0, 0, 1), gp_Dir(np.cos(t), np.sin(t), 0))
+    drill = BRepPrimAPI_MakeCylinder(gp_Ax2(gp_Pnt(0, 0, 30), gp_Dir(1, 0, 0)), 1.0, 50.0).Shape()
+    graph = graph_of(cut(BRepPrimAPI_MakeCylinder(axes, 5.0, 60.0).Shape(), drill))
+    uses = graph.uses
+    row = next(x for x in range(len(uses)) if uses.wire[x] and graph.faces.kind[uses.face[x]] == "cylinder")
+    # Of 33 samples round the hole two need not be its outermost ones.
+    assert clearance(graph, row) == pytest.approx(5 * np.pi - 5 * np.arcsin(0.2), abs=0.05)
 
 
 def test_the_command_of_the_rim_of_a_tall_pin_stays_within_its_disc(tmp_path):

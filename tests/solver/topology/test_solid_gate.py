@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from OCP.BRepCheck import BRepCheck_Analyzer
 
-from helpers.gated import corner_blend, placed, put, solid_of, the_fillet
+from helpers.gated import corner_blend, edge_rounded, placed, put, solid_of, the_fillet
 from helpers.parts import compound, fillet, graph_of
 from helpers.solids import box, box_with_fillet, cut, cylinder, pin, volume
 from semispline import (
@@ -23,7 +23,6 @@ from semispline import (
     swap_directions,
     transform,
 )
-from semispline.solver.topology.occ_rounding import rounded
 from semispline.solver.topology.occ_shapes import copy_of, parts, raise_tolerance, tolerance_of
 from semispline.solver.topology.solid_gate import gate
 
@@ -335,7 +334,7 @@ def test_a_sharp_edge_that_bulges_out_is_stopped(cuts, reach, said):
         if np.abs(graph.uses.points[row, :, :2]).max() < 1e-9 and abs(graph.uses.normal[row, 0, 1]) > 0.5
     ]
     ((face, k),) = edges
-    after, _, change = rounded(copy_of(shape)[0], face, k, round_of(cuts, reach), grows=False)
+    after, change = edge_rounded(shape, face, k, round_of(cuts, reach), grows=False)
     assert is_valid(after)
     found = gate(shape, after, change)
     assert found.reason is None if said is None else said in found.reason
