@@ -29,8 +29,8 @@ old end edges kept where it goes on into what is no fillet, a corner say (`--kee
 - *replaced*: the gate passed what was made and what was written and read again; *alone*: by itself; *in chains*:
   together with others
 - *ends kept*: replaced fillets of which an old end edge was kept, alone or at the end of a chain: contact is G2, and
-  falls to G1 at that corner; *kept over*: within which length of the edge, the largest, over the length of the edge
-  itself it is never more; *crease*: the largest angle between the blend and the face beyond such an edge, in degrees
+  falls to G1 at that corner; *kept over*: within which length of the edge, the largest, never longer than the edge
+  itself; *crease*: the largest angle between the blend and the face beyond such an edge, in degrees
 - *tolerance*, *was*, *gap*: the largest of the new edges, of the old ones there, and between faces, in the file's unit
 - *volume*: the largest change, over what the gate allows (a quarter of the old face's area times its width)
 - *angle* (degrees) and *curvature* (relative): the worst contact on the true faces of those with no end kept; where one

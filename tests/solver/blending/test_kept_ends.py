@@ -1,9 +1,13 @@
 """Ends of blends moved onto a curve: contact stays G1 there, and nothing changes further on."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from semispline import BSplineSurface, EdgeError
+from semispline import Base, BSplineCurve, BSplineSurface, EdgeError, chain, extrude
+from semispline.solver.blending.chain_runs import run_back
+from semispline.solver.blending.end_faces import EndFace
 from semispline.solver.blending.kept_ends import end_on_curve
 from semispline.solver.splines import surface_jet
 
@@ -74,3 +78,22 @@ def test_a_curve_that_the_rows_cannot_follow_is_refused():
     wild = ARC + 0.05 * np.sin(40 * TURN)[:, None] * np.sin(2 * TURN)[:, None] ** 2
     with pytest.raises(EdgeError, match=r"it stays .* off the old end edge, expected at most 1e-09"):
         end_on_curve(quintic(), 0, wild, TANGENTS, 0.25, 1e-9)
+
+
+def test_a_chain_that_is_run_back_keeps_each_face_at_its_end():
+    """Bent at one end alone: onto a plane askew to the walls; the other end is square."""
+    corners = [[0.0, 0, 0], [4, 0, 0], [8, 0, 0]]
+    lines = [BSplineCurve(1, [0, 0, 1, 1], pair) for pair in (corners[:2], corners[1:])]
+    walls = chain([Base(extrude(line, [0, 0, -2.0]), "u0") for line in lines])
+    askew = EndFace.plane(np.array([1.0, 0.0, 0.4]))
+    bent = replace(walls, ends_on=(askew, None))
+    for one, x in ((bent, 0.0), (run_back(bent), 8.0)):
+        surface = one.strip(2).shown
+        across = surface.evaluate_grid([0.0, 1e-3], list(surface.domain[1]))
+        leaves = np.diff(across, axis=0)[0]
+        leaves /= np.linalg.norm(leaves, axis=1)[:, None]
+        # The first end of the chain is at x = 0, whichever way it is run through.
+        at = int(np.abs(across[0, :, 0] - 0.0).argmin())
+        assert across[0, 0, 0] == pytest.approx(x, abs=1e-12)
+        assert abs(leaves[at] @ askew.normal) <= 1e-9
+        assert abs(leaves[1 - at] @ [1.0, 0, 0]) <= 1e-9
