@@ -90,7 +90,9 @@ def end_on_face(
     """
     best: EndOnFace | None = None
     for raised in range(_MOST_RAISED + 1):
-        found = _moved_end(_elevated(surface, raised), end, face, orders, raised)
+        # A fade needs a degree of its own along.
+        higher = elevated(surface, raised, max(0, _FADE - surface.degree_v))
+        found = _moved_end(higher, end, face, orders, raised)
         if best is None or found.distance < best.distance:
             best = found
         if best.distance <= within:
@@ -102,11 +104,11 @@ def end_on_face(
     )
 
 
-def _elevated(surface: BSplineSurface, raised: int) -> BSplineSurface:
-    """Return the same surface with its degree across raised, and that along at least the one that a fade needs."""
+def elevated(surface: BSplineSurface, across: int, along: int = 0) -> BSplineSurface:
+    """Return the same surface with its degrees across and along raised by so much."""
     net, knots = surface.homogeneous, [surface.knots_u, surface.knots_v]
     degrees = [surface.degree_u, surface.degree_v]
-    for axis, by in ((0, raised), (1, max(0, _FADE - surface.degree_v))):
+    for axis, by in ((0, across), (1, along)):
         if by:
             matrix = elevation_matrix(degrees[axis], knots[axis], degrees[axis] + by)
             net = np.moveaxis(combined(matrix, np.moveaxis(net, axis, 0)), 0, axis)

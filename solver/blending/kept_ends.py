@@ -16,6 +16,7 @@ from itertools import pairwise
 import numpy as np
 
 from semispline.solver.arrays import FloatArray
+from semispline.solver.blending.end_curves import elevated
 from semispline.solver.blending.reparametrisation import bernstein, bezier_points, chebyshev_places
 from semispline.solver.blending.spans import bezier_pieces, joined_spans
 from semispline.solver.errors import EdgeError
@@ -23,9 +24,6 @@ from semispline.solver.splines import (
     Basis,
     BSplineSurface,
     basis_matrix,
-    combined,
-    elevated_knots,
-    elevation_matrix,
     euclidean,
     homogeneous_points,
 )
@@ -87,7 +85,7 @@ def end_on_curve(
     """
     best: EndOnCurve | None = None
     for raised in range(_MOST_RAISED + 1):
-        found = _moved(_elevated(surface, raised), end, points, tangents, share)
+        found = _moved(elevated(surface, raised), end, points, tangents, share)
         if best is None or found.distance < best.distance:
             best = found
         if best.distance <= within:
@@ -97,14 +95,6 @@ def end_on_curve(
         f"end curve: it stays {best.distance:.2g} off the old end edge, expected at most {within:.2g}; the edge cannot "
         "be kept"
     )
-
-
-def _elevated(surface: BSplineSurface, raised: int) -> BSplineSurface:
-    if not raised:
-        return surface
-    degree, knots = surface.degree_u + raised, elevated_knots(surface.knots_u, raised)
-    net = combined(elevation_matrix(surface.degree_u, surface.knots_u, degree), surface.homogeneous)
-    return BSplineSurface(degree, surface.degree_v, knots, surface.knots_v, *euclidean(net))
 
 
 def _weighted(surface: BSplineSurface) -> FloatArray:
