@@ -9,6 +9,7 @@ import sys
 import threading
 import time
 from functools import partial
+from pathlib import Path
 
 import pytest
 
@@ -35,6 +36,29 @@ def test_a_result_comes_back_whole_and_prints_are_dropped(capfd):
 def test_an_error_of_ours_comes_back():
     with pytest.raises(FileError, match=r"^bad file$"):
         ask("refuse")
+
+
+LARGE_PARENT = """
+import sys
+sys.path.insert(0, {tests!r})
+from semispline import SemisplineError
+from semispline.solver.workers import call
+held = bytearray(400 * 2**20)
+for at in range(0, len(held), 4096):
+    held[at] = 1
+del held
+try:
+    call("helpers.turning", ["refuse"], 60, 300)
+except SemisplineError as error:
+    print(type(error).__name__, error)
+"""
+
+
+@linux
+def test_memory_that_the_parent_had_is_not_the_workers():
+    code = LARGE_PARENT.format(tests=str(Path(__file__).parents[1]))
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert (done.stdout, done.stderr) == ("FileError bad file\n", "")
 
 
 @linux
