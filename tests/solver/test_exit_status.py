@@ -4,6 +4,7 @@ import os
 import signal
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 import typer
@@ -91,7 +92,14 @@ def test_a_command_of_the_derivations_ends_the_same_way(monkeypatch):
 
 @pytest.mark.skipif(sys.platform != "linux", reason="asks Linux for the reader")
 def test_ctrl_c_ends_a_reading_command_with_130():
-    code = f"from semispline.solver.io import foreign\nforeign.limits = lambda path: (600, 4096)\n{ENTRY}"
+    code = f"""
+import sys
+sys.path.insert(0, {str(Path(__file__).parents[1])!r})
+from semispline.solver.io import foreign
+read = foreign.call
+foreign.call = lambda *_: read("helpers.turning", ["turn"], 600, 4096)
+{ENTRY}
+"""
     command = subprocess.Popen(
         [sys.executable, "-c", code, "list", str(CASES / "loop28.brep")], stderr=subprocess.PIPE, text=True
     )
