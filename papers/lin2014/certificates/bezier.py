@@ -7,7 +7,14 @@ from itertools import pairwise
 from typing import Any
 
 from semispline.derivations.bezier import blossom, de_casteljau, division_curve
-from semispline.papers.ledger import Claim, Formula, Meaning, bernstein, given, interpret
+from semispline.papers.checks import bernstein
+from semispline.papers.ledger import (
+    Claim,
+    Formula,
+    Meaning,
+    given,
+    interpret,
+)
 from semispline.papers.lin2014 import printed as pr
 from semispline.papers.lin2014.certificates.counts import DEGREE, row_count_cases
 from semispline.papers.recheck import Draft, Statement, Text, different, identity, positive, text, total

@@ -9,7 +9,8 @@ from typing import Any
 import sympy as sp
 
 from semispline.derivations.splines import end_derivatives
-from semispline.papers.ledger import Claim, Formula, clamped, given
+from semispline.papers.checks import clamped
+from semispline.papers.ledger import Claim, Formula, given
 from semispline.papers.lin2014.certificates.energy import NO_ENERGY, fewer_rows, one_minimum
 from semispline.papers.lin2014.certificates.surfaces import INDUCTION, SPACES, spaces
 from semispline.papers.lin2014.checks import energy

@@ -8,7 +8,8 @@ from typing import Any
 import sympy as sp
 
 from semispline.derivations.splines import end_derivatives, span_symbols
-from semispline.papers.ledger import Claim, bernstein, given, union
+from semispline.papers.checks import bernstein, union
+from semispline.papers.ledger import Claim, given
 from semispline.papers.lin2014.certificates.contact import INDUCTION, induction
 from semispline.papers.lin2014.certificates.surfaces import SPACES, spaces
 from semispline.papers.lin2014.checks.hartmann import ROUNDING

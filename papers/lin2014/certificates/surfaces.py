@@ -7,11 +7,19 @@ from fractions import Fraction
 from itertools import pairwise
 from typing import Any
 
-from semispline.papers.ledger import Claim, Formula, Meaning, Sample, clamped, given, interpret, samples, union
+from semispline.papers.checks import clamped, union
+from semispline.papers.ledger import (
+    Claim,
+    Formula,
+    Meaning,
+    given,
+    interpret,
+)
 from semispline.papers.lin2014 import printed as pr
 from semispline.papers.lin2014 import printed_figures as figures
 from semispline.papers.lin2014.checks.printed_numbers import CONTACTS
 from semispline.papers.lin2014.checks.printed_pairs import PRINTED_PAIRS, printed_pair
+from semispline.papers.lin2014.checks.samples import Sample, samples
 from semispline.papers.lin2014.printed import CUBIC
 from semispline.papers.recheck import (
     Draft,

@@ -13,24 +13,26 @@ import sympy as sp
 from semispline.derivations.contact import A, contact_rows
 from semispline.derivations.counts import domain_ends, functions_on, last_knot
 from semispline.derivations.splines import X, basis_pieces, end_derivative_step, end_derivatives, span_symbols
+from semispline.papers.checks import (
+    Counting,
+    clamped,
+    contained,
+    de_boor,
+    insertion_cases,
+    net_ring,
+    sharp_continuity_cases,
+    union,
+)
 from semispline.papers.ledger import (
     Case,
     Check,
-    Counting,
     Formula,
     Meaning,
     Strength,
     UndefinedError,
-    clamped,
-    contained,
-    de_boor,
     difference_case,
     given,
-    insertion_cases,
-    net_ring,
     premises,
-    sharp_continuity_cases,
-    union,
 )
 from semispline.papers.lin2014 import printed as pr
 from semispline.papers.lin2014.checks.contact_rows import ORDERS

@@ -13,29 +13,30 @@ from typing import Any
 
 import sympy as sp
 
-from semispline.papers.ledger import (
+from semispline.papers.checks import (
     SAME,
     WITHIN,
+    clamped,
+    coefficient,
+    de_boor,
+    net_ring,
+    rational_points,
+    spline_basis,
+    triangle_cases,
+)
+from semispline.papers.ledger import (
     Case,
     Check,
     Formula,
     Meaning,
-    Sample,
     Strength,
     UndefinedError,
-    clamped,
-    coefficient,
-    de_boor,
     difference_case,
     given,
     indexed,
-    net_ring,
-    rational_points,
-    samples,
-    spline_basis,
-    triangle_cases,
 )
 from semispline.papers.lin2014 import printed as pr
+from semispline.papers.lin2014.checks.samples import Sample, samples
 from semispline.papers.lin2014.printed import CUBIC
 
 THIRD = Fraction(1, 3)

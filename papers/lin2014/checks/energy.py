@@ -18,7 +18,16 @@ from sympy.polys.matrices import DomainMatrix
 from semispline.derivations.energy import Basis, ExactSurface, energy_matrix, gram_matrix
 from semispline.derivations.problem import ExactBase, blend_problem, exact_minimum
 from semispline.derivations.splines import X, end_derivatives
-from semispline.papers.ledger import Case, Formula, Meaning, as_expression, as_fraction, clamped, difference_case, given
+from semispline.papers.checks import clamped
+from semispline.papers.ledger import (
+    Case,
+    Formula,
+    Meaning,
+    as_expression,
+    as_fraction,
+    difference_case,
+    given,
+)
 from semispline.papers.lin2014 import printed as pr
 from semispline.papers.lin2014.printed import CUBIC
 

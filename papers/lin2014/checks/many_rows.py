@@ -22,7 +22,15 @@ from typing import Any
 import sympy as sp
 
 from semispline.derivations.splines import X, basis_pieces, end_derivatives
-from semispline.papers.ledger import Case, Check, Consequence, Formula, Strength, clamped, contained, given
+from semispline.papers.checks import clamped, contained
+from semispline.papers.ledger import (
+    Case,
+    Check,
+    Consequence,
+    Formula,
+    Strength,
+    given,
+)
 from semispline.papers.lin2014.checks import energy
 from semispline.papers.lin2014.checks.converted_blends import pair_means
 from semispline.papers.lin2014.checks.measured_energy import least_energy

@@ -16,16 +16,15 @@ from semispline.derivations.contact import A, contact_rows
 from semispline.derivations.energy import SECOND_DERIVATIVES, stationarity_condition, thin_plate_density
 from semispline.derivations.shape import total_degrees
 from semispline.derivations.splines import end_derivative_step, end_derivatives, span_symbols
+from semispline.papers.checks import coefficient, identity_cases
 from semispline.papers.ledger import (
     Case,
     Check,
     Formula,
     Meaning,
     Strength,
-    coefficient,
     difference_case,
     given,
-    identity_cases,
     premises,
 )
 from semispline.papers.lin2014 import printed as pr

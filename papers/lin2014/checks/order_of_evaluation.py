@@ -6,7 +6,9 @@ from collections.abc import Iterator, Sequence
 from fractions import Fraction
 from typing import Any
 
-from semispline.papers.ledger import Case, Sample, clamped, de_boor, net_ring, union
+from semispline.papers.checks import clamped, de_boor, net_ring, union
+from semispline.papers.ledger import Case
+from semispline.papers.lin2014.checks.samples import Sample
 
 _AT = (Fraction(2, 7), Fraction(3, 7))
 

@@ -12,7 +12,15 @@ from typing import Any
 
 import sympy as sp
 
-from semispline.papers.ledger import Case, Consequence, Counterexample, Formula, as_fraction, clamped, contained, given
+from semispline.papers.checks import clamped, contained
+from semispline.papers.ledger import (
+    Case,
+    Consequence,
+    Counterexample,
+    Formula,
+    as_fraction,
+    given,
+)
 from semispline.papers.lin2014 import printed as pr
 from semispline.papers.lin2014 import printed_figures as printed
 from semispline.papers.lin2014.checks.printed_pairs import WITH_MIDDLE_CURVE, inner_knots, merged

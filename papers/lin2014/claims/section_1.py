@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from semispline.papers.checks import count_check
 from semispline.papers.ledger import (
     Case,
     Check,
@@ -14,7 +15,6 @@ from semispline.papers.ledger import (
     Strength,
     ambiguous,
     consistent,
-    count_check,
     definition,
     holds,
     holds_if,

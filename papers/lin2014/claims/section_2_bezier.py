@@ -7,6 +7,7 @@ from typing import Any
 
 from sympy import Eq, Ge, Sum, Symbol
 
+from semispline.papers.checks import casteljau_cases, elevation_cases
 from semispline.papers.ledger import (
     Case,
     Check,
@@ -18,8 +19,6 @@ from semispline.papers.ledger import (
     Reading,
     Strength,
     ambiguous,
-    casteljau_cases,
-    elevation_cases,
     fails,
     given,
     holds,

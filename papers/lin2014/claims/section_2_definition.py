@@ -7,6 +7,7 @@ from fractions import Fraction
 
 import sympy as sp
 
+from semispline.papers.checks import clamped, count_check, identity_cases, proof_check
 from semispline.papers.ledger import (
     Case,
     Check,
@@ -17,18 +18,13 @@ from semispline.papers.ledger import (
     Numbers,
     Part,
     Reading,
-    Sample,
     Strength,
     Verdict,
-    clamped,
     consistent,
-    count_check,
     data_formula,
     given,
-    identity_cases,
     number_changes,
     premises,
-    proof_check,
     proved,
     question,
 )
@@ -38,6 +34,7 @@ from semispline.papers.lin2014.checks.counts import knot_count_instances
 from semispline.papers.lin2014.checks.definitions import CURVE_CHECK, SURFACE_CHECK, curve_instances
 from semispline.papers.lin2014.checks.measured_section_2 import one_function_for_all
 from semispline.papers.lin2014.checks.printed_numbers import CONTACTS
+from semispline.papers.lin2014.checks.samples import Sample
 from semispline.papers.lin2014.printed_figures import MIDDLE_CURVES
 
 _WHERE = "Section 2, definition"

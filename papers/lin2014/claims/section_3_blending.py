@@ -7,6 +7,7 @@ from collections.abc import Iterator
 import sympy as sp
 from sympy import Eq
 
+from semispline.papers.checks import count_check
 from semispline.papers.ledger import (
     Case,
     Check,
@@ -18,7 +19,6 @@ from semispline.papers.ledger import (
     Reading,
     Strength,
     ambiguous,
-    count_check,
     definition,
     holds,
     holds_if,

@@ -5,7 +5,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from semispline.papers.ledger.exact import clamped, de_boor
+from semispline.papers.checks.spline_values import clamped, de_boor
 from semispline.papers.lin2014.checks import closed_seam
 from semispline.papers.lin2014.checks.facing_bases import BEST_ALPHA, PLATES, _best_of, facing_shares
 from semispline.papers.lin2014.claims.section_4 import CLAIMS

@@ -8,7 +8,7 @@ from fractions import Fraction
 
 import pytest
 
-from semispline.papers.ledger.exact import clamped, de_boor
+from semispline.papers.checks.spline_values import clamped, de_boor
 from semispline.papers.ledger.loading import load_paper
 
 

@@ -10,7 +10,8 @@ import pytest
 import sympy as sp
 
 import semispline.papers.lin2014
-from semispline.papers.ledger.exact import Meaning, UndefinedError, clamped, de_boor, interpret
+from semispline.papers.checks.spline_values import clamped, de_boor
+from semispline.papers.ledger.exact import Meaning, UndefinedError, interpret
 from semispline.papers.ledger.loading import load_paper
 from semispline.papers.ledger.search import smallest_assignment
 from semispline.papers.lin2014 import printed as pr

@@ -6,10 +6,10 @@ import pytest
 import sympy as sp
 
 from semispline.derivations import counts as derivations_counts
-from semispline.papers.ledger import exact, spline_facts, spline_samples, spline_spaces
-from semispline.papers.ledger.counts import count_check
-from semispline.papers.ledger.exact import spline_basis
-from semispline.papers.ledger.spline_samples import Sample
+from semispline.papers.checks import spline_facts, spline_spaces
+from semispline.papers.checks.counts import count_check
+from semispline.papers.checks.spline_values import spline_basis
+from semispline.papers.ledger import exact
 from semispline.papers.ledger.verification import decide
 from semispline.papers.lin2014 import printed as pr
 from semispline.papers.lin2014.checks import (
@@ -28,6 +28,8 @@ from semispline.papers.lin2014.checks import (
     representation,
     rows_along_normal,
 )
+from semispline.papers.lin2014.checks import samples as spline_samples
+from semispline.papers.lin2014.checks.samples import Sample
 from semispline.papers.lin2014.claims import section_2_definition as claims_2_definition
 from semispline.papers.lin2014.claims import section_3_blending as claims_3_blending
 from semispline.papers.lin2014.claims import section_3_conditions as claims_3_conditions

@@ -3,10 +3,10 @@
 import pytest
 import sympy as sp
 
-from semispline.papers.ledger import spline_spaces
-from semispline.papers.ledger.counts import count_check
+from semispline.papers.checks import spline_spaces
+from semispline.papers.checks.counts import count_check
+from semispline.papers.checks.spline_spaces import contact_at_knot
 from semispline.papers.ledger.records import Formula, Strength
-from semispline.papers.ledger.spline_spaces import contact_at_knot
 from semispline.papers.ledger.verification import decide
 from semispline.papers.lin2014 import printed as pr
 from semispline.papers.lin2014.checks import construction, counts, definitions, objective, representation

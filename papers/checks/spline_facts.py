@@ -9,7 +9,7 @@ from typing import Any
 import sympy as sp
 
 from semispline.derivations.properties import proofs
-from semispline.papers.ledger.records import Case, Check, Formula, Strength
+from semispline.papers.ledger import Case, Check, Formula, Strength
 
 
 def proof_check(*names: str, instances: Callable[[], Iterator[Case]]) -> Check:

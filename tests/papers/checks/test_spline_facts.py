@@ -6,9 +6,9 @@ from types import SimpleNamespace
 import pytest
 import sympy as sp
 
-from semispline.papers.ledger import spline_facts
-from semispline.papers.ledger.exact import clamped, de_boor
-from semispline.papers.ledger.spline_spaces import contact_at_knot, contained, union
+from semispline.papers.checks import spline_facts
+from semispline.papers.checks.spline_spaces import contact_at_knot, contained, union
+from semispline.papers.checks.spline_values import clamped, de_boor
 
 HALF, THIRD = Fraction(1, 2), Fraction(1, 3)
 

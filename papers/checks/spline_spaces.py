@@ -11,7 +11,7 @@ from sympy.polys.domains import QQ
 from sympy.polys.matrices import DomainMatrix
 
 from semispline.derivations.properties import contact_orders
-from semispline.papers.ledger.exact import clamped, spline_basis
+from semispline.papers.checks.spline_values import clamped, spline_basis
 
 
 @cache

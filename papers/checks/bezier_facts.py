@@ -7,7 +7,7 @@ from typing import Any
 
 import sympy as sp
 
-from semispline.papers.ledger.records import Case
+from semispline.papers.ledger import Case
 
 # A parameter and one minus it; apart, since products of their powers are compared.
 _X, _X_REST = sp.symbols("x x'", positive=True)

@@ -2,7 +2,7 @@
 
 import sympy as sp
 
-from semispline.papers.ledger.bezier_facts import bernstein_polynomial, casteljau_cases, elevation_cases, is_one
+from semispline.papers.checks.bezier_facts import bernstein_polynomial, casteljau_cases, elevation_cases, is_one
 
 
 def truths(cases):

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
-from semispline.papers.ledger.exact import clamped, de_boor, spline_basis
+from semispline.papers.checks import clamped, de_boor, spline_basis
 
 _THIRD = Fraction(1, 3)
 

@@ -8,8 +8,7 @@ from typing import Any
 
 import sympy as sp
 
-from semispline.papers.ledger.exact import Meaning, difference_case, given
-from semispline.papers.ledger.records import Case, Check, Formula, Strength
+from semispline.papers.ledger import Case, Check, Formula, Meaning, Strength, difference_case, given
 
 
 @dataclass(frozen=True)

@@ -3,7 +3,7 @@
 import pytest
 import sympy as sp
 
-from semispline.papers.ledger.symbolic_sums import SAME, WITHIN, coefficient
+from semispline.papers.checks.symbolic_sums import SAME, WITHIN, coefficient
 
 
 def test_what_multiplies_a_control_point():
