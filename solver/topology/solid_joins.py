@@ -69,12 +69,13 @@ def joined_solid(specs: tuple[str, str], suffix: str, options: BlendOptions, spl
     is_same = Path(path).resolve() == Path(other).resolve()
     if is_same and face == beyond:
         raise EdgeError(f"--to: found {specs[1]!r} as at --from, expected another face")
-    graphs = {name: measured_edges(name).graph for name in dict.fromkeys((path, path if is_same else other))}
+    paths = path, path if is_same else other
+    measured = {name: measured_edges(name) for name in dict.fromkeys(paths)}
     words = [
-        outline_of(graphs[path if is_same else name], number, said)
-        for name, number, said in zip((path, other), (face, beyond), NAMES, strict=True)
+        outline_of(measured[name].graph, number, said)
+        for name, number, said in zip(paths, (face, beyond), NAMES, strict=True)
     ]
-    ends = resolve_edges([(path, words[0]), (other, words[1])], NAMES)
+    ends = resolve_edges(list(zip(paths, words, strict=True)), NAMES, measured)
     result = _blended(ends, options)
     surfaces = tuple(as_spline(one) for one in faces_of_blend(result, split))
     order = Joining(face, None if is_same else other, beyond, surfaces)

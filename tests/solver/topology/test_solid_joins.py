@@ -10,7 +10,7 @@ from OCP.gp import gp_Ax1, gp_Dir, gp_Pnt, gp_Trsf, gp_Vec
 from OCP.TopLoc import TopLoc_Location
 from typer.testing import CliRunner
 
-from helpers.bars import bar, drafted, end_at, oval, oval_wire, tube
+from helpers.bars import bar, drafted, ellipse_wire, end_at, oval, oval_wire, round_wire, tube
 from helpers.parts import compound, graph_of, moved, written
 from helpers.solids import box, circles_at, cut, cylinder, fused, rounded, volume
 from helpers.sweeps import first_ones, first_rows
@@ -101,6 +101,29 @@ def test_other_profiles(make, at, pieces, tmp_path):
     assert len(found.faces) == pieces
     assert_one_valid_solid(root, len(parts(a, "FACE")) + len(parts(b, "FACE")) - 2 + pieces)
     assert found.gate.largest_tolerance <= 1.1e-7
+
+
+@pytest.mark.parametrize(("arcs", "continuity"), first_rows(1, [((4, 6), "G2"), ((8, 8), "G3"), ((4, 4), "G2")]))
+def test_an_ellipse_joined_to_a_circle(arcs, continuity, tmp_path):
+    """Vertices that face each other do so: the seam of the blend ends in them, and cuts off no sliver."""
+    a, b = bar(ellipse_wire(12, 7, 10, arcs[0]), -10), bar(round_wire(6, 30, arcs[1], 0.0), 10)
+    found = join_faces(*two(a, b, tmp_path, (10, 30)), tmp_path / "out.step", continuity=continuity)
+    root = open_parts(tmp_path / "out.step").root
+    pieces = len(found.faces)
+    assert_one_valid_solid(root, sum(arcs) + 2 + pieces)
+    assert found.gate.largest_tolerance == found.read_back.largest_tolerance == 1e-7
+    assert len(found.gate.border) == sum(arcs) + pieces
+    assert max(edge.gap for edge in found.gate.border) < 1e-11
+    assert all(normals_beside(root, n) < 2e-5 for n in found.faces)
+
+
+@pytest.mark.parametrize("turn", first_ones(1, [0.003, -0.003]))
+def test_a_seam_beside_a_vertex_cuts_off_a_short_edge(turn, tmp_path):
+    a, b = bar(ellipse_wire(12, 7, 10, 4), -10), bar(round_wire(6, 30, 6, turn), 10)
+    found = join_faces(*two(a, b, tmp_path, (10, 30)), tmp_path / "out.step")
+    assert_one_valid_solid(open_parts(tmp_path / "out.step").root, 13)
+    assert found.gate.largest_tolerance == 1e-7
+    assert min(edge.length for edge in found.gate.border) == pytest.approx(6 * abs(turn), rel=0.02)
 
 
 def test_rounds_are_joined_to_the_known_volume(tmp_path):
