@@ -4,6 +4,9 @@ from .bezier_facts import elevation_cases as elevation_cases
 from .bezier_facts import is_one as is_one
 from .counts import Counting as Counting
 from .counts import count_check as count_check
+from .identities import identity as identity
+from .printed_digits import Digits as Digits
+from .printed_digits import digits as digits
 from .spline_facts import identity_cases as identity_cases
 from .spline_facts import insertion_cases as insertion_cases
 from .spline_facts import locality_induction_cases as locality_induction_cases

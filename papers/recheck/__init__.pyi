@@ -15,8 +15,10 @@ from .exporting import contained as contained
 from .exporting import different as different
 from .exporting import identity as identity
 from .exporting import knots as knots
+from .exporting import matrices as matrices
 from .exporting import minimum as minimum
 from .exporting import not_zero as not_zero
+from .exporting import number as number
 from .exporting import positive as positive
 from .exporting import rank as rank
 from .files import require_folder as require_folder
@@ -29,6 +31,7 @@ from .statements import Export as Export
 from .statements import Identity as Identity
 from .statements import Statement as Statement
 from .statements import Term as Term
+from .texts import NotExpressibleError as NotExpressibleError
 from .texts import Text as Text
 from .texts import as_text as as_text
 from .texts import lets as lets

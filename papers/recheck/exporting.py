@@ -14,8 +14,18 @@ from sympy.polys.domains import QQ
 from sympy.polys.matrices import DomainMatrix
 
 from semispline.papers.recheck.arithmetic import divisors, instance, names, satisfied, value
-from semispline.papers.recheck.statements import Contained, Identity, Knots, Minimum, Positive, Rank, Term
-from semispline.papers.recheck.texts import NotExpressibleError, lets, text
+from semispline.papers.recheck.statements import (
+    Contained,
+    Identity,
+    Knots,
+    Matrices,
+    Minimum,
+    Number,
+    Positive,
+    Rank,
+    Term,
+)
+from semispline.papers.recheck.texts import NotExpressibleError, lets, number_text, text
 
 Where = Mapping[Any, Any] | Sequence[tuple[str, str]]
 
@@ -28,6 +38,8 @@ def identity(
     equal: bool = True,
     where: Where = (),
     conditions: Sequence[str] = (),
+    roots: Sequence[tuple[Any, Any, int]] = (),
+    meaning: Mapping[Any, Any] | None = None,
     **flags: Any,
 ) -> Identity:
     """Return the statement that both sides are the same, or are not.
@@ -40,6 +52,10 @@ def identity(
         What letters stand for; later ones may use earlier ones.
     conditions : sequence of str
         What an instance has to satisfy, such as "u_1 > 0".
+    roots : sequence of (letter, expression, int)
+        Letters of which a power is known, and which power; for sides that are equal.
+    meaning : mapping, optional
+        Letter -> what it stands for, for a reader.
     flags
         own, meets, wanted.
 
@@ -50,7 +66,8 @@ def identity(
     """
     pairs = _needed(_pairs(where), [text(left), text(right), *_condition_sides(conditions)])
     sides = text(left), text(right)
-    variables, nonzero = _read(pairs, (*sides, *_condition_sides(conditions)))
+    known = tuple((text(letter), text(radicand), degree) for letter, radicand, degree in roots)
+    variables, nonzero = _read(pairs, (*sides, *_condition_sides(conditions), *(r for _, r, _ in known)))
     conditions = tuple(conditions)
 
     def fits(at: Mapping[str, Fraction]) -> bool:
@@ -66,6 +83,8 @@ def identity(
         where=pairs,
         nonzero=nonzero,
         conditions=conditions,
+        roots=known,
+        meaning=tuple((text(letter), str(what)) for letter, what in (meaning or {}).items()),
         at=at,
         **flags,
     )
@@ -218,6 +237,65 @@ def minimum(label: str, matrix: Any, **flags: Any) -> Minimum:
             work[r] = [a - factor * b for a, b in zip(work[r], work[n], strict=True)]
     as_texts = [tuple(tuple(map(text, row)) for row in x) for x in (rows, lower)]
     return Minimum(label=label, matrix=as_texts[0], lower=as_texts[1], pivots=tuple(map(text, pivots)), **flags)
+
+
+def matrices(
+    label: str, left: str, right: str, named: Mapping[str, Any], *, equal: bool = True, **flags: Any
+) -> Matrices:
+    """Return the statement that two expressions of matrices are the same, or are not.
+
+    Parameters
+    ----------
+    left, right : str
+        Texts of names, such as "m1^-1*m2*m1".
+    named : mapping
+        Name -> explicit matrix.
+    equal : bool
+    """
+    entries = {
+        name: tuple(tuple(map(text, matrix.row(i))) for i in range(matrix.rows)) for name, matrix in named.items()
+    }
+    texts = [entry for rows in entries.values() for row in rows for entry in row]
+    variables, nonzero = _read((), texts)
+    inverted = {d for side in (left, right) for d in divisors(side) if d in named}
+    sides = [value(side, named, sp.Integer) for side in (left, right)]
+    apart = sides[0] - sides[1]
+
+    def fits(at: Mapping[str, Fraction]) -> bool:
+        exact = {sp.Symbol(name): sp.Rational(number.numerator, number.denominator) for name, number in at.items()}
+        there = {name: named[name].xreplace(_by_text(named[name], exact)) for name in inverted}
+        if any(matrix.det() == 0 for matrix in there.values()):
+            return False
+        return equal or not apart.xreplace(_by_text(apart, exact)).is_zero_matrix
+
+    at = _instance(label, variables, (), nonzero, fits)
+    return Matrices(
+        label=label,
+        matrices=tuple(entries.items()),
+        left=left,
+        right=right,
+        equal=equal,
+        variables=variables,
+        nonzero=nonzero,
+        at=at,
+        **flags,
+    )
+
+
+def _by_text(matrix: Any, values: Mapping[Any, Any]) -> dict[Any, Any]:
+    """Return what letters of a matrix are, by the text that stands for them."""
+    return {letter: values[sp.Symbol(text(letter))] for letter in matrix.free_symbols}
+
+
+def number(label: str, expression: Any, low: Any, high: Any, *, inside: bool = True, **flags: Any) -> Number:
+    """Return the statement that a number is between two fractions, or outside of them.
+
+    Raises
+    ------
+    NotExpressibleError
+        The number has letters, or functions that are not known.
+    """
+    return Number(label=label, left=number_text(expression), low=text(low), high=text(high), inside=inside, **flags)
 
 
 def knots(label: str, numbers: Iterable[Any], fact: str, *, holds: bool = True, **more: Any) -> Knots:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib
 import importlib.util
 import json
 import subprocess
@@ -13,8 +12,8 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
-from semispline.papers.ledger import CheckFailedError, Paper, paper_names
-from semispline.papers.recheck.draft import is_decided
+from semispline.papers.ledger import CheckFailedError, MistakeError, Paper, paper_module, placed
+from semispline.papers.recheck.draft import export_of
 from semispline.papers.recheck.files import write_certificates
 from semispline.papers.recheck.statements import Export, Identity
 from semispline.solver.errors import OptionError
@@ -128,14 +127,23 @@ class Recheck:
 
 
 def exported(paper: Paper) -> Export:
-    """Return the export of a paper; of one without certificates of its own, that it has none."""
-    if paper.name in paper_names() and importlib.util.find_spec(f"semispline.papers.{paper.name}.certificates"):
-        module = importlib.import_module(f"semispline.papers.{paper.name}.certificates.export")
+    """Return the export of a paper: what its checks export, and certificates of its own where it has any.
+
+    These come from the function `export` of its module `certificates`, or `certificates.export`.
+
+    Raises
+    ------
+    LedgerError
+        They do not fit the records.
+    """
+    module = paper_module(paper.name, "certificates.export") or paper_module(paper.name, "certificates")
+    if module is None:
+        return export_of(paper, {}, {})
+    with placed(paper.folder):
         found = module.export(paper)
-        assert isinstance(found, Export)
-        return found
-    reason = "no certificates were written for this paper"
-    return Export(paper.name, (), (), {claim.id: reason for claim in paper.claims if is_decided(claim)})
+    if not isinstance(found, Export):
+        raise MistakeError(f"{module.__file__}: export returned a {type(found).__name__}, expected an Export")
+    return found
 
 
 def require_system(system: str) -> None:

@@ -139,7 +139,7 @@ def _erratum(ledger: Ledger) -> Iterator[str]:
 
 
 def _failure_lines(claim: Claim, decision: Decision) -> Iterator[tuple[str, str]]:
-    """Yield five lines: what is printed, what is wrong, where it shows first, what is true, what it does."""
+    """Yield what is printed, what is wrong, where it shows first, what is true, and what it does if measured."""
     yield "Printed:", f"{claim.statement} {_formulas(claim.formulas)}".rstrip()
     minus = (
         "printed minus true" if all(isinstance(f.relation, Equality) for f in claim.formulas) else "left minus right"
@@ -149,7 +149,8 @@ def _failure_lines(claim: Claim, decision: Decision) -> Iterator[tuple[str, str]
     yield "Wrong:", f"{wrong}. {claim.remark}".rstrip()
     yield "Smallest counterexample:", decision.counterexample + "."
     yield "Correct:", _correction(claim, decision)
-    yield "On a surface:", consequence_text(decision.consequence)
+    if decision.consequence:
+        yield "What it does:", consequence_text(decision.consequence)
 
 
 def _correction(claim: Claim, decision: Decision) -> str:
@@ -196,7 +197,7 @@ def _conditional_lines(claim: Claim, decision: Decision) -> Iterable[str]:
     if decision.counterexample:
         yield f"Smallest counterexample otherwise: {decision.counterexample}."
     if decision.consequence:
-        yield f"On a surface: {consequence_text(decision.consequence)}"
+        yield f"What it does: {consequence_text(decision.consequence)}"
     if claim.correction:
         yield f"In general: {claim.correction.statement} {_formulas(claim.corrected_formulas)}".rstrip()
 
@@ -212,7 +213,7 @@ def _ambiguous_lines(claim: Claim, decision: Decision) -> Iterable[str]:
     if claim.correction:
         yield f"Correct: {_correction(claim, decision)}"
     if decision.consequence:
-        yield f"On a surface: {consequence_text(decision.consequence)}"
+        yield f"What it does: {consequence_text(decision.consequence)}"
 
 
 def _proof_lines(_claim: Claim, decision: Decision) -> Iterable[str]:

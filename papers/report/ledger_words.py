@@ -6,11 +6,6 @@ from typing import Any
 
 from semispline.papers.ledger import Claim, Consequence, Decision, Ledger, ReadingDecision, Strength, Verdict
 
-# Below this a measured miss is rounding: the referee's own limits are 1e-9 degrees and 1e-9 of the curvature.
-NOISE = 1e-9
-# How a measurement is named that was repeated with the correction.
-_CORRECTED = " with the corrected formula"
-
 
 def evidence_text(decision: Decision) -> str:
     """Return in words what the verdict stands on."""
@@ -41,12 +36,15 @@ def consequence_text(consequence: Consequence | None) -> str:
     """Return a measured consequence in one sentence."""
     if consequence is None:
         return ""
-    measured = {name: value for name, value in consequence.measured.items() if not name.endswith(_CORRECTED)}
-    corrected = {name: value for name, value in consequence.measured.items() if name.endswith(_CORRECTED)}
-    # A whole number is a count, and 0 of something is no rounding.
-    zero = [name for name, value in measured.items() if abs(value) < NOISE and not isinstance(value, int)]
+
+    def is_rounding(value: float) -> bool:
+        # A whole number is a count, and 0 of something is no rounding.
+        return abs(value) < consequence.rounding and not isinstance(value, int)
+
+    measured, corrected = consequence.measured, consequence.corrected
+    zero = [name for name, value in measured.items() if is_rounding(value)]
     seen = [f"{name} {value:.3g}" for name, value in measured.items() if name not in zero]
-    left = [f"{name} {value:.3g}" for name, value in corrected.items() if abs(value) >= NOISE]
+    left = [f"{name} with the corrected formula {x:.3g}" for name, x in corrected.items() if not is_rounding(x)]
     parts = [", ".join(seen + left)] if seen or left else []
     if zero:
         parts.append(f"nothing but rounding in {_listed([name.partition(' [')[0] for name in zero])}")

@@ -150,6 +150,47 @@ def test_an_output_that_cannot_be_written_is_found_before_the_work(made_up_paper
     assert "printed claims" not in result.output
 
 
+def test_drafts_are_shown_with_what_they_lack_and_the_others_are_decided(made_up_paper):
+    claims = made_up_paper() / "claims.py"
+    text = claims.read_text()
+    claims.write_text(text.replace('Correction("n(n+1)/2", (Part(CHECK, pr.RIGHT),)),', "None,"))
+    result = run("verify", claims.parent)
+    assert (result.exit_code, result.stdout) == (2, "")
+    assert "eq-2: fails without a correction" in result.stderr
+    result = run("verify", claims.parent, "--draft")
+    assert result.exit_code == 0, result.output
+    for line in (
+        "1 printed claims, 1 decided",
+        "eq-2 (Section 1): draft, recorded as fails",
+        "    0 true, 9 false (exact rational instances, no proof)",
+        "    residual of the first: -1/2",
+        "  amounts to: fails",
+        "  missing: fails without a correction, expected what is true instead, with its check",
+        "1 draft, 1 complete",
+    ):
+        assert line in result.output
+
+
+@pytest.mark.parametrize("option", ["--json", "--recheck"])
+def test_drafts_are_shown_and_nothing_else(made_up_paper_once, option):
+    result = run("verify", made_up_paper_once, "--draft", option, "pari")
+    assert result.exit_code == 2
+    assert f"--draft: found {option} beside it" in result.stderr
+
+
+def test_a_mistake_in_a_check_is_exit_status_2_and_no_verdict(made_up_paper):
+    claims = made_up_paper() / "claims.py"
+    claims.write_text(claims.read_text().replace("residual = (formula", "residual = (formola"))
+    result = run("verify", claims.parent)
+    assert result.exit_code == 2
+    assert f"{claims}:17: found NameError" in result.stderr
+    assert "eq-1: found no answer, recorded holds" in result.stderr
+
+
+def test_the_help_says_that_a_folder_is_run():
+    assert "run as Python" in " ".join(run("verify", "--help").output.replace("│", " ").split())
+
+
 def test_a_broken_record_is_exit_status_2(made_up_paper):
     folder = made_up_paper()
     text = (folder / "claims.py").read_text()

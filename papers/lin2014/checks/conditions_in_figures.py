@@ -125,7 +125,7 @@ def _check(kinds: tuple[tuple[str, Kind, bool], ...], method: str, side: Side, m
         except UndefinedError as error:
             return str(error)
 
-    return Check(cases, Strength.SYMBOLIC_ORDER, method, proof=True, probe=probe)
+    return Check(cases, Strength.GENERAL, method, proof=True, probe=probe)
 
 
 def _row_2_case(label: str, formula: Formula | None, side: Side, m: int, kind: Kind, parametric: bool) -> Case:
@@ -237,7 +237,7 @@ def excess_of_c2_check(m: int, *, squares: bool) -> Check:
         yield Case("any rows and knots", residual == 0, residual=residual.as_expr() if residual else sp.Integer(0))
 
     method = "P_uu by the printed row less R_ww, both by end derivatives, any rows and knots"
-    return Check(cases, Strength.SYMBOLIC_ORDER, method, proof=True, probe=difference)
+    return Check(cases, Strength.GENERAL, method, proof=True, probe=difference)
 
 
 _STEP = "the control points of the base step as R_2 - R_1 = s (R_1 - R_0) all along the contact, s = "

@@ -240,7 +240,7 @@ def row_check_of(row: Callable[[Any, Any], Any]) -> Check:
             off = printed.subs(pr.m, m) - row(*ends)
             yield Case(label, bool(off == 0), own=own, residual=off)
 
-    return Check(cases, Strength.SYMBOLIC_ORDER, _ROWS_SET, proof=True)
+    return Check(cases, Strength.GENERAL, _ROWS_SET, proof=True)
 
 
 def middle_count_check(count: int) -> Check:
@@ -256,7 +256,7 @@ def middle_count_check(count: int) -> Check:
             if end - start - 1 == count:
                 yield Case(label, bool(printed == last), own=own, residual=printed - last)
 
-    return Check(cases, Strength.SYMBOLIC_ORDER, _ROWS_SET, proof=True)
+    return Check(cases, Strength.GENERAL, _ROWS_SET, proof=True)
 
 
 def paired_cases(last_pair: Callable[[Any], Any]) -> Callable[[Formula | None], Iterator[Case]]:

@@ -17,6 +17,7 @@ import sympy as sp
 
 from semispline.papers.ledger import Case, Check, Consequence, Counterexample, Formula, Strength, given
 from semispline.papers.lin2014 import printed as pr
+from semispline.papers.lin2014.checks.consequences import on_surface
 from semispline.papers.lin2014.checks.printed_numbers import CONTACTS
 from semispline.papers.lin2014.checks.printed_pairs import inner_knots
 from semispline.papers.lin2014.printed import CUBIC
@@ -104,7 +105,7 @@ def converted_cases(formula: Formula | None) -> Iterator[Case]:
 
 CONVERTED_CHECK = Check(
     converted_cases,
-    Strength.SYMBOLIC_ORDER,
+    Strength.GENERAL,
     "where a mean of two knots lies, for every pair of vectors; multiplicities counted on printed and other vectors",
     proof=True,
 )
@@ -162,7 +163,7 @@ def saving_consequence() -> Consequence:
             for word, number in converted.items():
                 kinds.setdefault(number, []).append(word)
             measured |= {f"{name}, converted ({' or '.join(words)})": n for n, words in kinds.items()}
-    return Consequence("Control points with the printed knots, by what becomes of an unpaired knot", measured)
+    return on_surface("Control points with the printed knots, by what becomes of an unpaired knot", measured)
 
 
 def converted_counterexample() -> Counterexample:

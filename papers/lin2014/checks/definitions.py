@@ -173,10 +173,10 @@ SUM_METHOD = (
     "whose coefficients are the basis functions by induction on the order; run at rational parameters and knots of "
     "orders 2 to 4 as well"
 )
-SURFACE_CHECK = Check(surface_cases, Strength.SYMBOLIC_ORDER, SUM_METHOD, proof=True)
-CURVE_CHECK = Check(curve_cases, Strength.SYMBOLIC_ORDER, SUM_METHOD, proof=True)
+SURFACE_CHECK = Check(surface_cases, Strength.GENERAL, SUM_METHOD, proof=True)
+CURVE_CHECK = Check(curve_cases, Strength.GENERAL, SUM_METHOD, proof=True)
 
 
 def base_check(letter: str) -> Check:
     """Return the check of (7) or (9)."""
-    return Check(base_cases(letter), Strength.SYMBOLIC_ORDER, SUM_METHOD, proof=True)
+    return Check(base_cases(letter), Strength.GENERAL, SUM_METHOD, proof=True)

@@ -19,6 +19,7 @@ import sympy as sp
 
 from semispline.papers.ledger import Case, Check, Consequence, Counterexample, Formula, Strength, given
 from semispline.papers.lin2014.checks import energy
+from semispline.papers.lin2014.checks.consequences import on_surface
 from semispline.papers.lin2014.printed import CUBIC
 
 COS_THETA, COS_PHI, COS_BETWEEN, BEST = sp.symbols("c_theta c_phi c_between a_best", real=True)
@@ -91,7 +92,7 @@ def _best_of(relation: Any, angles: tuple[tuple[Any, Any], tuple[Any, Any]]) -> 
 
 FACING_CHECK = Check(
     facing_cases,
-    Strength.SYMBOLIC_ORDER,
+    Strength.GENERAL,
     "the exact energy of strips between straight plates of unit speed, for every gap and pair of exit angles, k = 4 "
     "and one middle curve",
     proof=True,
@@ -113,7 +114,7 @@ def facing_shares() -> Consequence:
         measured[f"share of exit angles below 90 degrees, {m - 5} middle curves"] = _share(m)
     wants = json.loads((Path(__file__).parents[1] / "shapes.json").read_text(encoding="utf-8"))["facing"]["wants"]
     measured |= {"random facing pairs of the suite": wants["told"], "of these": wants["not positive"]}
-    return Consequence(
+    return on_surface(
         "Pairs for which (11) is least at alpha^2 <= 0 or beta^2 <= 0: the family, and docs/shapes.md", measured
     )
 

@@ -69,7 +69,7 @@ def gram_entry_cases(formula: Formula | None) -> Iterator[Case]:
 
 GRAM_CHECK = Check(
     gram_entry_cases,
-    Strength.SYMBOLIC_ORDER,
+    Strength.GENERAL,
     "the mixed second derivative of (11) by two control points with abstract basis functions, integrated term by term "
     "(Fubini); and entries of the exact energy, bicubic, printed knots of Fig. 5",
     proof=True,
@@ -126,7 +126,7 @@ def minimum_check(order: int) -> Check:
     """Return the check that the free rows of a blend with C1 or C2 contact have exactly one minimum."""
     return Check(
         lambda _: unique_minimum_cases(order),
-        Strength.SYMBOLIC_ORDER,
+        Strength.GENERAL,
         "a blend of zero energy with zero contact rows is zero, for every order, knots and number of rows; pivots of "
         "the exact energy matrix for k = 4",
         proof=True,
@@ -152,7 +152,7 @@ def normal_equation_cases(formula: Formula | None) -> Iterator[Case]:
 
 NORMAL_EQUATION_CHECK = Check(
     normal_equation_cases,
-    Strength.SYMBOLIC_ORDER,
+    Strength.GENERAL,
     "the derivative of the quadratic form by free control point r, for every count",
     proof=True,
 )
@@ -183,7 +183,7 @@ def degree_check(order: int, geometric: bool) -> Check:
 
     return Check(
         cases,
-        Strength.SYMBOLIC_ORDER,
+        Strength.GENERAL,
         "the degree of the rows in alpha and beta for symbolic orders and knots, put into the quadratic form; the term "
         "of highest degree is an energy, not zero; the exact energy of a strip, k = 4",
         proof=True,
@@ -340,7 +340,7 @@ def direction_check(sign: int) -> Check:
 
     text = "R_w" if sign > 0 else "-R_w"
     method = f"row 1 solved from P_u = {text} with the end derivatives, every order and knots"
-    return Check(cases, Strength.SYMBOLIC_ORDER, method, proof=True)
+    return Check(cases, Strength.GENERAL, method, proof=True)
 
 
 @cache

@@ -107,7 +107,7 @@ def excess_check(side: Side, printed: Formula) -> Check:
     """Return the check of what a printed row 2 gives along the normal less what G2 asks, for symbolic orders."""
     return Check(
         partial(_excess_cases, side, printed),
-        Strength.SYMBOLIC_ORDER,
+        Strength.GENERAL,
         "second end derivatives of rows along the normal, the blend's by the printed row, for symbolic orders and knots"
         + ("; u_{m-3} is the last inner knot, as for k = 4" if side == "end" else ""),
         proof=True,

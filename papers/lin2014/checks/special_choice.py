@@ -12,6 +12,7 @@ from scipy.optimize import minimize
 from semispline.papers.ledger import Case, Consequence
 from semispline.papers.lin2014 import printed as pr
 from semispline.papers.lin2014.checks import geometric_continuity as contact
+from semispline.papers.lin2014.checks.consequences import on_surface
 from semispline.papers.lin2014.examples.made_pair import made_pair
 from semispline.papers.lin2014.examples.section5 import example
 from semispline.solver.blending import blend
@@ -54,7 +55,7 @@ def special_choice_cost() -> Consequence:
 
         measured[f"{name}: (11) saved by a free p_2 [%]"] = _saved(with_p2, [a, b, 0.0, 0.0], least.energy)
         measured[f"{name}: (11) saved by alpha^2 linear in v [%]"] = _saved(linear, [a, a, b, b], least.energy)
-    return Consequence("The made pair and the bases that stand for Fig. 6, one middle curve", measured)
+    return on_surface("The made pair and the bases that stand for Fig. 6, one middle curve", measured)
 
 
 def _saved(objective: Callable[[Any], float], start: list[float], least: float) -> float:

@@ -143,7 +143,7 @@ def _initial_cases(formula: Formula | None) -> Iterator[Case]:
 SHAPE_ONE = Formula(
     Eq(pr.alpha, 1), (pr.alpha,), equivalent={"Eq(alpha, -1)": "alpha stands in the conditions by its square alone"}
 )
-_CVV = Check(_cvv_cases, Strength.SYMBOLIC_ORDER, "lengths of rows, of any numbers of control points", proof=True)
+_CVV = Check(_cvv_cases, Strength.GENERAL, "lengths of rows, of any numbers of control points", proof=True)
 # Unknown rows of X, 3 .. m-3.
 FIRST_UNKNOWN, LAST_UNKNOWN = Formula(Eq(pr.first, 3), (pr.first,)), Formula(Eq(pr.last, pr.m - 3), (pr.last, pr.m))
 _A, _B, _X, _N = objective.A_BLOCK, objective.B_BLOCK, objective.X_FREE, objective.N_KNOWN
@@ -240,7 +240,7 @@ CLAIMS: tuple[Claim, ...] = (
               Reading((part(row_check("start", 1, "parametric"), PARAMETRIC_2_1),
                        part(row_check("start", 2, "parametric"), PARAMETRIC_3_1_SQUARES)),
                       label="the same with both distances in (3.1) squared, if the scan lost that"),
-              Reading((part(Check(_initial_cases, Strength.SYMBOLIC_ORDER,
+              Reading((part(Check(_initial_cases, Strength.GENERAL,
                                   "C2 rows solved from end derivatives, put into the corrected G2 conditions, every "
                                   "order and knots", proof=True), SHAPE_ONE),),
                       label="a surface that is C2, and the corrected conditions, alpha = beta = 1"),

@@ -284,7 +284,7 @@ def test_the_printed_row_leaves_a_curvature_jump_that_both_judges_see():
     consequence = measured_rows("start", {2: pr.COND_3_1}, "made pair")
     assert consequence.measured["relative curvature jump"] > 0.1
     assert consequence.measured["angle between tangent planes [degrees]"] < 1e-9
-    assert consequence.measured["relative curvature jump with the corrected formula"] < 1e-9
+    assert consequence.corrected["relative curvature jump"] < 1e-9
     assert consequence.judges["Open CASCADE"] == "touches at 5, G1 at 5, G2 at 0 of 5 points"
     right = measured_rows("start", {2: TRUE_3_1}, "made pair")
     assert right.measured["relative curvature jump"] < 1e-9

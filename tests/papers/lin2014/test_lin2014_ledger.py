@@ -173,7 +173,7 @@ def _report_reads_as_an_erratum(ledger):
     for failure in failures:
         lines = [line for line in failure.splitlines()[1:] if line]
         heads = [line.split("**")[1] for line in lines]
-        assert heads == ["Printed:", "Wrong:", "Smallest counterexample:", "Correct:", "On a surface:"], failure
+        assert heads == ["Printed:", "Wrong:", "Smallest counterexample:", "Correct:", "What it does:"], failure
         assert "$`" in lines[3], failure
     cells = rows(text)
     for claim, decision in zip(ledger.paper.claims, ledger.decisions, strict=True):

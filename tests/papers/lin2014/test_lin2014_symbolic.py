@@ -62,7 +62,7 @@ ONLY_CHECKED = {"sec-1.fairness", "eq-12", "sec-4.unconstrained"}
 
 def test_no_claim_of_sections_2_to_4_rests_on_instances_without_a_reason():
     for name, claim in CLAIMS.items():
-        weak = [part.check for part in claim.parts if part.check.strength > Strength.EACH_ORDER]
+        weak = [part.check for part in claim.parts if part.check.strength > Strength.EACH]
         reasons = BY_INSTANCES.get(name, [])
         assert len(weak) == len(reasons), name
         assert all(reason in check.method for reason, check in zip(reasons, weak, strict=True)), name
@@ -70,7 +70,7 @@ def test_no_claim_of_sections_2_to_4_rests_on_instances_without_a_reason():
             assert not any(check.proof for check in weak), name
         if claim.correction:
             parts = claim.correction.parts
-            assert all(p.check.proof and p.check.strength <= Strength.EACH_ORDER for p in parts), name
+            assert all(p.check.proof and p.check.strength <= Strength.EACH for p in parts), name
 
 
 @pytest.mark.parametrize(
