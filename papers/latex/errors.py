@@ -59,3 +59,7 @@ class NamesError(InputError):
 
 class ConversionError(InputError):
     """A formula that is read, and has no form in SymPy: the message says what is missing."""
+
+
+class DocumentError(InputError):
+    """A file of formulas that is not well formed: the message has its line."""

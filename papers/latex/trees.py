@@ -6,7 +6,7 @@ Brackets that print and change nothing are gone, those that group are nodes of t
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from functools import cache
 from typing import Any, TypeAlias
 
@@ -300,3 +300,20 @@ def _nodes(value: Any) -> Iterator[Any]:
             yield from _nodes(entry)
     elif hasattr(value, "__dataclass_fields__"):
         yield value
+
+
+def substituted(node: Any, one: Any, other: Any) -> Any:
+    """Return a tree with one subtree replaced wherever it stands.
+
+    Examples
+    --------
+    >>> substituted(Quotient(Named("s"), Number("2")), Named("s"), Number("1"))
+    Quotient(numerator=Number(text='1'), denominator=Number(text='2'))
+    """
+    if node == one:
+        return other
+    if isinstance(node, tuple):
+        return tuple(substituted(entry, one, other) for entry in node)
+    if hasattr(node, "__dataclass_fields__"):
+        return replace(node, **{f: substituted(getattr(node, f), one, other) for f in _field_names(type(node))})
+    return node
