@@ -209,7 +209,9 @@ class _Conversion:
     def _term_of(self, elided: Elided, k: Any) -> Any:
         """Return the term of an elided sum or row for any value of what changes."""
         place = Named("")
-        return _Conversion(self.names, {**self.given, "": k}, self.branch).of(_template(elided.first, elided.last, place))
+        return _Conversion(self.names, {**self.given, "": k}, self.branch).of(
+            _template(elided.first, elided.last, place)
+        )
 
     def _named(self, tree: Named) -> Any:
         name = tree.name
@@ -222,7 +224,11 @@ class _Conversion:
             if name in self.given:
                 return self.given[name](*slots) if slots else self.given[name]
             return _value(d, slots)
-        arguments = [self.of(Named(letter)) for letter in letters] if tree.arguments is None else [self.of(a) for a in tree.arguments]
+        arguments = (
+            [self.of(Named(letter)) for letter in letters]
+            if tree.arguments is None
+            else [self.of(a) for a in tree.arguments]
+        )
 
         def applied(values: list[Any]) -> Any:
             return self.given[name](*slots, *values) if name in self.given else _applied(d, [*slots, *values])
@@ -235,7 +241,9 @@ class _Conversion:
         variable = argument if isinstance(argument, sp.Symbol) else sp.Dummy(letters[place], real=True)
         value = applied([*arguments[:place], variable, *arguments[place + 1 :]])
         derivative = _each(value, lambda entry: sp.Derivative(entry, (variable, tree.derivative)))
-        return derivative if variable is argument else _each(derivative, lambda entry: sp.Subs(entry, variable, argument))
+        return (
+            derivative if variable is argument else _each(derivative, lambda entry: sp.Subs(entry, variable, argument))
+        )
 
 
 def _each(value: Any, change: Callable[[Any], Any]) -> Any:

@@ -83,7 +83,9 @@ def _blocks(source: str, text: str) -> list[Block]:
             if end is None:
                 raise DocumentError(f"{source}:{n}: found a block that does not end")
             if not identifier or fence[1] not in ("math", "text"):
-                raise DocumentError(f"{source}:{n}: found {line!r}, expected ```math or ```text below a heading `## ID`")
+                raise DocumentError(
+                    f"{source}:{n}: found {line!r}, expected ```math or ```text below a heading `## ID`"
+                )
             blocks.append(Block(identifier, fence[1], "\n".join(lines[n:end]) + "\n", source, n + 1))
             identifier, n = "", end + 1
         elif line.strip() and not line.startswith("# "):

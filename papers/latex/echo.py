@@ -153,7 +153,8 @@ def _structure(tree: Tree, names: Names) -> str:
             return f"{brackets[0]}{_text(lower, names)}, {_text(upper, names)}{brackets[1]}"
         case Cases(cases):
             rows_ = " \\\\ ".join(
-                f"{_text(value, names)} & " + (f"\\text{{if }} {_chain(c, names)}" if c else "\\text{otherwise}") for value, c in cases
+                f"{_text(value, names)} & " + (f"\\text{{if }} {_chain(c, names)}" if c else "\\text{otherwise}")
+                for value, c in cases
             )
             return f"\\left\\{{ \\begin{{matrix}} {rows_} \\end{{matrix}} \\right."
     raise TypeError(f"{type(tree).__name__} is no tree")
@@ -208,7 +209,12 @@ def _call(function: str, argument: str) -> str:
 
 
 def _transposed(matrix: Tree, names: Names) -> str:
-    if isinstance(matrix, Matrix) and len(matrix.rows) == 1 and len(matrix.rows[0]) == 1 and isinstance(matrix.rows[0][0], Elided):
+    if (
+        isinstance(matrix, Matrix)
+        and len(matrix.rows) == 1
+        and len(matrix.rows[0]) == 1
+        and isinstance(matrix.rows[0][0], Elided)
+    ):
         elided = matrix.rows[0][0]
         entries = " \\\\ ".join([*(_text(x, names) for x in elided.printed), "...", _text(elided.last, names)])
         return f"\\begin{{bmatrix}} {entries} \\end{{bmatrix}}"

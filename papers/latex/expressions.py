@@ -90,7 +90,11 @@ class _Expressions:
         printed = [term for _, term in terms if term is not None]
         for k, term in enumerate(printed):
             for big in _big_sums(term):
-                if any(big.index in walk(other) for m, other in enumerate(printed) if m != k and not _bound(other, big.index)):
+                if any(
+                    big.index in walk(other)
+                    for m, other in enumerate(printed)
+                    if m != k and not _bound(other, big.index)
+                ):
                     raise UnreadableError(
                         Trouble.SUM_SCOPE, f"a term beside the sum over {big.index.name} has that index too", at
                     )
@@ -157,11 +161,15 @@ class _Expressions:
                 return self._differentiated(factors, items, i)
             else:
                 if item.kind == "number" and not explicit:
-                    raise UnreadableError(Trouble.NUMERAL, f"the numeral {item.text} stands right behind a factor", item.at)
+                    raise UnreadableError(
+                        Trouble.NUMERAL, f"the numeral {item.text} stands right behind a factor", item.at
+                    )
                 found, i = self.factors(items, i)
                 mixed = not explicit and isinstance(factors[-1], Number) and item.kind == "fraction"
                 if mixed and _is_numeric(found[0]):
-                    raise UnreadableError(Trouble.NUMERAL, "a number before a fraction of numbers has two readings", item.at)
+                    raise UnreadableError(
+                        Trouble.NUMERAL, "a number before a fraction of numbers has two readings", item.at
+                    )
                 factors += found
             explicit, last_at = False, item.at
         if explicit:
@@ -226,7 +234,9 @@ class _Expressions:
         if item.kind != "fraction":
             return False
         above = item.parts[0]
-        return bool(above) and _is_d(above[0]) and all(x.kind == "sup" for x in above[1:]) and self._by(item) is not None  # type: ignore[union-attr]
+        return (
+            bool(above) and _is_d(above[0]) and all(x.kind == "sup" for x in above[1:]) and self._by(item) is not None
+        )  # type: ignore[union-attr]
 
     def _by(self, item: Item) -> tuple[Items, Items] | None:
         """Return variable and order below a fraction `d../dt`, `∂../∂C`; None where it is no such fraction."""
@@ -321,7 +331,9 @@ class _Expressions:
             elif item.kind == "sub" and isinstance(tree, Matrix):
                 label = "".join(x.text for x in item.parts[0])  # type: ignore[union-attr]
                 if label not in self.names.labels:
-                    raise UnreadableError(Trouble.UNDECLARED, f"{label!r} below a bracket is no declared label", item.at)
+                    raise UnreadableError(
+                        Trouble.UNDECLARED, f"{label!r} below a bracket is no declared label", item.at
+                    )
                 tree = Labelled(tree, label)
             elif item.kind in ("sub", "prime", "sup"):
                 raise UnreadableError(Trouble.SCRIPT, f"found {item.text!r} where nothing takes it", item.at)
@@ -378,7 +390,9 @@ class _Expressions:
         if item.kind == "fence" and item.text == "()":
             argument = self.inner(item.parts[0], item.at)  # type: ignore[arg-type]
             i += 1
-        elif item.kind in ("run", "letter", "fraction") and (i + 1 == len(items) or items[i + 1].kind in ("sign", "dot", "function")):
+        elif item.kind in ("run", "letter", "fraction") and (
+            i + 1 == len(items) or items[i + 1].kind in ("sign", "dot", "function")
+        ):
             found, i = self.factors(items, i)
             if len(found) != 1:
                 raise UnreadableError(Trouble.FUNCTION_ARGUMENT, f"how far {name} reaches has two readings", item.at)
@@ -443,7 +457,12 @@ class _Expressions:
             if isinstance(value, Listing):
                 raise UnreadableError(Trouble.KINDS, "bars round a list", item.at)
             return Call(_BARS[item.text], value)
-        if item.text in ("()", "[]") and len(content) == 1 and content[0].kind == "rows" and content[0].text in MATRICES:
+        if (
+            item.text in ("()", "[]")
+            and len(content) == 1
+            and content[0].kind == "rows"
+            and content[0].text in MATRICES
+        ):
             return self._matrix(content[0])
         entries = split(content)
         if before == "\\in" and len(entries) == 2 and item.text[0] in "([":
@@ -469,7 +488,9 @@ class _Expressions:
         for row in cells:
             rows.append(tuple(self.inner(cell, cell[0].at if cell else item.at) for cell in row))
             if len(rows[-1]) != len(rows[0]):
-                raise UnreadableError(Trouble.LAYOUT, f"a matrix with rows of {len(rows[0])} and {len(rows[-1])}", item.at)
+                raise UnreadableError(
+                    Trouble.LAYOUT, f"a matrix with rows of {len(rows[0])} and {len(rows[-1])}", item.at
+                )
         if not rows:
             raise UnreadableError(Trouble.LAYOUT, "a matrix without rows", item.at)
         return Matrix(tuple(rows))
@@ -608,7 +629,11 @@ def _differences(one: object, other: object) -> list[tuple[Tree, Tree]]:
         return []
     whole = isinstance(one, Number | Sum | Named) and isinstance(other, Number | Sum | Named)
     same = isinstance(one, Named) and isinstance(other, Named) and one.name == other.name
-    if whole and not same and not (isinstance(one, Sum) and isinstance(other, Sum) and len(one.terms) == len(other.terms)):
+    if (
+        whole
+        and not same
+        and not (isinstance(one, Sum) and isinstance(other, Sum) and len(one.terms) == len(other.terms))
+    ):
         return [(one, other)]  # type: ignore[list-item]
     if type(one) is not type(other):
         return [(one, other)]  # type: ignore[list-item]
@@ -627,7 +652,9 @@ def _differ_in_slots(one: Tree, other: Tree) -> bool:
             _differ_in_slots(a, b) for a, b in zip(one.arguments or (), other.arguments or (), strict=True)
         )
     mine, yours = list(parts(one)), list(parts(other))
-    return type(one) is type(other) and bool(mine) and len(mine) == len(yours) and all(map(_differ_in_slots, mine, yours))
+    return (
+        type(one) is type(other) and bool(mine) and len(mine) == len(yours) and all(map(_differ_in_slots, mine, yours))
+    )
 
 
 def _plus(tree: Tree, k: int) -> Tree:

@@ -171,7 +171,11 @@ class NamesTable:
         kept: list[tuple[_Line, str, Items]] = []
         for line in lines:
             for text, items in _patterns(line, self.source):
-                kept = [entry for entry in kept if entry[1] != text or (not line.removed and entry[0].section == line.section)]
+                kept = [
+                    entry
+                    for entry in kept
+                    if entry[1] != text or (not line.removed and entry[0].section == line.section)
+                ]
                 if not line.removed:
                     kept.append((line, text, items))
         integers = {text for line, text, _ in kept if line.kind.split()[0] == "integer" and len(text) == 1}
@@ -260,7 +264,9 @@ def _names(kept: list[tuple[_Line, str, Items]], integers: set[str], source: str
     for declaration in declarations:
         other = seen.setdefault(declaration.shape, declaration)
         if other is not declaration:
-            raise _error(source, declaration.line, f"{declaration.pattern}: looks like {other.pattern} of line {other.line}")
+            raise _error(
+                source, declaration.line, f"{declaration.pattern}: looks like {other.pattern} of line {other.line}"
+            )
     return Names(tuple(declarations), *(frozenset(words[w]) for w in words), postfix)
 
 
@@ -289,7 +295,9 @@ def _declaration(
     shape = _shape(line, items, integers, source)
     if (kind == "function") != (shape["arguments"] is not None):
         raise _error(source, line.number, f"{text}: found {kind}, expected a function just where arguments are named")
-    return Declaration(text, kind=kind, value=value, line=line.number, bare=bare, word=word, size=size, range=options, **shape)  # type: ignore[arg-type]
+    return Declaration(
+        text, kind=kind, value=value, line=line.number, bare=bare, word=word, size=size, range=options, **shape
+    )  # type: ignore[arg-type]
 
 
 def head_of(item: Item) -> str:

@@ -75,7 +75,9 @@ def cut(run: Item, names: Names) -> list[str]:
     raise UnreadableError(Trouble.WORD, f"{text!r} is no declared name{known}", run.at)
 
 
-def resolve(head: str, at: int, items: Items, scripts: Scripts, names: Names, read: Read) -> tuple[Tree, Items | None, int]:
+def resolve(
+    head: str, at: int, items: Items, scripts: Scripts, names: Names, read: Read
+) -> tuple[Tree, Items | None, int]:
     """Return the name that a head with its scripts is, a superscript that is left over, and the index behind it.
 
     Raises
@@ -102,7 +104,9 @@ def resolve(head: str, at: int, items: Items, scripts: Scripts, names: Names, re
     if inner is not None:
         raise inner
     known = ", ".join(f"{d.pattern} (line {d.line})" for d in declared)
-    raise UnreadableError(Trouble.UNDECLARED, f"no declared name fits {head!r} as it stands here; declared: {known or 'none'}", at)
+    raise UnreadableError(
+        Trouble.UNDECLARED, f"no declared name fits {head!r} as it stands here; declared: {known or 'none'}", at
+    )
 
 
 def _fit(
@@ -147,7 +151,9 @@ def _fit(
         return None
     if left is not None:
         raise UnreadableError(
-            Trouble.FUNCTION_POWER, f"a power of {d.pattern} before its bracket may be a power, an index, an iterate", following.at
+            Trouble.FUNCTION_POWER,
+            f"a power of {d.pattern} before its bracket may be a power, an index, an iterate",
+            following.at,
         )
     end += 1
     if d.after:

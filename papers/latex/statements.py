@@ -64,7 +64,9 @@ def _sums_joined(lines: list[Items]) -> list[Items]:
             if open_sum and line[0].kind == "sign":
                 raise UnreadableError(Trouble.TEX, "found a sign after a sign", line[0].at)
             if any(item.kind == "relation" for item in line):
-                raise UnreadableError(Trouble.LAYOUT, "a line that continues a sum has a relation of its own", line[0].at)
+                raise UnreadableError(
+                    Trouble.LAYOUT, "a line that continues a sum has a relation of its own", line[0].at
+                )
             if any(item.kind in ("comma", "word", "arrow") for item in done[-1]):
                 raise UnreadableError(Trouble.LAYOUT, "which sum this line continues is not clear", line[0].at)
             done[-1] += line
@@ -159,12 +161,16 @@ class _Display:
             self._givens(items[0])
             items = items[1:]
             if not items:
-                raise UnreadableError(Trouble.LAYOUT, "a closing brace with no statement behind it", self.given[0].since)
+                raise UnreadableError(
+                    Trouble.LAYOUT, "a closing brace with no statement behind it", self.given[0].since
+                )
         if items and _is_conditions(items[-1]):
             if len(items) > 1:
                 last = self._statement(items[:-1], mode, last)
             if last is None:
-                raise UnreadableError(Trouble.LAYOUT, "conditions in braces with no statement before them", items[-1].at)
+                raise UnreadableError(
+                    Trouble.LAYOUT, "conditions in braces with no statement before them", items[-1].at
+                )
             content: Items = items[-1].parts[0]  # type: ignore[assignment]
             for part in split(content):
                 self._attach("where", part, last)
