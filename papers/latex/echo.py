@@ -38,7 +38,7 @@ _WORDS = frozenset("sin cos tan cot sec csc arcsin arccos arctan sinh cosh tanh 
 
 
 def echo(statements: tuple[Statement, ...], names: Names) -> str:
-    """Return a display that reads as these statements.
+    r"""Return a display that reads as these statements, a line for each side.
 
     Examples
     --------
@@ -46,52 +46,57 @@ def echo(statements: tuple[Statement, ...], names: Names) -> str:
     >>> from semispline.papers.latex.reading import read_formula
     >>> names = read_names("a, b, x : real").of("eq-1")
     >>> print(echo(read_formula("x = 2ab", names).statements, names))
-    x = 2 \\cdot a \\cdot b
+    x = 2 \cdot a \cdot b
     """
-    if len(statements) == 1 and not statements[0].conditions:
-        return _chain(statements[0], names)
-    rows: list[str] = []
+    rows: list[list[str]] = []
     for statement in statements:
-        rows += _rows(statement, names)
-    return "\\begin{aligned}\n" + " \\\\\n".join(rows) + "\n\\end{aligned}"
+        rows += _rows(statement, names, is_first=not rows)
+    # In a line of its own a relation needs no column mark before it.
+    if len(rows) == 1:
+        return "".join(rows[0])
+    return "\\begin{aligned}\n" + " \\\\\n".join("&".join(row) for row in rows) + "\n\\end{aligned}"
 
 
 def echo_statement(statement: Statement, names: Names) -> str:
     """Return one statement in one line, without its conditions."""
-    return _chain(statement, names)
+    offset = 0 if statement.continues else 1
+    text = ""
+    for k, side in enumerate(statement.sides):
+        if k or statement.continues:
+            text += f"{' ' if k else ''}{statement.relations[k - offset]} "
+        text += _text(side, names)
+    return text
 
 
-def _rows(statement: Statement, names: Names) -> list[str]:
-    """Return a statement line by line: a new one wherever conditions begin anew."""
-    arrow = [statement.after] if statement.after else []
-    cuts = sorted({0, *(c.since for c in statement.conditions)})
-    # Conditions that stand before the statement hold from its first side on, as those of its first line do.
-    rows: list[str] = []
-    for k, start in enumerate(cuts):
-        end = cuts[k + 1] if k + 1 < len(cuts) else len(statement.sides)
-        row = _chain(statement, names, start, end)
-        for condition in statement.conditions:
-            if condition.since == start:
-                row += _condition(condition, names)
-        rows.append(row)
-    return arrow + rows
+def _rows(statement: Statement, names: Names, is_first: bool) -> list[list[str]]:
+    """Return a statement line by line, in cells; a condition stands in the line that it holds from."""
+    rows = [["", f" {statement.after}"]] if statement.after else []
+    starts = {c.since for c in statement.conditions}
+    offset = 0 if statement.continues else 1
+    row = [""]
+    since = 0
+    for k, side in enumerate(statement.sides):
+        if k == 0 and not statement.continues:
+            # A line that began with a sign would continue a sum.
+            signed = isinstance(side, Sum) and side.terms[0][0] != "+" and not is_first and not statement.after
+            row = [_bracketed(side, names) if signed else _text(side, names)]
+            continue
+        if k > 1 or (k and (k in starts or statement.continues)):
+            rows.append([*row[:-1], row[-1] + _conditions(statement, since, names)])
+            row, since = [""], k
+        space = " " if row[0] else ""
+        row = [row[0] + space, f"{statement.relations[k - offset]} {_text(side, names)}"]
+    rows.append([*row[:-1], row[-1] + _conditions(statement, since, names)])
+    return rows
+
+
+def _conditions(statement: Statement, since: int, names: Names) -> str:
+    return "".join(_condition(c, names) for c in statement.conditions if c.since == since)
 
 
 def _condition(condition: Condition, names: Names) -> str:
     within = "".join(_condition(inner, names) for inner in condition.statement.conditions)
-    return f",\\ \\text{{{condition.word}}}\\ {_chain(condition.statement, names)}{within}"
-
-
-def _chain(statement: Statement, names: Names, start: int = 0, end: int | None = None) -> str:
-    end = len(statement.sides) if end is None else end
-    # With a side of the display before, there is one relation for each side.
-    offset = 0 if statement.continues else 1
-    text = ""
-    for k in range(start, end):
-        if k or statement.continues:
-            text += f"{' ' if k > start else ''}{statement.relations[k - offset]} "
-        text += _text(statement.sides[k], names)
-    return text
+    return f",\\ \\text{{{condition.word}}}\\ {echo_statement(condition.statement, names)}{within}"
 
 
 def echo_tree(tree: Tree, names: Names) -> str:
@@ -153,7 +158,7 @@ def _structure(tree: Tree, names: Names) -> str:
             return f"{brackets[0]}{_text(lower, names)}, {_text(upper, names)}{brackets[1]}"
         case Cases(cases):
             rows_ = " \\\\ ".join(
-                f"{_text(value, names)} & " + (f"\\text{{if }} {_chain(c, names)}" if c else "\\text{otherwise}")
+                f"{_text(value, names)} & " + (f"\\text{{if }} {echo_statement(c, names)}" if c else "\\text{otherwise}")
                 for value, c in cases
             )
             return f"\\left\\{{ \\begin{{matrix}} {rows_} \\end{{matrix}} \\right."
@@ -271,8 +276,8 @@ def _named(tree: Named, names: Names) -> str:
 
 def _head(declaration: Declaration) -> str:
     head = declaration.head
-    # A macro needs an end before a letter.
-    return f"{{{head}}}" if head.startswith("\\") and head[1:].isalpha() else head
+    # Words stand upright, so that they are not taken for products of their letters.
+    return f"\\mathrm{{{head}}}" if len(head) > 1 and head.isalnum() else head
 
 
 def _script(group: tuple[Slot, ...], slots: list[str]) -> str:

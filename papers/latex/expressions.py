@@ -209,7 +209,8 @@ class _Expressions:
             body, i = self.term(items, i, integral=True)
             if i == len(items) or not _is_differential(items, i):
                 raise UnreadableError(Trouble.OPERATOR, "an integral without its differential", sign.at)
-            return Integral(self._differential(items[i]), lower, upper, body), i + 1
+            letter = items[i + 1] if items[i].text == "d" else Item("run", items[i].text[1:], items[i].at + 1)
+            return Integral(self._declared(letter), lower, upper, body), i + (2 if items[i].text == "d" else 1)
         sides = split(below, "relation")
         relation = [item.text for item in below if item.kind == "relation"]
         if relation != ["="]:
@@ -222,10 +223,12 @@ class _Expressions:
         return BigSum(index, lower, upper, body), i
 
     def _differential(self, item: Item) -> Named:
-        letter = Item("run", item.text[1:], item.at + 1)
+        return self._declared(Item("run", item.text[1:], item.at + 1))
+
+    def _declared(self, letter: Item) -> Named:
         variable, end = self.factors((letter,), 0)
         if end != 1 or len(variable) != 1 or not isinstance(variable[0], Named):
-            raise UnreadableError(Trouble.OPERATOR, f"{item.text} is no differential of a declared name", item.at)
+            raise UnreadableError(Trouble.OPERATOR, f"no differential of a declared name: {letter.text!r}", letter.at)
         return variable[0]
 
     def _is_operator(self, items: Items, i: int) -> bool:
@@ -292,11 +295,11 @@ class _Expressions:
         before: list[Tree] = []
         left: Items | None = None
         is_name = False
-        if item.kind in ("run", "letter", "accent", "text"):
+        if item.kind in ("run", "upright", "letter", "accent", "text"):
             if self._is_leibniz(items, i):
                 return [self._leibniz(items, i)], i + 3
             *first, head = cut(item, self.names) if item.kind == "run" else [head_of(item)]
-            if item.kind == "text" and head not in self.names.by_head:
+            if item.kind in ("upright", "text") and head not in self.names.by_head:
                 raise UnreadableError(Trouble.WORD, f"the text {item.text!r} is no declared name", item.at)
             for letter in first:
                 tree, _, _ = resolve(letter, item.at, (item,), scripts_after((item,), 1), self.names, self.inner)
@@ -587,9 +590,11 @@ def _is_d(item: Item) -> bool:
 
 
 def _is_differential(items: Items, i: int) -> bool:
+    """Whether `dt`, or d and a Greek letter, stand at the end of a term."""
     item = items[i]
-    ends = i + 1 == len(items) or items[i + 1].kind == "sign"
-    return ends and item.kind == "run" and len(item.text) == 2 and item.text[0] == "d"
+    width = 2 if item.text == "d" and i + 1 < len(items) and items[i + 1].kind == "letter" else 1
+    ends = i + width == len(items) or items[i + width].kind == "sign"
+    return ends and item.kind == "run" and item.text[0] == "d" and len(item.text) + width == 3
 
 
 def _is_numeric(tree: Tree) -> bool:

@@ -308,7 +308,7 @@ def head_of(item: Item) -> str:
     >>> head_of(nest(r"\\\\hat{x}")[0])
     '\\\\hat{x}'
     """
-    if item.kind in ("run", "letter"):
+    if item.kind in ("run", "upright", "letter"):
         return item.text
     if item.kind == "text":
         return f"\\text{{{item.text}}}"

@@ -28,7 +28,7 @@ class Item(NamedTuple):
     Attributes
     ----------
     kind : str
-        number, run (of letters), letter (by macro), function, sign, dot, slash, relation, comma, arrow, dots, prime,
+        number, run (of letters), upright (word), letter (by macro), function, sign, dot, slash, relation, comma, arrow, dots, prime,
         bang, word, big (sum, integral), partial; and with parts: sub, sup, group, fence, fraction, root, binomial,
         accent, text, rows.
     text : str
@@ -103,7 +103,7 @@ LAYOUTS = frozenset(("aligned", "align", "align*", "split", "array", "matrix", "
 MATRICES = frozenset(("bmatrix", "pmatrix", "matrix", "array"))
 _CLOSING = {"(": ")", "[": "]", "\\{": "\\}", "|": "|", "||": "||"}
 _OPERANDS = frozenset(
-    ("number", "run", "letter", "prime", "bang", "sub", "sup", "group", "fence", "fraction", "root", "binomial", "rows")
+    ("number", "run", "upright", "letter", "prime", "bang", "sub", "sup", "group", "fence", "fraction", "root", "binomial", "rows")
 )
 
 
@@ -248,7 +248,8 @@ class _Nesting:
             return i
         if kind == "accent":
             content, i = self._argument(i, text, at)
-            items.append(Item("accent", text, at, (content,)))
+            is_word = name == "mathrm" and len(content) == 1 and content[0].kind == "run" and len(content[0].text) > 1
+            items.append(Item("upright", content[0].text, at) if is_word else Item("accent", text, at, (content,)))
             return i
         if kind is not None:
             items.append(Item(kind, "\\" + _SAME.get(name, name) if kind != "dots" else "...", at))
