@@ -173,7 +173,10 @@ class _Display:
                 )
             content: Items = items[-1].parts[0]  # type: ignore[assignment]
             for part in split(content):
-                self._attach("where", part, last)
+                sides = split(part, "relation")
+                # { a = 3b } gives a name, { x <= 1 } is a limit.
+                gives = len(sides) == 2 and len(sides[0]) <= 2 and any(x.text == "=" for x in part)
+                self._attach("where" if gives else "when", part, last)
             return last
         return self._statement(items, mode, last)
 
