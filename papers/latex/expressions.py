@@ -107,7 +107,7 @@ class _Expressions:
     def _elided_sum(self, terms: list[tuple[str, Tree | None]], at: int) -> Tree:
         signs = {sign for sign, _ in terms}
         values = [term for _, term in terms]
-        if signs != {"+"} or values.count(None) != 1 or values[-2] is not None:
+        if signs != {"+"} or [k for k, value in enumerate(values) if value is None] != [len(values) - 2]:
             raise UnreadableError(Trouble.ELLIPSIS, "dots that are not the last but one of terms that are added", at)
         before = tuple(value for value in values[:-2] if value is not None)
         last = values[-1]

@@ -9,7 +9,7 @@ from semispline.papers.latex.errors import UnreadableError
 from semispline.papers.latex.names import Names
 from semispline.papers.latex.statements import statements
 from semispline.papers.latex.tokens import nest
-from semispline.papers.latex.trees import Statement, Tree
+from semispline.papers.latex.trees import BigSum, Integral, Named, Statement, Tree, parts
 
 
 @dataclass(frozen=True)
@@ -104,3 +104,34 @@ def _steps(statement: Statement, known: list[Statement]) -> list[Step]:
         after = statement.after if k == 0 else ""
         found.append(Step(sides[k], relation, right, after, (*known, *holds)))
     return found
+
+
+def free_names(node: object) -> list[str]:
+    """Return the declared names in a tree that no sum and no integral of it binds, in their order.
+
+    Examples
+    --------
+    >>> from semispline.papers.latex.names import read_names
+    >>> names = read_names("n, i : integer >= 0\\nw_i : real").of("eq-1")
+    >>> free_names(read_formula(r"\\sum_{i=0}^{n} w_i", names).statements)
+    ['n', 'w_i']
+    """
+    found: dict[str, None] = {}
+
+    def collect(node: object, bound: frozenset[str]) -> None:
+        if isinstance(node, tuple):
+            for entry in node:
+                collect(entry, bound)
+            return
+        if isinstance(node, Named) and node.name not in bound:
+            found[node.name] = None
+        if isinstance(node, BigSum | Integral):
+            collect((node.lower, node.upper), bound)
+            own = node.index if isinstance(node, BigSum) else node.variable
+            collect(node.body, bound | {own.name})
+            return
+        for part in parts(node):
+            collect(part, bound)
+
+    collect(node, frozenset())
+    return list(found)

@@ -442,6 +442,8 @@ def _without_braces(content: Items, at: int, script: bool) -> list[Item]:
     kinds = {item.kind for item in content}
     if not content or kinds == {"prime"}:
         return list(content)
+    if content[0].kind in ("sub", "sup"):
+        raise UnreadableError(Trouble.SCRIPT, "a script on nothing, in braces of its own", content[0].at)
     if script or (content[0].kind != "comma" and kinds & {"sign", "relation", "arrow", "word"}):
         return [Item("group", "{}", at, (content,))]
     if "comma" in kinds and content[0].kind != "comma":

@@ -6,6 +6,7 @@ from functools import cache
 from pathlib import Path
 
 from semispline.papers.latex import Block, Formula, NamesTable, read_blocks, read_formula, read_names
+from semispline.papers.pseudocode import Program, load
 
 _FOLDER = Path(__file__).parent
 
@@ -40,3 +41,24 @@ def formula(identifier: str) -> Formula:
     """
     block = blocks()[identifier]
     return read_formula(block.text, names().of(identifier), block.source, block.line)
+
+
+# What no rule translates, and what stands for it.
+_REPLACED = {"bsplines.9": {"copy of control points": "copy(points)"}}
+
+
+@cache
+def code(identifier: str) -> Program:
+    """Return a printed piece of pseudo-code, translated.
+
+    Raises
+    ------
+    UnreadableCodeError
+        It is no code: a list of words.
+
+    Examples
+    --------
+    >>> list(code("curvature.3").functions)
+    ['kappa']
+    """
+    return load(blocks()[identifier].text, _REPLACED.get(identifier))
