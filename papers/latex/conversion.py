@@ -1,7 +1,7 @@
 """From trees to SymPy. Symbols come from the table of names, so that formula, oracle and check share them.
 
-SymPy cancels, commutes and reorders while it builds: what was read is asked of the tree, what is true of this. Both sides of
-a step stay apart, never an `Eq`, which may collapse while it is made.
+SymPy cancels, commutes and reorders while it builds: what was read is asked of the tree, what is true of this. Both
+sides of a step stay apart, never an `Eq`, which may collapse while it is made.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ _CONSTANTS = {"\\pi": sp.pi, "e": sp.E}
 
 
 def to_sympy(tree: Tree, names: Names, given: Mapping[str, Any] | None = None, branch: int = 1) -> Any:
-    """Return a tree as a SymPy expression.
+    r"""Return a tree as a SymPy expression.
 
     Parameters
     ----------
@@ -65,7 +65,7 @@ def to_sympy(tree: Tree, names: Names, given: Mapping[str, Any] | None = None, b
         Pattern of a name -> what stands for it: an expression, or for a name with indices or arguments a callable of their
         values, indices first.
     branch : int
-        1 or -1, which sign `\\pm` stands for.
+        1 or -1, which sign `\pm` stands for.
 
     Raises
     ------
@@ -76,7 +76,7 @@ def to_sympy(tree: Tree, names: Names, given: Mapping[str, Any] | None = None, b
     --------
     >>> from semispline.papers.latex.names import read_names
     >>> from semispline.papers.latex.reading import read_formula
-    >>> names = read_names("n, i : integer >= 0\\nx : real\\nw_i : real").of("eq-1")
+    >>> names = read_names("n, i : integer >= 0\nx : real\nw_i : real").of("eq-1")
     >>> to_sympy(read_formula(r"x^2 + w_{n+1}", names).statements[0].sides[0], names)
     x**2 + w_i[n + 1]
     """
@@ -296,7 +296,7 @@ def _template(one: Any, other: Any, place: Named) -> Any:
     if isinstance(one, tuple):
         return tuple(_template(a, b, place) for a, b in zip(one, other, strict=True))
     if type(one) is type(other) and hasattr(one, "__dataclass_fields__") and not isinstance(one, Number):
-        if not isinstance(one, Named) or one.name == other.name:
+        if not (isinstance(one, Named) and one.name != other.name):
             names = one.__dataclass_fields__
             return replace(one, **{f: _template(getattr(one, f), getattr(other, f), place) for f in names})
     return place

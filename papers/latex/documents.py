@@ -6,7 +6,8 @@
     B(t) = (1-t) P_0 + t P_1
     ```
 
-A block of `math` is LaTeX, one of `text` is pseudo-code; nothing else stands in such a file but headings of chapters (`#`).
+A block of `math` is LaTeX, one of `text` is pseudo-code; nothing else stands in such a file but headings of chapters
+(`#`).
 """
 
 from __future__ import annotations

@@ -6,6 +6,7 @@ The echo stands beside the printed formula and is read in its place: read again 
 from __future__ import annotations
 
 from semispline.papers.latex.names import Declaration, Names, Slot
+from semispline.papers.latex.tokens import FUNCTIONS
 from semispline.papers.latex.trees import (
     BigSum,
     Binomial,
@@ -34,7 +35,6 @@ from semispline.papers.latex.trees import (
 )
 
 _BARS = {"abs": (r"\left|", r"\right|"), "norm": (r"\left||", r"\right||")}
-_WORDS = frozenset("sin cos tan cot sec csc arcsin arccos arctan sinh cosh tanh exp ln log".split())
 
 
 def echo(statements: tuple[Statement, ...], names: Names) -> str:
@@ -54,7 +54,7 @@ def echo(statements: tuple[Statement, ...], names: Names) -> str:
     # In a line of its own a relation needs no column mark before it.
     if len(rows) == 1:
         return "".join(rows[0])
-    return "\\begin{aligned}\n" + " \\\\\n".join("&".join(row) for row in rows) + "\n\\end{aligned}"
+    return "\begin{aligned}\n" + " \\\n".join("&".join(row) for row in rows) + "\n\\end{aligned}"
 
 
 def echo_statement(statement: Statement, names: Names) -> str:
@@ -158,7 +158,8 @@ def _structure(tree: Tree, names: Names) -> str:
             return f"{brackets[0]}{_text(lower, names)}, {_text(upper, names)}{brackets[1]}"
         case Cases(cases):
             rows_ = " \\\\ ".join(
-                f"{_text(value, names)} & " + (f"\\text{{if }} {echo_statement(c, names)}" if c else "\\text{otherwise}")
+                f"{_text(value, names)} & "
+                + (f"\\text{{if }} {echo_statement(c, names)}" if c else "\\text{otherwise}")
                 for value, c in cases
             )
             return f"\\left\\{{ \\begin{{matrix}} {rows_} \\end{{matrix}} \\right."
@@ -210,7 +211,7 @@ def _call(function: str, argument: str) -> str:
     if function == "sqrt":
         return f"\\sqrt{{{argument}}}"
     # A name that LaTeX has no macro for is a word of the table.
-    return f"{f'{chr(92)}{function}' if function in _WORDS else function}\\left( {argument} \\right)"
+    return f"{f'{chr(92)}{function}' if function in FUNCTIONS else function}\\left( {argument} \\right)"
 
 
 def _transposed(matrix: Tree, names: Names) -> str:

@@ -1,7 +1,8 @@
 """The table of names of a paper: which names its formulas use, and what each may stand for.
 
-Each line is `PATTERN, PATTERN : KIND`, patterns in LaTeX; `#` begins a remark. Lines before any heading hold for the whole
-document, those under `[chapter]` for all ids `chapter.N`, those under `[id]` for one formula. `- PATTERN` takes a name away.
+Each line is `PATTERN, PATTERN : KIND`, patterns in LaTeX; `#` begins a remark. Lines before any heading hold for the
+whole document, those under `[chapter]` for all ids `chapter.N`, those under `[id]` for one formula. `- PATTERN` takes
+a name away.
 
     n, i, k : integer >= 0
     t : real in [0,1]
@@ -10,8 +11,15 @@ document, those under `[chapter]` for all ids `chapter.N`, those under `[id]` fo
     sin, cos : standard function
     TMC : product
 
-A letter in an index that is a declared integer stands for any integer expression; any other text there is a label. `P_{ij}`
-with integers i and j has two indices.
+A letter in an index that is a declared integer stands for any integer expression; any other text there is a label.
+`P_{ij}` with integers i and j has two indices.
+
+Kinds: `integer`, `real`, `constant` (such as π); `point` (read coordinate by coordinate), `plane point` (two
+coordinates), `matrix` or `matrix 3x3`, `list`; `function`, `function point` and so on for other values, `function
+bare` where its bracket may be missing; `standard function` for words such as sin. Behind a kind stand a range (`>=
+0`, `> 0`, `in [0,1]`) and `word`, for a name whose letters are all names too. Of what is no name: `label` (a word
+below a bracket), `colour` (a word whose bracket only colours), `product` (three letters or more that are one),
+`postfix derivative` (d/dt may stand last).
 """
 
 from __future__ import annotations
@@ -183,7 +191,7 @@ class NamesTable:
 
 
 def read_names(text: str, source: str = "") -> NamesTable:
-    """Return a table of names.
+    r"""Return a table of names.
 
     Parameters
     ----------
@@ -198,7 +206,7 @@ def read_names(text: str, source: str = "") -> NamesTable:
 
     Examples
     --------
-    >>> table = read_names("n : integer >= 0\\nP_n(x) : function\\nx : real")
+    >>> table = read_names("n : integer >= 0\nP_n(x) : function\nx : real")
     >>> [d.pattern for d in table.of("eq-1").declarations]
     ['n', 'P_n(x)', 'x']
     """
@@ -297,16 +305,16 @@ def _declaration(
         raise _error(source, line.number, f"{text}: found {kind}, expected a function just where arguments are named")
     return Declaration(
         text, kind=kind, value=value, line=line.number, bare=bare, word=word, size=size, range=options, **shape
-    )  # type: ignore[arg-type]
+    )
 
 
 def head_of(item: Item) -> str:
-    """Return the head that an item begins a name with, or nothing.
+    r"""Return the head that an item begins a name with, or nothing.
 
     Examples
     --------
-    >>> head_of(nest(r"\\\\hat{x}")[0])
-    '\\\\hat{x}'
+    >>> print(head_of(nest(r"\hat{x} + 1")[0]))
+    \hat{x}
     """
     if item.kind in ("run", "upright", "letter"):
         return item.text
@@ -327,18 +335,18 @@ def _shape(line: _Line, items: Items, integers: set[str], source: str) -> dict[s
     rest = list(items)
     # `{P_i}_x`: what stands in braces comes first.
     while rest and rest[0].kind == "group":
-        rest = [*rest[0].parts[0], *rest[1:]]  # type: ignore[list-item]
+        rest = [*rest[0].parts[0], *rest[1:]]
     head = head_of(rest[0]) if rest else ""
     if not head:
         raise _error(source, line.number, f"{line.patterns!r} is no name")
     for item in rest[1:]:
         if item.kind in ("sub", "sup"):
-            slots = _slots(item.parts[0], integers)  # type: ignore[arg-type]
+            slots = _slots(item.parts[0], integers)
             (above if item.kind == "sup" else below if arguments is None else after).append(slots)
         elif item.kind == "prime":
             primes += 1
         elif item.kind == "fence" and item.text == "()" and arguments is None:
-            arguments = tuple("".join(i.text for i in part) for part in split(item.parts[0]))  # type: ignore[arg-type]
+            arguments = tuple("".join(i.text for i in part) for part in split(item.parts[0]))
         elif item.kind == "fence" and item.text == "[]":
             bracket = True
         else:

@@ -1,7 +1,8 @@
 """A page of echoes: what was read of each formula, for a reader with the print beside it.
 
-Mutation of tokens cannot see a condition that is attached to the wrong line, and an echo that is read again cannot either: a
-reader can. So each entry says whether it was compared with the print, and one that changes is not compared any more.
+Mutation of tokens cannot see a condition that is attached to the wrong line, and an echo that is read again cannot
+either: a reader can. So each entry says whether it was compared with the print, and one that changes is not compared
+any more.
 """
 
 from __future__ import annotations

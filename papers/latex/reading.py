@@ -5,7 +5,7 @@ from __future__ import annotations
 import unicodedata
 from dataclasses import dataclass
 
-from semispline.papers.latex.errors import UnreadableError
+from semispline.papers.latex.errors import Trouble, UnreadableError
 from semispline.papers.latex.names import Names
 from semispline.papers.latex.statements import statements
 from semispline.papers.latex.tokens import nest
@@ -90,6 +90,8 @@ def read_formula(latex: str, names: Names, source: str = "", line: int = 1) -> F
         return Formula(latex, names, statements(nest(latex, names.colours), names))
     except UnreadableError as error:
         raise error.placed(latex, source, line) from None
+    except RecursionError:
+        raise UnreadableError(Trouble.TEX, "too many brackets in each other", 0).placed(latex, source, line) from None
 
 
 def _steps(statement: Statement, known: list[Statement]) -> list[Step]:
@@ -107,13 +109,13 @@ def _steps(statement: Statement, known: list[Statement]) -> list[Step]:
 
 
 def free_names(node: object) -> list[str]:
-    """Return the declared names in a tree that no sum and no integral of it binds, in their order.
+    r"""Return the declared names in a tree that no sum and no integral of it binds, in their order.
 
     Examples
     --------
     >>> from semispline.papers.latex.names import read_names
-    >>> names = read_names("n, i : integer >= 0\\nw_i : real").of("eq-1")
-    >>> free_names(read_formula(r"\\sum_{i=0}^{n} w_i", names).statements)
+    >>> names = read_names("n, i : integer >= 0\nw_i : real").of("eq-1")
+    >>> free_names(read_formula(r"\sum_{i=0}^{n} w_i", names).statements)
     ['n', 'w_i']
     """
     found: dict[str, None] = {}

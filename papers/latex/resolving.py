@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from semispline.papers.latex.errors import Trouble, UnreadableError
-from semispline.papers.latex.names import Declaration, Names, Slot, head_of, label_of
+from semispline.papers.latex.names import Declaration, Names, Slot, label_of
 from semispline.papers.latex.tokens import Item, Items, split
 from semispline.papers.latex.trees import Binomial, Factorial, Named, Number, Product, Sum, Tree
 
@@ -40,13 +40,13 @@ def scripts_after(items: Sequence[Item], i: int, layered: bool = False) -> Scrip
         item = items[i]
         if item.kind == "prime":
             primes += 1
-        elif item.kind == "sup" and all(inner.kind == "prime" for inner in item.parts[0]):  # type: ignore[union-attr]
+        elif item.kind == "sup" and all(inner.kind == "prime" for inner in item.parts[0]):
             primes += len(item.parts[0])
         elif item.kind in ("sub", "sup"):
             scripts = below if item.kind == "sub" else above
             if scripts and not layered:
                 raise UnreadableError(Trouble.TEX, f"found a second {item.text}, which TeX refuses", item.at)
-            scripts.append(item.parts[0])  # type: ignore[arg-type]
+            scripts.append(item.parts[0])
         else:
             break
         i += 1
@@ -83,8 +83,9 @@ def resolve(
     Raises
     ------
     UnreadableError
+        No declared name fits, or two do; or what is in an index or a bracket is not read.
     """
-    fits: list[tuple[Declaration, Tree, Items | None, int]] = []
+    fits: list[tuple[Declaration, Tree, int]] = []
     inner: UnreadableError | None = None
     declared = names.by_head.get(head, ())
     for declaration in declared:
@@ -99,78 +100,79 @@ def resolve(
         both = " and ".join(f"{d.pattern} (line {d.line})" for d, *_ in fits)
         raise UnreadableError(Trouble.TWO_NAMES, f"fits {both}", at)
     if fits:
-        _, tree, left, end = fits[0]
-        return tree, left, end
+        declaration, tree, end = fits[0]
+        return tree, _left_over(declaration, scripts), end
     if inner is not None:
         raise inner
-    known = ", ".join(f"{d.pattern} (line {d.line})" for d in declared)
-    raise UnreadableError(
-        Trouble.UNDECLARED, f"no declared name fits {head!r} as it stands here; declared: {known or 'none'}", at
-    )
+    known = ", ".join(f"{d.pattern} (line {d.line})" for d in declared) or "none"
+    reason = f"no declared name fits {head!r} as it stands here; declared with it: {known}"
+    raise UnreadableError(Trouble.UNDECLARED, reason, at)
 
 
-def _fit(
-    d: Declaration, items: Items, scripts: Scripts, names: Names, read: Read
-) -> tuple[Tree, Items | None, int] | None:
-    if len(d.below) != len(scripts.below) or len(d.above) > len(scripts.above):
-        return None
-    is_function = d.arguments is not None
+def _left_over(d: Declaration, scripts: Scripts) -> Items | None:
+    """Return the exponent: what stands above a name that has no index there."""
+    return scripts.above[len(d.above)] if len(scripts.above) > len(d.above) else None
+
+
+def _fit(d: Declaration, items: Items, scripts: Scripts, names: Names, read: Read) -> tuple[Tree, int] | None:
+    """Return a name and the index behind it, or None where the declaration does not fit."""
     derivative = scripts.primes - d.primes
-    if derivative < 0 or (derivative and not is_function):
+    if len(d.below) != len(scripts.below) or len(d.above) > len(scripts.above) or derivative < 0:
         return None
-    slots: list[Tree] = []
-    for pattern, content in zip((*d.below, *d.above), (*scripts.below, *scripts.above), strict=False):
-        values = _slot_values(pattern, content, names, read)
-        if values is None:
-            return None
-        slots += values
-    # What is above a name without indices there is an exponent, and what is above some of them is not known.
-    left = scripts.above[len(d.above)] if len(scripts.above) > len(d.above) else None
+    slots = _slots((*d.below, *d.above), (*scripts.below, *scripts.above[: len(d.above)]), names, read)
+    if slots is None:
+        return None
     end = scripts.end
-    following = items[end] if end < len(items) else None
+    following = items[end] if end < len(items) else Item("", "", items[end - 1].at)
+    if d.arguments is not None:
+        return _function(d, derivative, slots, items, end, following, scripts, names, read)
+    if derivative:
+        return None
     if d.bracket:
-        if following is None or following.kind != "fence" or following.text != "[]":
+        if following.kind != "fence" or following.text != "[]":
             return None
-        slots.append(_index(following.parts[0], names, read))  # type: ignore[arg-type]
-        return Named(d.pattern, tuple(slots)), left, end + 1
-    if not is_function:
-        # A bracket that holds a list, or takes an index, is no factor.
-        if following is not None and following.kind == "fence" and following.text == "()":
-            is_list = len(split(following.parts[0])) > 1  # type: ignore[arg-type]
-            if is_list or (end + 1 < len(items) and items[end + 1].kind == "sub"):
-                return None
-        return Named(d.pattern, tuple(slots)), left, end
-    if following is None or following.kind != "fence" or following.text != "()":
+        return Named(d.pattern, (*slots, _index(following.parts[0], names, read))), end + 1
+    # A bracket that holds a list, or takes an index, is no factor.
+    is_bracket = following.kind == "fence" and following.text == "()"
+    takes_index = end + 1 < len(items) and items[end + 1].kind == "sub"
+    if is_bracket and (takes_index or len(split(following.parts[0])) > 1):
+        return None
+    return Named(d.pattern, slots), end
+
+
+def _function(
+    d: Declaration,
+    derivative: int,
+    slots: tuple[Tree, ...],
+    items: Items,
+    end: int,
+    following: Item,
+    scripts: Scripts,
+    names: Names,
+    read: Read,
+) -> tuple[Tree, int] | None:
+    if following.kind != "fence" or following.text != "()":
         if not d.bare or d.after:
             return None
-        _variable_place(d, names, derivative, items[end - 1].at)
-        return Named(d.pattern, tuple(slots), None, derivative), left, end
-    arguments = split(following.parts[0])  # type: ignore[arg-type]
-    assert d.arguments is not None
-    if len(arguments) != len(d.arguments):
+        _variable_place(d, names, derivative, following.at)
+        return Named(d.pattern, slots, None, derivative), end
+    arguments = split(following.parts[0])
+    if len(arguments) != len(d.arguments or ()):
         return None
-    if left is not None:
-        raise UnreadableError(
-            Trouble.FUNCTION_POWER,
-            f"a power of {d.pattern} before its bracket may be a power, an index, an iterate",
-            following.at,
-        )
+    if _left_over(d, scripts) is not None:
+        reason = f"a power of {d.pattern} before its bracket may be a power, an index, an iterate"
+        raise UnreadableError(Trouble.FUNCTION_POWER, reason, following.at)
     end += 1
     if d.after:
         behind = scripts_after(items, end)
-        if len(behind.below) != len(d.after) or behind.above or behind.primes:
+        more = _slots(d.after, behind.below, names, read) if len(behind.below) == len(d.after) else None
+        if more is None or behind.above or behind.primes:
             return None
-        for pattern, content in zip(d.after, behind.below, strict=True):
-            values = _slot_values(pattern, content, names, read)
-            if values is None:
-                return None
-            slots += values
-        end = behind.end
+        slots, end = (*slots, *more), behind.end
     elif end < len(items) and items[end].kind == "sub":
         return None
     _variable_place(d, names, derivative, following.at)
-    values_ = tuple(read(argument, following.at) for argument in arguments)
-    return Named(d.pattern, tuple(slots), values_, derivative), left, end
+    return Named(d.pattern, slots, tuple(read(argument, following.at) for argument in arguments), derivative), end
 
 
 def _variable_place(d: Declaration, names: Names, derivative: int, at: int) -> None:
@@ -188,27 +190,32 @@ def derivative_place(d: Declaration, names: Names) -> int | None:
     return places[0] if len(places) == 1 else None
 
 
+def _slots(
+    patterns: tuple[tuple[Slot, ...], ...], contents: tuple[Items, ...], names: Names, read: Read
+) -> tuple[Tree, ...] | None:
+    """Return what stands for the index letters of some scripts, or None where one does not fit."""
+    values: list[Tree] = []
+    for pattern, content in zip(patterns, contents, strict=True):
+        found = _slot_values(pattern, content, names, read)
+        if found is None:
+            return None
+        values += found
+    return tuple(values)
+
+
 def _slot_values(pattern: tuple[Slot, ...], content: Items, names: Names, read: Read) -> list[Tree] | None:
-    """Return what stands for the index letters of one script, or None where it does not fit."""
     if not any(slot.is_index for slot in pattern):
         return [] if label_of(content) == ",".join(slot.text for slot in pattern) else None
-    parts = split(content)
-    if len(parts) != len(pattern) and len(parts) == 1 and len(content) == 1:
+    entries = split(content)
+    only = content[0] if len(content) == 1 else Item("", "", 0)
+    if len(entries) < len(pattern) == len(only.text) and only.kind in ("run", "number"):
         # Several indices without commas: one letter or digit each.
-        only = content[0]
-        if only.kind in ("run", "number") and len(only.text) == len(pattern):
-            kind = only.kind
-            parts = [(Item(kind, c, only.at + k),) for k, c in enumerate(only.text)]
-    if len(parts) != len(pattern):
+        entries = [(Item(only.kind, c, only.at + k),) for k, c in enumerate(only.text)]
+    if len(entries) != len(pattern):
         return None
-    values: list[Tree] = []
-    for slot, part in zip(pattern, parts, strict=True):
-        if not slot.is_index:
-            if label_of(part) != slot.text:
-                return None
-        else:
-            values.append(_index(part, names, read))
-    return values
+    if any(label_of(e) != slot.text for slot, e in zip(pattern, entries, strict=True) if not slot.is_index):
+        return None
+    return [_index(entry, names, read) for slot, entry in zip(pattern, entries, strict=True) if slot.is_index]
 
 
 def _index(content: Items, names: Names, read: Read) -> Tree:
@@ -221,16 +228,13 @@ def _index(content: Items, names: Names, read: Read) -> Tree:
 
 def is_integer(tree: Tree, names: Names) -> bool:
     """Tell whether a tree is made of whole numbers and declared integers."""
-    if isinstance(tree, Number):
-        return "." not in tree.text
-    if isinstance(tree, Named):
-        declaration = names.by_pattern.get(tree.name)
-        return declaration is not None and declaration.value == "integer"
-    if isinstance(tree, Sum):
-        return all(is_integer(term, names) for _, term in tree.terms)
-    if isinstance(tree, Product):
-        return all(is_integer(factor, names) for factor in tree.factors)
+    match tree:
+        case Number(text):
+            return "." not in text
+        case Named(name):
+            return names.by_pattern[name].value == "integer"
+        case Sum(terms):
+            return all(is_integer(term, names) for _, term in terms)
+        case Product(factors):
+            return all(is_integer(factor, names) for factor in factors)
     return isinstance(tree, Factorial | Binomial)
-
-
-__all__ = ["Scripts", "cut", "derivative_place", "head_of", "is_integer", "resolve", "scripts_after"]

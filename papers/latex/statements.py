@@ -1,8 +1,8 @@
 """What a display says: statements line by line, and to which of them a condition belongs.
 
-A line that begins with a relation continues the last chain that is no condition; one that begins with a sign, or follows a
-line that ends in one, continues the sum before it. `where` gives a name from its own line on, `when` limits the statement
-right before it. What looks like columns of a picture is refused.
+A line that begins with a relation continues the last chain that is no condition; one that begins with a sign, or
+follows a line that ends in one, continues the sum before it. `where` gives a name from its own line on, `when` limits
+the statement right before it. What looks like columns of a picture is refused.
 """
 
 from __future__ import annotations
@@ -10,10 +10,10 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from semispline.papers.latex.errors import Trouble, UnreadableError
-from semispline.papers.latex.expressions import expression
+from semispline.papers.latex.expressions import side_of
 from semispline.papers.latex.names import Names
 from semispline.papers.latex.tokens import LAYOUTS, WORDS, Item, Items, split
-from semispline.papers.latex.trees import Condition, Interval, Number, Statement, Tree
+from semispline.papers.latex.trees import Condition, Number, Statement, Tree
 
 
 def statements(items: Items, names: Names) -> tuple[Statement, ...]:
@@ -34,8 +34,7 @@ def statements(items: Items, names: Names) -> tuple[Statement, ...]:
 def _lines(items: Items) -> list[Items]:
     """Return the lines of a display: rows of the environment that it is, cells joined."""
     if len(items) == 1 and items[0].kind == "rows" and items[0].text in LAYOUTS:
-        rows: list[tuple[Items, ...]] = list(items[0].parts)  # type: ignore[arg-type]
-        return [line for row in rows for line in _lines(_joined(row)) if line]
+        return [line for row in items[0].rows for line in _lines(_joined(row)) if line]
     return [items]
 
 
@@ -171,8 +170,7 @@ class _Display:
                 raise UnreadableError(
                     Trouble.LAYOUT, "conditions in braces with no statement before them", items[-1].at
                 )
-            content: Items = items[-1].parts[0]  # type: ignore[assignment]
-            for part in split(content):
+            for part in split(items[-1].parts[0]):
                 sides = split(part, "relation")
                 # { a = 3b } gives a name, { x <= 1 } is a limit.
                 gives = len(sides) == 2 and len(sides[0]) <= 2 and any(x.text == "=" for x in part)
@@ -181,8 +179,7 @@ class _Display:
         return self._statement(items, mode, last)
 
     def _system(self, fence: Item, mode: str, last: _Draft | None) -> _Draft | None:
-        content: Items = fence.parts[0]  # type: ignore[assignment]
-        for line in _sums_joined(_lines(content)):
+        for line in _sums_joined(_lines(fence.parts[0])):
             words = _with_words(line, self.names)
             if mode:
                 last = self._statement(words, mode, last)
@@ -192,8 +189,7 @@ class _Display:
         return last
 
     def _givens(self, fence: Item) -> None:
-        content: Items = fence.parts[0]  # type: ignore[assignment]
-        for line in _lines(content):
+        for line in _lines(fence.parts[0]):
             self.given.append(self._chain(line, allow_continuing=False))
 
     def _attach(self, word: str, items: Items, to: _Draft) -> _Draft:
@@ -237,23 +233,16 @@ class _Display:
                 raise UnreadableError(Trouble.LAYOUT, "a condition that begins with a relation", at)
             sides = sides[1:]
         # `a = ... = b` leaves steps out.
-        kept = [k for k, side in enumerate(sides) if not (_is_dots(side) and 0 < k + continues and k < len(sides) - 1)]
+        kept = [k for k, side in enumerate(sides) if not (_is_dots(side) and k + continues > 0 and k < len(sides) - 1)]
         texts = [relation.text for relation in relations]
         for k in range(len(sides)):
             if k not in kept and {texts[k - 1 + continues], texts[k + continues]} != {"="}:
                 raise UnreadableError(Trouble.ELLIPSIS, "dots between relations that are not both =", at)
-        trees = [self._side(sides[k], texts[k - 1 + continues] if k + continues else "", at) for k in kept]
+        trees = [side_of(sides[k], texts[k - 1 + continues] if k + continues else "", self.names, at) for k in kept]
         texts = [texts[k + continues - 1] for k in kept if k + continues]
         if len(trees) == 1 and not texts and isinstance(trees[0], Number) and self.done:
             raise UnreadableError(Trouble.NUMERAL, "a number that stands alone behind a comma", at)
         return _Draft(trees, texts, continues, "", since=0)
-
-    def _side(self, side: Items, relation: str, at: int) -> Tree:
-        if relation == "\\in" and len(side) == 1 and side[0].kind == "fence" and side[0].text[0] in "([":
-            ends = split(side[0].parts[0])  # type: ignore[arg-type]
-            if len(ends) == 2:
-                return Interval(side[0].text, *(expression(end, self.names, side[0].at) for end in ends))
-        return expression(side, self.names, side[0].at if side else at)
 
 
 def _is_dots(side: Items) -> bool:
@@ -264,5 +253,4 @@ def _is_conditions(item: Item) -> bool:
     """Whether braces hold relations, such as { x <= 1 } behind a formula."""
     if item.kind != "fence" or item.text != "\\{\\}":
         return False
-    content: Items = item.parts[0]  # type: ignore[assignment]
-    return all(any(x.kind == "relation" for x in part) for part in split(content))
+    return all(any(x.kind == "relation" for x in part) for part in split(item.parts[0]))

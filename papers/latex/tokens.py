@@ -28,30 +28,34 @@ class Item(NamedTuple):
     Attributes
     ----------
     kind : str
-        number, run (of letters), upright (word), letter (by macro), function, sign, dot, slash, relation, comma, arrow, dots, prime,
-        bang, word, big (sum, integral), partial; and with parts: sub, sup, group, fence, fraction, root, binomial,
-        accent, text, rows.
+        number, run (of letters), upright (word), letter (by macro), function, sign, dot, slash, relation, comma, arrow,
+        dots, prime, bang, word, big (sum, integral), partial; and with parts: sub, sup, group, fence, fraction, root,
+        binomial, accent, text, rows.
     text : str
         As printed; of a fence its delimiters, of rows the name of the environment.
     at : int
         Offset in the formula.
-    parts : tuple
-        Of what is nested: tuples of items; of rows: rows of cells of items.
+    parts : tuple of Items
+        Of what is nested.
+    rows : tuple of tuples of Items
+        Of rows: their cells.
     """
 
     kind: str
     text: str
     at: int
-    parts: tuple[tuple[Item, ...], ...] | tuple[tuple[tuple[Item, ...], ...], ...] = ()
+    parts: tuple[tuple[Item, ...], ...] = ()
+    rows: tuple[tuple[tuple[Item, ...], ...], ...] = ()
 
 
 Items = tuple[Item, ...]
 
 # Greek by code point is one letter, whichever way it is typed: φ is \phi.
-_GREEK = {chr(c): name.split()[3].lower() for c in range(0x3B1, 0x3CA) if (name := unicodedata.name(chr(c)))} | {
-    chr(c): name.split()[3].capitalize() for c in range(0x391, 0x3AA) if (name := unicodedata.name(chr(c), ""))
+_GREEK = {
+    letter: name.lower() if letter.islower() else name.capitalize()
+    for letter in map(chr, (*range(0x391, 0x3AA), *range(0x3B1, 0x3CA)))
+    if (name := unicodedata.name(letter, "").rpartition(" ")[2]) and "FINAL" not in unicodedata.name(letter)
 }
-_GREEK = {code: name for code, name in _GREEK.items() if name not in ("final", "Final")}
 _RAISED = {raised: str(k) for k, raised in enumerate("⁰¹²³⁴⁵⁶⁷⁸⁹")}
 _NO_LETTER = "".join((*_RAISED, *_GREEK))
 _SCAN = re.compile(
@@ -67,24 +71,32 @@ _SCAN = re.compile(
 )
 
 _GREEK_NAMES = frozenset(_GREEK.values()) | {"varepsilon", "vartheta", "varphi", "varrho", "varpi", "varsigma"}
-_SPACES = frozenset(", ; : ! quad qquad enspace displaystyle textstyle limits nolimits".split()) | {" ", "\n"}
-_MACROS = (
-    {name: "dot" for name in ("cdot", "times")}
-    | {name: "sign" for name in ("pm", "mp")}
-    | {
-        name: "relation"
-        for name in ("leq le geq ge neq ne lt gt simeq approx equiv in bot perp propto sim cong ll gg".split())
-    }
-    | {name: "arrow" for name in ("Rightarrow", "rightarrow", "implies", "to", "Leftrightarrow", "iff", "Downarrow")}
-    | {name: "dots" for name in ("dots", "ldots", "cdots", "vdots", "ddots")}
-    | {name: "big" for name in ("sum", "int")}
-    | {name: "function" for name in "sin cos tan cot sec csc arcsin arccos arctan sinh cosh tanh exp ln log".split()}
-    | {name: "accent" for name in "hat vec bar tilde mathbf mathbb mathcal mathrm boldsymbol mathfrak".split()}
-    | {name: "text" for name in "text textit textrm textbf operatorname mbox".split()}
-    | {"prime": "prime", "partial": "partial", "infty": "letter"}
-)
-_SAME = {"le": "leq", "ge": "geq", "ne": "neq", "lt": "<", "gt": ">", "perp": "bot", "implies": "Rightarrow"}
-_SAME |= {"to": "rightarrow", "iff": "Leftrightarrow"}
+_SPACES = frozenset((",", ";", ":", "!", " ", "\n", "quad", "qquad", "enspace", "displaystyle", "limits", "nolimits"))
+_FUNCTIONS = "sin cos tan cot sec csc arcsin arccos arctan sinh cosh tanh exp ln log"
+_MACROS_OF_KIND = {
+    "dot": "cdot times",
+    "sign": "pm mp",
+    "relation": "leq le geq ge neq ne lt gt simeq approx equiv in bot perp propto sim cong ll gg",
+    "arrow": "Rightarrow rightarrow implies to Leftrightarrow iff Downarrow",
+    "dots": "dots ldots cdots vdots ddots",
+    "big": "sum int",
+    "function": _FUNCTIONS,
+    "accent": "hat vec bar tilde mathbf mathbb mathcal mathrm boldsymbol mathfrak",
+    "text": "text textit textrm textbf operatorname mbox",
+    "prime": "prime",
+    "partial": "partial",
+    "letter": "infty",
+}
+_MACROS = {name: kind for kind, names in _MACROS_OF_KIND.items() for name in names.split()}
+# Functions that all know.
+FUNCTIONS = frozenset(_FUNCTIONS.split())
+# Macros that print the same.
+_SAME = {
+    "le": "\\leq", "ge": "\\geq", "ne": "\\neq", "lt": "<", "gt": ">", "perp": "\\bot", "implies": "\\Rightarrow",
+    "to": "\\rightarrow", "iff": "\\Leftrightarrow", "times": "\\cdot",
+}  # fmt: skip
+_STRUCTURES = frozenset(("frac", "dfrac", "tfrac", "binom", "choose", "sqrt", "left", "begin", "{", "|"))
+_CLOSERS = frozenset((")", "]", "}", "&", "\\right", "\\end", "\\\\", "\\}"))
 _OTHERS = {
     "+": ("sign", "+"), "-": ("sign", "-"), "−": ("sign", "-"), "±": ("sign", "\\pm"),
     "·": ("dot", "\\cdot"), "⋅": ("dot", "\\cdot"), "×": ("dot", "\\cdot"),
@@ -102,18 +114,19 @@ WORDS = {
 LAYOUTS = frozenset(("aligned", "align", "align*", "split", "array", "matrix", "gathered", "cases"))
 MATRICES = frozenset(("bmatrix", "pmatrix", "matrix", "array"))
 _CLOSING = {"(": ")", "[": "]", "\\{": "\\}", "|": "|", "||": "||"}
+# What a bar may close behind.
 _OPERANDS = frozenset(
-    ("number", "run", "upright", "letter", "prime", "bang", "sub", "sup", "group", "fence", "fraction", "root", "binomial", "rows")
-)
+    ("number", "run", "upright", "letter", "prime", "bang", "sub", "sup", "group", "fence", "fraction", "root", "rows")
+) | {"binomial"}
 
 
 def scan(latex: str) -> list[Token]:
-    """Return all tokens of a formula, spaces among them: their texts, joined, are the formula.
+    r"""Return all tokens of a formula, spaces among them: their texts, joined, are the formula.
 
     Examples
     --------
-    >>> [token.text for token in scan(r"x_12 \\cdot at")]
-    ['x', '_', '12', ' ', '\\\\cdot', ' ', 'at']
+    >>> [token.text for token in scan(r"x_12 \cdot at")]
+    ['x', '_', '12', ' ', '\\cdot', ' ', 'at']
     """
     return [Token(found.lastgroup or "", found[0], found.start()) for found in _SCAN.finditer(latex)]
 
@@ -133,7 +146,7 @@ def nest(latex: str, colours: frozenset[str] = frozenset()) -> Items:
         Braces, fences or environments that are not closed, or an unknown macro.
     """
     tokens = [token for token in scan(latex) if token.kind != "space"]
-    items, end = _Nesting(latex, tokens, colours).level(0, "")
+    items, end = _Nesting(latex, tokens, colours).level(0)
     if end != len(tokens):
         raise UnreadableError(Trouble.DELIMITERS, f"found {tokens[end].text!r} that nothing opens", tokens[end].at)
     return items
@@ -162,66 +175,67 @@ class _Nesting:
     def __init__(self, latex: str, tokens: list[Token], colours: frozenset[str]) -> None:
         self.latex, self.tokens, self.colours = latex, tokens, colours
 
-    def level(self, i: int, opener: str) -> tuple[Items, int]:
+    def level(self, i: int) -> tuple[Items, int]:
         """Return the items up to what closes this level, and the index of that."""
         items: list[Item] = []
-        bars = False
-        while i < len(self.tokens):
-            kind, text, at = self.tokens[i]
-            if kind == "run":
-                if text in self.colours and self._is(i + 1, "["):
-                    inner, i = self.level(i + 2, "[")
-                    i = self._closed(i, "]", at)
-                    items += inner
-                else:
-                    items.append(Item("run", text, at))
-                    i += 1
-            elif kind == "number":
-                items.append(_number(text, at))
-                i += 1
-            elif kind == "macro":
-                if text in ("\\right", "\\end", "\\\\", "\\}"):
-                    break
+        while i < len(self.tokens) and self.tokens[i].text not in _CLOSERS:
+            kind = self.tokens[i].kind
+            if kind == "macro":
                 i = self._macro(i, items)
-            elif kind == "raised":
-                number = "".join(_RAISED[c] for c in text)
-                items.append(Item("sup", "^", at, ((_number(number, at),),)))
-                i += 1
-            elif kind == "dots":
-                items.append(Item("dots", "...", at))
-                i += 1
-            elif kind == "bars":
-                items.append(Item("bars", text, at))
-                bars = True
-                i += 1
-            elif text in "^_":
-                content, i = self._script(i)
-                items.append(Item("sup" if text == "^" else "sub", text, at, (content,)))
-            elif text == "{":
-                inner, i = self._group(i)
-                items += inner
-            elif text in "([":
-                inner, i = self.level(i + 1, text)
-                closing = self.tokens[i].text if i < len(self.tokens) else "nothing"
-                half_open = bool(items) and items[-1].text == "\\in"
-                if closing not in (")", "]") or (closing != _CLOSING[text] and not half_open):
-                    raise UnreadableError(Trouble.DELIMITERS, f"found {closing!r}, expected {_CLOSING[text]!r}", at)
-                items.append(Item("fence", text + closing, at, (inner,)))
-                i += 1
-            elif text in ")]}&":
-                break
-            elif text in _OTHERS:
-                items.append(Item(*_OTHERS[text], at))
-                i += 1
-            elif text in _GREEK:
-                items.append(Item("letter", f"\\{_GREEK[text]}", at))
-                i += 1
-            elif text == "." and i == len(self.tokens) - 1:
-                i += 1
+            elif kind == "other":
+                i = self._mark(i, items)
             else:
-                raise UnreadableError(Trouble.TEX, f"found {text!r}, which means nothing here", at)
+                i = self._plain(i, items)
         found = tuple(items)
-        return (_bars_paired(found) if bars else found), i
+        return (_bars_paired(found) if any(item.kind == "bars" for item in found) else found), i
+
+    def _plain(self, i: int, items: list[Item]) -> int:
+        """Read a number, a run of letters, raised digits, dots, bars."""
+        kind, text, at = self.tokens[i]
+        if kind == "run" and text in self.colours and self._is(i + 1, "["):
+            inner, i = self.level(i + 2)
+            items += inner
+            return self._closed(i, "]", at)
+        if kind == "raised":
+            number = "".join(_RAISED[c] for c in text)
+            items.append(Item("sup", "^", at, ((_number(number, at),),)))
+        elif kind == "number":
+            items.append(_number(text, at))
+        else:
+            items.append(Item(kind, "..." if kind == "dots" else text, at))
+        return i + 1
+
+    def _mark(self, i: int, items: list[Item]) -> int:
+        """Read a script, a bracket, a sign, a Greek letter."""
+        text, at = self.tokens[i].text, self.tokens[i].at
+        if text in "^_":
+            content, i = self._argument(i + 1, text, at)
+            items.append(Item("sup" if text == "^" else "sub", text, at, (content,)))
+            return i
+        if text == "{":
+            inner, i = self._group(i)
+            items += inner
+            return i
+        if text in "([":
+            return self._bracket(i, items)
+        if text in _OTHERS:
+            items.append(Item(*_OTHERS[text], at))
+        elif text in _GREEK:
+            items.append(Item("letter", f"\\{_GREEK[text]}", at))
+        elif text != "." or i < len(self.tokens) - 1:
+            raise UnreadableError(Trouble.TEX, f"found {text!r}, which means nothing here", at)
+        return i + 1
+
+    def _bracket(self, i: int, items: list[Item]) -> int:
+        text, at = self.tokens[i].text, self.tokens[i].at
+        inner, i = self.level(i + 1)
+        closing = self.tokens[i].text if i < len(self.tokens) else "nothing"
+        # `[a, b)` is an interval where a relation asks for one.
+        half_open = bool(items) and items[-1].text == "\\in"
+        if closing not in (")", "]") or (closing != _CLOSING[text] and not half_open):
+            raise UnreadableError(Trouble.DELIMITERS, f"found {closing!r}, expected {_CLOSING[text]!r}", at)
+        items.append(Item("fence", text + closing, at, (inner,)))
+        return i + 1
 
     def _is(self, i: int, text: str) -> bool:
         return i < len(self.tokens) and self.tokens[i].text == text
@@ -236,37 +250,32 @@ class _Nesting:
         _, text, at = self.tokens[i]
         name = text[1:]
         i += 1
-        if name in _SPACES:
-            return i
-        if name in _GREEK_NAMES:
-            items.append(Item("letter", text, at))
-            return i
-        kind = _MACROS.get(name)
+        kind = "letter" if name in _GREEK_NAMES else _MACROS.get(name, "")
         if kind == "text":
             raw, i = self._raw(i, at)
             items += [_text(raw, at)] if raw else []
-            return i
-        if kind == "accent":
+        elif kind == "accent":
             content, i = self._argument(i, text, at)
             is_word = name == "mathrm" and len(content) == 1 and content[0].kind == "run" and len(content[0].text) > 1
             items.append(Item("upright", content[0].text, at) if is_word else Item("accent", text, at, (content,)))
-            return i
-        if kind is not None:
-            items.append(Item(kind, "\\" + _SAME.get(name, name) if kind != "dots" else "...", at))
-            if _SAME.get(name, "") in ("<", ">"):
-                items[-1] = Item(kind, _SAME[name], at)
-            return i
-        if name in ("frac", "dfrac", "tfrac", "binom", "choose", "sqrt", "left", "begin", "{", "|"):
-            return self._structure(name, i, items, at)
-        if name in ("underset", "underbrace", "overbrace"):
-            return self._brace(name, i, items, at)
-        if name in ("hspace", "kern", "color"):
-            return self._width(name, i, at)
-        if name in ("middle", "big", "Big", "bigl", "bigr", "Bigl", "Bigr"):
-            reading = "the slash after it has two readings" if name == "middle" else "use \\left and \\right"
-            trouble = Trouble.SLASH if name == "middle" else Trouble.DELIMITERS
-            raise UnreadableError(trouble, f"found {text}: {reading}", at)
-        raise UnreadableError(Trouble.TEX, f"unknown macro {text}", at)
+        elif kind:
+            items.append(Item(kind, "..." if kind == "dots" else _SAME.get(name, text), at))
+        elif name in _STRUCTURES:
+            i = self._structure(name, i, items, at)
+        elif name in ("underset", "underbrace", "overbrace"):
+            i = self._brace(name, i, items, at)
+        elif name in ("hspace", "kern", "color"):
+            i = self._width(name, i, at)
+        elif name not in _SPACES:
+            raise self._unknown(name, at)
+        return i
+
+    def _unknown(self, name: str, at: int) -> UnreadableError:
+        if name == "middle":
+            return UnreadableError(Trouble.SLASH, "found \\middle: a slash behind it has two readings", at)
+        if name.lower() in ("big", "bigl", "bigr", "bigg", "biggl", "biggr"):
+            return UnreadableError(Trouble.DELIMITERS, f"found \\{name}, expected \\left and \\right", at)
+        return UnreadableError(Trouble.TEX, f"unknown macro \\{name}", at)
 
     def _structure(self, name: str, i: int, items: list[Item], at: int) -> int:
         if name in ("frac", "dfrac", "tfrac", "binom"):
@@ -278,17 +287,17 @@ class _Nesting:
         elif name == "sqrt":
             degree: Items = ()
             if self._is(i, "["):
-                degree, i = self.level(i + 1, "[")
+                degree, i = self.level(i + 1)
                 i = self._closed(i, "]", at)
             radicand, i = self._argument(i, "\\sqrt", at)
             items.append(Item("root", "\\sqrt", at, (degree, radicand)))
         elif name == "{":
-            inner, i = self.level(i, "\\{")
+            inner, i = self.level(i)
             i = self._closed(i, "\\}", at)
             items.append(Item("fence", "\\{\\}", at, (inner,)))
         elif name == "left":
             opening = self._delimiter(i, at)
-            inner, i = self.level(i + 1, "\\left")
+            inner, i = self.level(i + 1)
             i = self._closed(i, "\\right", at)
             closing = self._delimiter(i, at)
             half = (opening, closing) in ((".", "\\}"), ("\\{", "."))
@@ -319,7 +328,7 @@ class _Nesting:
         rows: list[tuple[Items, ...]] = []
         cells: list[Items] = []
         while True:
-            cell, i = self.level(i, "\\begin")
+            cell, i = self.level(i)
             cells.append(cell)
             if self._is(i, "&"):
                 i += 1
@@ -334,7 +343,7 @@ class _Nesting:
         if ending != name:
             raise UnreadableError(Trouble.DELIMITERS, f"found \\end{{{ending}}}, expected \\end{{{name}}}", at)
         # A row that ends the last line is none.
-        return Item("rows", name, at, tuple(rows if any(rows[-1]) else rows[:-1])), i
+        return Item("rows", name, at, rows=tuple(rows if any(rows[-1]) else rows[:-1])), i
 
     def _row_skip(self, i: int) -> int:
         after = "".join(token.text for token in self.tokens[i : i + 4])
@@ -358,7 +367,7 @@ class _Nesting:
             raise UnreadableError(Trouble.TEX, f"found nothing after {macro}", at)
         kind, text, place = self.tokens[i]
         if text == "{":
-            content, end = self.level(i + 1, "{")
+            content, end = self.level(i + 1)
             return _chosen(content, place), self._closed(end, "}", place)
         if kind in ("number", "run") and len(text) > 1:
             if not cut:
@@ -378,13 +387,10 @@ class _Nesting:
             return (Item("letter", f"\\{_GREEK[text]}", place),), i + 1
         raise UnreadableError(Trouble.SCRIPT, f"{macro} takes one token, found {text!r}: braces are missing", place)
 
-    def _script(self, i: int) -> tuple[Items, int]:
-        return self._argument(i + 1, self.tokens[i].text, self.tokens[i].at)
-
     def _group(self, i: int) -> tuple[list[Item], int]:
         """Return what stands in braces, which print nothing: the items themselves, where that is the same."""
         at = self.tokens[i].at
-        content, i = self.level(i + 1, "{")
+        content, i = self.level(i + 1)
         i = self._closed(i, "}", at)
         content = _chosen(content, at)
         script = i < len(self.tokens) and self.tokens[i].text in ("^", "_", "'", "\\prime")
@@ -396,7 +402,7 @@ class _Nesting:
             _, i = self._raw(i, at)
             if not (self._is(i, "{") and self._is(i + 1, "\\underbrace") and self._is(i + 2, "{")):
                 raise UnreadableError(Trouble.TEX, "found \\underset without \\underbrace", at)
-            content, i = self.level(i + 3, "{")
+            content, i = self.level(i + 3)
             i = self._closed(self._closed(i, "}", at), "}", at)
         else:
             content, i = self._argument(i, "\\" + name, at)
@@ -429,7 +435,7 @@ def _text(raw: str, at: int) -> Item:
 
 
 def _chosen(content: Items, at: int) -> Items:
-    """Return `n \\choose k` as a binomial."""
+    r"""Return `n \choose k` as a binomial."""
     if not any(item.kind == "choose" for item in content):
         return content
     parts = split(content, "choose")

@@ -1,6 +1,7 @@
 """What a formula says: trees that keep what is printed, and neither commute, cancel nor calculate.
 
-Brackets that print and change nothing are gone, those that group are nodes of their own: `a + (b + c)` is a sum in a sum.
+Brackets that print and change nothing are gone, those that group are nodes of their own: `a + (b + c)` is a sum in a
+sum.
 """
 
 from __future__ import annotations
@@ -42,7 +43,7 @@ class Named:
 
 @dataclass(frozen=True, slots=True)
 class Sum:
-    """Terms with their signs: +, -, \\pm, \\mp."""
+    r"""Terms with their signs: +, -, \pm, \mp."""
 
     terms: tuple[tuple[str, Tree], ...]
 

@@ -1,7 +1,7 @@
 """From printed lines to a program, by rules. Which rules were used is kept with each line.
 
-Blocks are told by indentation; braces are dropped where they agree with it. `^` is a power, `n!` a factorial, `·` and `×`
-bind before other products, `=` in a condition compares.
+Blocks are told by indentation; braces are dropped where they agree with it. `^` is a power, `n!` a factorial, `·` and
+`×` bind before other products, `=` in a condition compares.
 """
 
 from __future__ import annotations
@@ -77,7 +77,7 @@ class _Row:
 
 
 def load(text: str, replacements: Mapping[str, str] | None = None) -> Program:
-    """Translate printed pseudo-code.
+    r"""Translate printed pseudo-code.
 
     Parameters
     ----------
@@ -93,7 +93,7 @@ def load(text: str, replacements: Mapping[str, str] | None = None) -> Program:
 
     Examples
     --------
-    >>> program = load("function double(x):\\n  return 2 * x\\n")
+    >>> program = load("function double(x):\n  return 2 * x\n")
     >>> list(program.functions)
     ['double']
     """
@@ -414,7 +414,7 @@ class _Reader:
                 if name == "push" and self.peek() == "[":
                     self.note("push[..] is push(..)")
                     self.take()
-                    tree = CallOf(tree, tuple([Array(self.list_until("]"))]))
+                    tree = CallOf(tree, (Array(self.list_until("]")),))
             elif sign == "(":
                 self.take()
                 tree = CallOf(tree, self.list_until(")"))

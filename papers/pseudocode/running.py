@@ -80,9 +80,9 @@ def run(
     call: str = "",
     arguments: Sequence[Any] = (),
     given: Mapping[str, Any] | None = None,
-    limits: Limits = Limits(),  # noqa: B008
+    limits: Limits = Limits(),
 ) -> Outcome:
-    """Run the lines outside of functions, then call a function.
+    r"""Run the lines outside of functions, then call a function.
 
     Parameters
     ----------
@@ -104,7 +104,7 @@ def run(
     Examples
     --------
     >>> from semispline.papers.pseudocode.parsing import load
-    >>> run(load("function half(x):\\n  return x/2\\n"), "half", [3]).value
+    >>> run(load("function half(x):\n  return x/2\n"), "half", [3]).value
     Fraction(3, 2)
     """
     machine = _Machine(program, limits, {name: taken(value) for name, value in (given or {}).items()})

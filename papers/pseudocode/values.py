@@ -23,11 +23,14 @@ class Vector:
 
     Examples
     --------
-    >>> Vector((1, 2)) + Vector((3, 4))
-    Vector(entries=(4, 6))
+    >>> (Vector((1, 2)) + Vector((3, 4))).entries
+    (Fraction(4, 1), Fraction(6, 1))
     """
 
     entries: tuple[Any, ...]
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "entries", tuple(taken(entry) for entry in self.entries))
 
     def __add__(self, other: Vector) -> Vector:
         return self._with(other, "+")
@@ -86,7 +89,7 @@ def taken(value: Any) -> Any:
     if isinstance(value, sp.Expr):
         return value
     if isinstance(value, Vector):
-        return Vector(tuple(taken(entry) for entry in value.entries))
+        return value
     if isinstance(value, dict):
         return {key: taken(entry) for key, entry in value.items()}
     if isinstance(value, list | tuple):
