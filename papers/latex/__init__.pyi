@@ -1,5 +1,8 @@
+from .conversion import Relation as Relation
+from .conversion import relations as relations
 from .documents import Block as Block
 from .documents import read_blocks as read_blocks
+from .errors import UnreadableError as UnreadableError
 from .names import NamesTable as NamesTable
 from .names import read_names as read_names
 from .page import echo_page as echo_page

@@ -7,13 +7,14 @@ sides of a step stay apart, never an `Eq`, which may collapse while it is made.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import sympy as sp
 
 from semispline.papers.latex.errors import ConversionError
 from semispline.papers.latex.names import Declaration, Names
+from semispline.papers.latex.reading import Formula, Step
 from semispline.papers.latex.resolving import derivative_place
 from semispline.papers.latex.trees import (
     BigSum,
@@ -40,12 +41,13 @@ from semispline.papers.latex.trees import (
     Transpose,
     Tree,
     substituted,
+    walk,
 )
 
 _FUNCTIONS: dict[str, Callable[[Any], Any]] = {
     "sin": sp.sin, "cos": sp.cos, "tan": sp.tan, "cot": sp.cot, "sec": sp.sec, "csc": sp.csc, "arcsin": sp.asin,
-    "arccos": sp.acos, "arctan": sp.atan, "sinh": sp.sinh, "cosh": sp.cosh, "tanh": sp.tanh, "exp": sp.exp, "ln": sp.log,
-    "log": sp.log, "sqrt": sp.sqrt, "abs": sp.Abs,
+    "arccos": sp.acos, "arctan": sp.atan, "sinh": sp.sinh, "cosh": sp.cosh, "tanh": sp.tanh, "exp": sp.exp,
+    "ln": sp.log, "log": sp.log, "sqrt": sp.sqrt, "abs": sp.Abs,
 }  # fmt: skip
 _RELATIONS: dict[str, Callable[[Any, Any], Any]] = {
     "=": sp.Eq, "<": sp.Lt, ">": sp.Gt, "\\leq": sp.Le, "\\geq": sp.Ge, "\\neq": sp.Ne,
@@ -62,8 +64,8 @@ def to_sympy(tree: Tree, names: Names, given: Mapping[str, Any] | None = None, b
     names : Names
         Those that it was read against.
     given : mapping, optional
-        Pattern of a name -> what stands for it: an expression, or for a name with indices or arguments a callable of their
-        values, indices first.
+        Pattern of a name -> what stands for it: an expression, or for a name with indices or arguments a callable of
+        their values, indices first.
     branch : int
         1 or -1, which sign `\pm` stands for.
 
@@ -88,16 +90,71 @@ def to_sympy(tree: Tree, names: Names, given: Mapping[str, Any] | None = None, b
         raise ConversionError(f"{type(tree).__name__}: {error}") from error
 
 
-def symbol(pattern: str, names: Names) -> Any:
-    """Return the symbol that a declared name without indices and arguments converts to.
+@dataclass(frozen=True)
+class Relation:
+    """One step of a formula in SymPy, its two sides kept apart.
+
+    Attributes
+    ----------
+    left, right : sympy.Expr or sympy.Matrix
+        Names that the formula gives to expressions (`where s = i/k`) are put in; left is None where the formula
+        continues a display that is not known.
+    relation : str
+    step : Step
+        What was read.
+    """
+
+    left: Any
+    relation: str
+    right: Any
+    step: Step
+
+
+def relations(
+    formula: Formula, previous: Formula | None = None, given: Mapping[str, Any] | None = None, branch: int = 1
+) -> tuple[Relation, ...]:
+    r"""Return the steps of a formula in SymPy.
+
+    Parameters
+    ----------
+    formula : Formula
+    previous : Formula, optional
+        The display before, whose last side is the first one of a formula that begins with a relation.
+    given, branch
+        As in `to_sympy`.
+
+    Raises
+    ------
+    ConversionError
 
     Examples
     --------
     >>> from semispline.papers.latex.names import read_names
-    >>> symbol("n", read_names("n : integer >= 0").of("eq-1")).is_nonnegative
-    True
+    >>> from semispline.papers.latex.reading import read_formula
+    >>> names = read_names("x, s : real").of("eq-1")
+    >>> [step] = relations(read_formula(r"x = 2s, \text{where } s = x/2", names))
+    >>> step.left, step.right
+    (x, x)
     """
-    return to_sympy(Named(pattern), names)
+    found: list[Relation] = []
+    for step in formula.steps:
+        left, right = (_with_names_put_in(side, step.conditions) for side in (step.left, step.right))
+        of = formula.names
+        if left is None and previous is not None:
+            left, of = previous.statements[-1].sides[-1], previous.names
+        sides = None if left is None else to_sympy(left, of, given, branch), to_sympy(right, formula.names, given, branch)
+        found.append(Relation(sides[0], step.relation, sides[1], step))
+    return tuple(found)
+
+
+def _with_names_put_in(tree: Tree | None, conditions: tuple[Statement, ...]) -> Tree | None:
+    """Return a tree with each name replaced that a condition gives; inside of sums too, before SymPy sees it."""
+    for condition in reversed(conditions):
+        name = condition.sides[0]
+        is_name = isinstance(name, Named) and not name.slots and name.arguments is None
+        if is_name and condition.relations == ("=",) and not condition.conditions and name not in walk(condition.sides[1]):
+            tree = substituted(tree, name, condition.sides[1])
+    return tree
 
 
 class _Conversion:
@@ -295,11 +352,7 @@ def _template(one: Any, other: Any, place: Named) -> Any:
         return one
     if isinstance(one, tuple):
         return tuple(_template(a, b, place) for a, b in zip(one, other, strict=True))
-    if type(one) is type(other) and hasattr(one, "__dataclass_fields__") and not isinstance(one, Number):
-        if not (isinstance(one, Named) and one.name != other.name):
-            names = one.__dataclass_fields__
-            return replace(one, **{f: _template(getattr(one, f), getattr(other, f), place) for f in names})
-    return place
-
-
-__all__ = ["substituted", "symbol", "to_sympy"]
+    others = isinstance(one, Number) or (isinstance(one, Named) and one.name != other.name)
+    if type(one) is not type(other) or others:
+        return place
+    return replace(one, **{f: _template(getattr(one, f), getattr(other, f), place) for f in one.__dataclass_fields__})

@@ -33,8 +33,8 @@ from semispline.papers.latex.errors import NamesError, UnreadableError
 from semispline.papers.latex.tokens import Item, Items, nest, split
 
 KINDS = (
-    "integer", "real", "constant", "point", "plane point", "matrix", "list", "function", "function bare", "standard function",
-    "label", "colour", "product", "postfix derivative",
+    "integer", "real", "constant", "point", "plane point", "matrix", "list", "function", "function bare",
+    "standard function", "label", "colour", "product", "postfix derivative",
 )  # fmt: skip
 _VALUES = ("real", "integer", "point", "plane point", "matrix", "list")
 

@@ -2,10 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
+from typing import Any
 
-from semispline.papers.latex import Block, Formula, NamesTable, read_blocks, read_formula, read_names
+from semispline.papers.latex import (
+    Block,
+    Formula,
+    NamesTable,
+    Relation,
+    UnreadableError,
+    read_blocks,
+    read_formula,
+    read_names,
+    relations,
+)
 from semispline.papers.pseudocode import Program, load
 
 _FOLDER = Path(__file__).parent
@@ -41,6 +53,38 @@ def formula(identifier: str) -> Formula:
     """
     block = blocks()[identifier]
     return read_formula(block.text, names().of(identifier), block.source, block.line)
+
+
+def steps(identifier: str, given: Mapping[str, Any] | None = None, branch: int = 1) -> tuple[Relation, ...]:
+    r"""Return the steps of a printed formula in SymPy: what the checks are about.
+
+    The left side of a formula that continues the display before it is the last side of that one, and None where that one
+    is not read.
+
+    Parameters
+    ----------
+    identifier : str
+    given : mapping, optional
+        Pattern of a name -> what stands for it.
+    branch : int
+        1 or -1, which sign `\pm` stands for.
+
+    Examples
+    --------
+    >>> [step] = steps("matrixsplit.6", {"Z": 2, "M": 3})
+    >>> step.right.shape
+    (1, 1)
+    """
+    return relations(formula(identifier), _before(identifier), given, branch)
+
+
+def _before(identifier: str) -> Formula | None:
+    order = [block.id for block in blocks().values() if block.kind == "math"]
+    place = order.index(identifier)
+    try:
+        return formula(order[place - 1]) if place else None
+    except UnreadableError:
+        return None
 
 
 # What no rule translates, and what stands for it.
