@@ -54,7 +54,7 @@ def echo(statements: tuple[Statement, ...], names: Names) -> str:
     # In a line of its own a relation needs no column mark before it.
     if len(rows) == 1:
         return "".join(rows[0])
-    return "\begin{aligned}\n" + " \\\n".join("&".join(row) for row in rows) + "\n\\end{aligned}"
+    return "\\begin{aligned}\n" + " \\\\\n".join("&".join(row) for row in rows) + "\n\\end{aligned}"
 
 
 def echo_statement(statement: Statement, names: Names) -> str:

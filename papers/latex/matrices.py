@@ -53,13 +53,13 @@ def _elided(item: Item, names: Names, read: Read) -> Tree:
 def _components(item: Item, read: Read) -> Tree:
     entries: list[tuple[Tree, Tree]] = []
     for row in item.rows:
-        cell = tuple(x for part in row for x in part)
-        if [x.text for x in cell if x.kind == "relation"] != ["="]:
-            raise UnreadableError(Trouble.LAYOUT, "relations in a matrix, where not every row is name = ..", item.at)
-        name, value = (read(side, item.at) for side in split(cell, "relation"))
+        signs = [x.text for cell in row for x in cell if x.kind == "relation"]
+        # A column mark may stand beside the sign, and nowhere else.
+        sides = [side for cell in row for side in split(cell, "relation") if side]
+        name = read(sides[0], item.at) if signs == ["="] and len(sides) == 2 else None
         if not isinstance(name, Named):
             raise UnreadableError(Trouble.LAYOUT, "relations in a matrix, where not every row is name = ..", item.at)
-        entries.append((name, value))
+        entries.append((name, read(sides[1], item.at)))
     return Components(tuple(entries))
 
 

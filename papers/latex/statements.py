@@ -34,8 +34,8 @@ def statements(items: Items, names: Names) -> tuple[Statement, ...]:
 def _lines(items: Items) -> list[Items]:
     """Return the lines of a display: rows of the environment that it is, cells joined."""
     if len(items) == 1 and items[0].kind == "rows" and items[0].text in LAYOUTS:
-        return [line for row in items[0].rows for line in _lines(_joined(row)) if line]
-    return [items]
+        return [line for row in items[0].rows for line in _lines(_joined(row))]
+    return [items] if items else []
 
 
 def _joined(row: tuple[Items, ...]) -> Items:
