@@ -1,5 +1,6 @@
 from .conversion import Relation as Relation
 from .conversion import relations as relations
+from .conversion import symbol as symbol
 from .documents import Block as Block
 from .documents import read_blocks as read_blocks
 from .errors import UnreadableError as UnreadableError

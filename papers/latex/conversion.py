@@ -90,6 +90,18 @@ def to_sympy(tree: Tree, names: Names, given: Mapping[str, Any] | None = None, b
         raise ConversionError(f"{type(tree).__name__}: {error}") from error
 
 
+def symbol(pattern: str, names: Names) -> Any:
+    """Return what a declared name without indices and arguments converts to.
+
+    Examples
+    --------
+    >>> from semispline.papers.latex.names import read_names
+    >>> symbol("n", read_names("n : integer >= 0").of("eq-1")).is_nonnegative
+    True
+    """
+    return to_sympy(Named(pattern), names)
+
+
 @dataclass(frozen=True)
 class Relation:
     """One step of a formula in SymPy, its two sides kept apart.
@@ -149,12 +161,18 @@ def relations(
 
 def _with_names_put_in(tree: Tree | None, conditions: tuple[Statement, ...]) -> Tree | None:
     """Return a tree with each name replaced that a condition gives; inside of sums too, before SymPy sees it."""
-    for condition in reversed(conditions):
-        name = condition.sides[0]
-        is_name = isinstance(name, Named) and not name.slots and name.arguments is None
-        if is_name and condition.relations == ("=",) and not condition.conditions and name not in walk(condition.sides[1]):
-            tree = substituted(tree, name, condition.sides[1])
+    meanings = [condition.sides for condition in conditions if _gives_name(condition)]
+    # A meaning may have names in it that others give, before it or after it.
+    for _ in meanings:
+        for name, meaning in meanings:
+            tree = substituted(tree, name, meaning)
     return tree
+
+
+def _gives_name(condition: Statement) -> bool:
+    name = condition.sides[0]
+    is_name = isinstance(name, Named) and not name.slots and name.arguments is None
+    return is_name and condition.relations == ("=",) and not condition.conditions and name not in walk(condition.sides[1])
 
 
 class _Conversion:

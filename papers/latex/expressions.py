@@ -113,7 +113,8 @@ class _Expressions:
 
     def _added(self, terms: list[tuple[str, Tree | None]], at: int) -> Tree:
         printed = [(sign, term) for sign, term in terms if term is not None]
-        _check_scope([term for _, term in printed], at)
+        if len(printed) > 1:
+            _check_scope([term for _, term in printed], at)
         if len(printed) < len(terms):
             places = [k for k, (_, term) in enumerate(terms) if term is None]
             if {sign for sign, _ in terms} != {"+"} or places != [len(terms) - 2]:
@@ -417,7 +418,7 @@ class _Expressions:
         entries = split(content)
         if len(entries) == 1 and item.text in ("()", "[]", *_BARS):
             value = self.sum(content, item.at)
-            if item.text in _BARS and isinstance(value, Listing):
+            if item.text in _BARS and isinstance(value, Listing) and value.brackets == "{}":
                 raise UnreadableError(Trouble.KINDS, "bars round a list", item.at)
             return Call(_BARS[item.text], value) if item.text in _BARS else value
         if item.text not in ("()", "{}", "\\{\\}"):

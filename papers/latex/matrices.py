@@ -75,7 +75,8 @@ def cases(item: Item, read: Read, chain: Callable[[Items, int], Statement]) -> T
         raise UnreadableError(Trouble.LAYOUT, "a brace with no rows behind it", item.at)
     found: list[tuple[Tree, Statement | None]] = []
     for row in content[0].rows:
-        word, condition = (row[1][0].text, row[1][1:]) if len(row) == 2 and row[1] else ("", ())
+        has_word = len(row) == 2 and bool(row[1]) and row[1][0].kind == "word"
+        word, condition = (row[1][0].text, row[1][1:]) if has_word else ("", ())
         if word == "otherwise" and not condition:
             found.append((read(row[0], item.at), None))
         elif word == "when" and condition:

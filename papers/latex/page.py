@@ -16,8 +16,8 @@ from semispline.papers.latex.errors import UnreadableError
 from semispline.papers.latex.names import NamesTable
 from semispline.papers.latex.reading import Formula, free_names, read_formula
 
-COMPARED = "compared with the print"
-NOT_COMPARED = "**not compared with the print yet**"
+COMPARED = "Compared with the print."
+NOT_COMPARED = "**To be compared with the print.**"
 
 
 def echo_page(head: str, blocks: Iterable[Block], table: NamesTable, previous: str, notes: Mapping[str, str]) -> str:

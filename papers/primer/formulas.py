@@ -17,6 +17,7 @@ from semispline.papers.latex import (
     read_formula,
     read_names,
     relations,
+    symbol,
 )
 from semispline.papers.pseudocode import Program, load
 
@@ -76,6 +77,17 @@ def steps(identifier: str, given: Mapping[str, Any] | None = None, branch: int =
     (1, 1)
     """
     return relations(formula(identifier), _before(identifier), given, branch)
+
+
+def letter(identifier: str, pattern: str) -> Any:
+    """Return the SymPy symbol that a name of a formula converts to.
+
+    Examples
+    --------
+    >>> letter("explanation.5", "a")
+    a
+    """
+    return symbol(pattern, names().of(identifier))
 
 
 def _before(identifier: str) -> Formula | None:
