@@ -154,8 +154,8 @@ def relations(
         of = formula.names
         if left is None and previous is not None:
             left, of = previous.statements[-1].sides[-1], previous.names
-        sides = None if left is None else to_sympy(left, of, given, branch), to_sympy(right, formula.names, given, branch)
-        found.append(Relation(sides[0], step.relation, sides[1], step))
+        known = None if left is None else to_sympy(left, of, given, branch)
+        found.append(Relation(known, step.relation, to_sympy(right, formula.names, given, branch), step))
     return tuple(found)
 
 
@@ -172,7 +172,8 @@ def _with_names_put_in(tree: Tree | None, conditions: tuple[Statement, ...]) -> 
 def _gives_name(condition: Statement) -> bool:
     name = condition.sides[0]
     is_name = isinstance(name, Named) and not name.slots and name.arguments is None
-    return is_name and condition.relations == ("=",) and not condition.conditions and name not in walk(condition.sides[1])
+    is_equation = condition.relations == ("=",) and not condition.conditions
+    return is_name and is_equation and name not in walk(condition.sides[1])
 
 
 class _Conversion:

@@ -122,57 +122,50 @@ def _fit(d: Declaration, items: Items, scripts: Scripts, names: Names, read: Rea
     slots = _slots((*d.below, *d.above), (*scripts.below, *scripts.above[: len(d.above)]), names, read)
     if slots is None:
         return None
-    end = scripts.end
-    following = items[end] if end < len(items) else Item("", "", items[end - 1].at)
     if d.arguments is not None:
-        return _function(d, derivative, slots, items, end, following, scripts, names, read)
-    if derivative:
+        return _function(d, slots, items, scripts, names, read)
+    if derivative or not _may_stand(d, items, scripts.end):
         return None
     if d.bracket:
-        if following.kind != "fence" or following.text != "[]":
-            return None
-        return Named(d.pattern, (*slots, _index(following.parts[0], names, read))), end + 1
+        slots = (*slots, _index(items[scripts.end].parts[0], names, read))
+    return Named(d.pattern, slots), scripts.end + d.bracket
+
+
+def _may_stand(d: Declaration, items: Items, end: int) -> bool:
+    """Whether a name that is no function may stand before what follows it."""
+    following = items[end] if end < len(items) else Item("", "", 0)
+    if d.bracket:
+        return following.kind == "fence" and following.text == "[]"
     # A bracket that holds a list, or takes an index, is no factor.
-    is_bracket = following.kind == "fence" and following.text == "()"
     takes_index = end + 1 < len(items) and items[end + 1].kind == "sub"
-    if is_bracket and (takes_index or len(split(following.parts[0])) > 1):
-        return None
-    return Named(d.pattern, slots), end
+    is_bracket = following.kind == "fence" and following.text == "()"
+    return not (is_bracket and (takes_index or len(split(following.parts[0])) > 1))
 
 
 def _function(
-    d: Declaration,
-    derivative: int,
-    slots: tuple[Tree, ...],
-    items: Items,
-    end: int,
-    following: Item,
-    scripts: Scripts,
-    names: Names,
-    read: Read,
+    d: Declaration, slots: tuple[Tree, ...], items: Items, scripts: Scripts, names: Names, read: Read
 ) -> tuple[Tree, int] | None:
+    derivative, end = scripts.primes - d.primes, scripts.end
+    following = items[end] if end < len(items) else Item("", "", items[end - 1].at)
     if following.kind != "fence" or following.text != "()":
         if not d.bare or d.after:
             return None
         _variable_place(d, names, derivative, following.at)
         return Named(d.pattern, slots, None, derivative), end
     arguments = split(following.parts[0])
-    if len(arguments) != len(d.arguments or ()):
+    behind = scripts_after(items, end + 1)
+    if len(arguments) != len(d.arguments or ()) or len(behind.below) != len(d.after):
         return None
     if _left_over(d, scripts) is not None:
         reason = f"a power of {d.pattern} before its bracket may be a power, an index, an iterate"
         raise UnreadableError(Trouble.FUNCTION_POWER, reason, following.at)
-    end += 1
-    if d.after:
-        behind = scripts_after(items, end)
-        more = _slots(d.after, behind.below, names, read) if len(behind.below) == len(d.after) else None
-        if more is None or behind.above or behind.primes:
-            return None
-        slots, end = (*slots, *more), behind.end
-    elif end < len(items) and items[end].kind == "sub":
+    more = _slots(d.after, behind.below, names, read)
+    if more is None:
         return None
     _variable_place(d, names, derivative, following.at)
-    return Named(d.pattern, slots, tuple(read(argument, following.at) for argument in arguments), derivative), end
+    values = tuple(read(argument, following.at) for argument in arguments)
+    # What stands above behind the bracket is an exponent.
+    return Named(d.pattern, (*slots, *more), values, derivative), end + 1 + len(behind.below)
 
 
 def _variable_place(d: Declaration, names: Names, derivative: int, at: int) -> None:

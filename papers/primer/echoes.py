@@ -17,12 +17,12 @@ PAGE = Path(__file__).parent / "echoes.md"
 _HEAD = """\
 # What was read
 
-Each formula of `printed/`, read against `names.txt`, as it was understood: every product has its dot, every bracket that
-groups is there, a line for each side. Below it stand the conditions with the steps (relations) that they hold in, and the
-names that no sum binds. Of pseudo-code stand the rules by which it was translated, with their lines.
+Each formula of `printed/`, read against `names.txt`, as it was understood: every product has its dot, every bracket
+that groups is there, a line for each side. Below it stand the conditions with the steps (relations) that they hold in,
+and the names that no sum binds. Of pseudo-code stand the rules by which it was translated, with their lines.
 
-Written by `python -m semispline.papers.primer.echoes`. Each entry was compared with the print by a reader, once, line by
-line; an entry that changes loses that mark, and the tests say so.
+Written by `python -m semispline.papers.primer.echoes`. Each entry was compared with the print by a reader, once, line
+by line; an entry that changes loses that mark, and the tests say so.
 """
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -19,7 +19,7 @@ from semispline.papers.latex import (
     relations,
     symbol,
 )
-from semispline.papers.pseudocode import Program, load
+from semispline.papers.pseudocode import Outcome, Program, load, run
 
 _FOLDER = Path(__file__).parent
 
@@ -59,8 +59,8 @@ def formula(identifier: str) -> Formula:
 def steps(identifier: str, given: Mapping[str, Any] | None = None, branch: int = 1) -> tuple[Relation, ...]:
     r"""Return the steps of a printed formula in SymPy: what the checks are about.
 
-    The left side of a formula that continues the display before it is the last side of that one, and None where that one
-    is not read.
+    The left side of a formula that continues the display before it is the last side of that one, and None where that
+    one is not read.
 
     Parameters
     ----------
@@ -118,3 +118,21 @@ def code(identifier: str) -> Program:
     ['kappa']
     """
     return load(blocks()[identifier].text, _REPLACED.get(identifier))
+
+
+def run_code(
+    identifier: str, call: str = "", arguments: Sequence[Any] = (), given: Mapping[str, Any] | None = None
+) -> Outcome:
+    """Run a printed piece of pseudo-code, or one of its functions.
+
+    Raises
+    ------
+    FaultError
+        It does not come to its end; the message names the printed line.
+
+    Examples
+    --------
+    >>> run_code("intersections.1", "lli8", [0, 0, 2, 2, 1, 1, 2, 2]).value
+    False
+    """
+    return run(code(identifier), call, arguments, given)

@@ -44,6 +44,7 @@ _HEADS = (
     re.compile(r"(\w+)\s*\((.*?)\)\s*->\s*(\w+)\s*:$"),
     re.compile(r"(?!if\b|for\b|while\b|else\b)(\w+)\s*\((.*?)\)\s*:$"),
 )
+_RESERVED = frozenset(("function", "if", "for", "while", "else", "return", "var", "let", "break", "continue"))
 _SAME = {"===": "==", "!==": "!=", "&&": "and", "||": "or"}
 _LEVELS = (("or",), ("and",), ("==", "!=", "<", ">", "<=", ">="), ("+", "-"), ("*", "/", "%"))
 
@@ -116,8 +117,8 @@ def _program(rows: list[_Row], rules: list[tuple[int, str]]) -> Program:
     lines: list[Line] = []
     k = 0
     while k < len(rows):
-        if rows[k].indent > rows[0].indent:
-            raise UnreadableCodeError(f"line {rows[k].number}: found an indented line that no line above opens")
+        if rows[k].indent != rows[0].indent:
+            raise UnreadableCodeError(f"line {rows[k].number}: found an indentation that no line above opens")
         head = next((found for pattern in _HEADS if (found := pattern.match(rows[k].text))), None)
         if head is None:
             found, k = reader.statement(rows, k)
@@ -143,7 +144,7 @@ def _rows(text: str, rules: list[tuple[int, str]]) -> list[_Row]:
         pending.append(line.strip())
         joined = " ".join(pending)
         depth = sum(joined.count(c) for c in "([") - sum(joined.count(c) for c in ")]")
-        if depth > 0 or joined.endswith((",", "+", "*", "=")):
+        if depth > 0 or (joined.endswith((",", "+", "*", "=")) and not joined.endswith("++")):
             continue
         pending = []
         while joined.startswith("}"):
@@ -450,25 +451,19 @@ class _Reader:
             raise self.wrong("found the end of the line, expected a value")
         kind, text = self.tokens[self.at]
         self.at += 1
-        if kind == "number":
-            return Literal(Fraction(text))
-        if text in ("true", "false"):
-            return Literal(text == "true")
+        if kind == "number" or text in ("true", "false"):
+            return Literal(Fraction(text) if kind == "number" else text == "true")
         if text == "new":
             self.note("new is dropped")
             return self.postfix()
-        if kind == "name":
-            if text in ("function", "if", "for", "while", "else", "return", "var", "let", "break", "continue"):
-                raise self.wrong(f"found {text} within an expression")
+        if kind == "name" and text not in _RESERVED:
             return Name(text)
         if text == "(":
             inner = self.expression()
             self.take(")")
             return inner
-        if text == "[":
-            return Array(self.list_until("]"))
-        if text == "{":
-            return self.record()
+        if text in ("[", "{"):
+            return Array(self.list_until("]")) if text == "[" else self.record()
         raise self.wrong(f"found {text!r}, expected a value")
 
     def record(self) -> Expression:

@@ -90,8 +90,8 @@ def run(
     call : str
         Which function; none for code without functions.
     arguments : sequence
-        Whole numbers, `Fraction`s, SymPy symbols or expressions, lists, `Vector`s, dictionaries (records, or things with
-        methods: name -> callable).
+        Whole numbers, `Fraction`s, SymPy symbols or expressions, lists, `Vector`s, dictionaries (records, or things
+        with methods: name -> callable).
     given : mapping, optional
         Variables and functions that the text takes for granted: name -> value, or a callable of values.
     limits : Limits

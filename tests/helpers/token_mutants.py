@@ -8,10 +8,10 @@ import random
 import re
 
 TOKEN = re.compile(r"\\(?:[A-Za-z]+|.|\n)|[^\W\d_]+\d*|\d+(?:\.\d+)?|\.\.+|\|\||\S", re.DOTALL)
-MACROS = (
+MACROS = TOKEN.findall(
     r"\frac \cdot \sqrt \sum \int \cos \sin \pi \phi \tau \alpha \left \right \\ \leq \binom \pm \prime \partial \text"
-).split()
-SIGNS = "+ - = / ! ' ^ _ & , ( ) [ ] { } |".split()
+)
+SIGNS = TOKEN.findall("+ - = / ! ' ^ _ & , ( ) [ ] { } |")
 LETTERS = tuple("abcdijkmnpqrstuvwxyzABCDEMNPQSTVZ")
 # What carries nothing: labels under braces, widths, letters of columns, names of environments' columns.
 SILENT = re.compile(
@@ -50,12 +50,16 @@ def other(token, rng):
     return rng.choice([text for text in pool if text != token])
 
 
+COLOURS = {"BLUE", "RED", "MAGENTA"}
 SPACES = {r"\ ", r"\,", "\\\n"}
-NUMBERED = r"[^\W\d_]|\d+|\\[a-z]+"
+ROW = r"\\"
+ALONE = r"(?:[^\W\d_]|\d+|\\[a-z]+)"
 # Lines go on where one begins with a sign or a relation, maybe behind column marks or dots.
 GOES_ON = re.compile(r"\\\\[\s&]*(?:\.\.+[\s&]*)?(?:[-+=]|\\simeq|\\end\b)")
 # Before these a comma says nothing that they do not say.
 COMMA_SAID = re.compile(r",(?:\s|\\[\s,])*(?:\\\\|\\textit\{ ?where|with\b|\\\{ )")
+# A sign that opens a line or a side, or one of two that stand for one.
+PLUS_SAID = re.compile(r"\+\s*(?:&\s*[-+]|\d|\\frac)")
 
 
 def in_matrix(latex, at):
@@ -70,56 +74,45 @@ def in_matrix(latex, at):
 
 
 def neutral(latex, at, kind):
-    """Tell whether a change of the token at this offset may say the same: what stands there prints nothing of its own."""
+    """Tell whether a change of the token at this offset may say the same: what is there prints nothing of its own."""
     if any(m.start() <= at < m.end() for m in SILENT.finditer(latex)):
         return True
     token = TOKEN.match(latex, at)[0]
     before, rest = latex[:at].rstrip(), latex[at:]
     if kind == "exchange":
         return may_change_places(latex, at, token, TOKEN.search(latex, at + len(token)).group())
-    if token in SPACES or token in ("BLUE", "RED", "MAGENTA"):
-        return True
-    if token == "&":
-        return not in_matrix(latex, at)
-    if token == r"\cdot":
-        return kind == "drop"
-    if token == r"\\":
-        # A comma or an arrow before it parts the statements too.
-        return bool(GOES_ON.match(rest)) or before.endswith((",", "⇓"))
-    if token == ",":
-        return bool(COMMA_SAID.match(rest))
-    if token.startswith(".."):
-        return bool(re.match(r"\.\.+[\s&]*=", rest))
-    if token == "+":
-        # A sign that opens a line or a side, or one of two that stand for one.
-        return before.endswith(("=", "&")) and bool(re.match(r"\+\s*(?:&\s*[-+]|\d|\\frac)", rest))
-    if token == "^":
-        return bool(re.match(r"\^\{?\\prime", rest))
-    return kind == "change" and token in ("'", "sin", "cos", "tan")
+    places = {
+        "&": not in_matrix(latex, at),
+        r"\cdot": kind == "drop",
+        # A comma or an arrow before the end of a line parts the statements too.
+        ROW: GOES_ON.match(rest) or before.endswith((",", "⇓")),
+        ",": COMMA_SAID.match(rest),
+        "..": re.match(r"\.\.+[\s&]*=", rest),
+        "+": before.endswith(("=", "&")) and PLUS_SAID.match(rest),
+        "^": re.match(r"\^\{?\\prime", rest),
+    }
+    same = token in SPACES | COLOURS or (kind == "change" and token in ("'", "sin", "cos", "tan"))
+    return same or bool(places.get(".." if token.startswith("..") else token, False))
 
 
 def may_change_places(latex, at, token, after):
-    """Tell whether two tokens may change places: column marks, spaces, braces that print nothing."""
-    before, rest = latex[:at].rstrip(), latex[at:]
-    pair = {token, after}
-    if "&" in pair:
+    """Tell whether two tokens may change places: column marks, spaces, ends of lines, braces that print nothing."""
+    if "&" in (token, after):
         return not in_matrix(latex, at)
-    if pair & SPACES or pair in ({",", r"\\"}, {"⇓", r"\\"}):
-        return True
-    if token == r"\\":
-        return bool(GOES_ON.match(rest)) or before.endswith(",")
-    if after == r"\\":
-        return bool(GOES_ON.match(rest[len(token) :].lstrip()))
-    if token == "{":
-        return bool(re.match(rf"\{{(?:{NUMBERED})\}}|\{{(?:\\prime)+\}}", rest))
-    if after == "{":
-        return bool(re.match(rf"\\(?:sqrt|hat|vec)\{{(?:{NUMBERED})\}}|\\(?:sin|cos)\{{|,\s*\{{\\ \}}", rest))
-    if token == "}":
-        return after == "'" or before.endswith("{\\")
-    if after == "}":
-        # Braces round a letter that no script and no macro has before it, round `, with ..`, round a word.
-        alone = bool(re.search(r"[-+({'\s]\{$", before)) and token.isalpha()
-        return alone or token in (r"\prime", "where") or bool(re.search(r"\{\\ ,[^{}]*$", before))
-    if "]" in pair:
-        return bool(re.search(r"(?:BLUE|RED|MAGENTA)\[[^\]]*$", before))
-    return after == "(" and token.lstrip("\\") in ("sin", "cos", "tan")
+    before, rest = latex[:at].rstrip(), latex[at:]
+    behind = rest[len(token) :].lstrip()
+    in_colour = re.search(r"(?:BLUE|RED|MAGENTA)\[[^\]]*$", before)
+    # Braces round a letter that no script and no macro has before it.
+    alone = token.isalpha() and re.search(r"[-+({'\s]\{$", before)
+    return bool(
+        {token, after} & SPACES
+        or {token, after} in ({",", ROW}, {"⇓", ROW})
+        or (token == ROW and (GOES_ON.match(rest) or before.endswith(",")))
+        or (after == ROW and GOES_ON.match(behind))
+        or (token == "{" and re.match(rf"\{{{ALONE}\}}|\{{(?:\\prime)+\}}", rest))
+        or (after == "{" and re.match(rf"\\(?:sqrt|hat|vec)\{{{ALONE}\}}|\\(?:sin|cos)\{{|,\s*\{{\\ \}}", rest))
+        or (token == "}" and (after == "'" or before.endswith("{\\")))
+        or (after == "}" and (alone or token in (r"\prime", "where") or re.search(r"\{\\ ,[^{}]*$", before)))
+        or ("]" in (token, after) and in_colour)
+        or (after == "(" and token.lstrip("\\") in ("sin", "cos", "tan"))
+    )

@@ -109,7 +109,9 @@ def test_a_continued_display_takes_the_side_before_it():
 
 def test_names_that_a_formula_gives_are_put_in_within_sums_too():
     (step,) = relations(read_formula(r"x = \sum_{i=0}^{n} s w_i, \text{where } s = i/k, k = n + 1", NAMES))
-    assert step.right.subs(n, 2).doit() == sum(sp.Rational(k, 3) * sp.IndexedBase("w_i", real=True)[k] for k in range(3))
+    assert step.right.subs(n, 2).doit() == sum(
+        sp.Rational(k, 3) * sp.IndexedBase("w_i", real=True)[k] for k in range(3)
+    )
 
 
 @pytest.mark.parametrize(

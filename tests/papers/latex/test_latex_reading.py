@@ -196,7 +196,7 @@ def test_what_has_two_readings_or_none_is_refused_with_its_place(latex, trouble,
 
 
 def test_a_place_on_a_later_line_counts_from_the_beginning_of_that_line():
-    with pytest.raises(UnreadableError, match="^eq.md:8:5: undeclared: "):
+    with pytest.raises(UnreadableError, match=r"^eq\.md:8:5: undeclared: "):
         read_formula("x +\n  a z", NAMES, "eq.md", 7)
 
 
@@ -229,7 +229,9 @@ def test_what_prints_the_same_reads_the_same(one_way, other_way):
 
 
 def test_what_prints_otherwise_reads_otherwise():
-    readings = [one(latex) for latex in ("a b c", "a (b c)", "a + b + c", "a + (b + c)", "x'", "x", "P", "A", "X", "ab", "ba")]
+    readings = [
+        one(latex) for latex in ("a b c", "a (b c)", "a + b + c", "a + (b + c)", "x'", "x", "P", "A", "X", "ab", "ba")
+    ]
     assert len(set(readings)) == len(readings)
 
 
