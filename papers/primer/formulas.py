@@ -1,0 +1,138 @@
+"""The formulas of the text, read from what is printed."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from semispline.papers.latex import (
+    Block,
+    Formula,
+    NamesTable,
+    Relation,
+    UnreadableError,
+    read_blocks,
+    read_formula,
+    read_names,
+    relations,
+    symbol,
+)
+from semispline.papers.pseudocode import Outcome, Program, load, run
+
+_FOLDER = Path(__file__).parent
+
+
+@cache
+def names() -> NamesTable:
+    """Return the table of names."""
+    return read_names((_FOLDER / "names.txt").read_text("utf-8"), "names.txt")
+
+
+@cache
+def blocks() -> dict[str, Block]:
+    """Return what is printed: id -> formula or pseudo-code, in the order of printing."""
+    return {block.id: block for block in read_blocks(_FOLDER / "printed")}
+
+
+@cache
+def formula(identifier: str) -> Formula:
+    """Return a printed formula, read.
+
+    A step whose left side is None continues the display before it in the order of printing.
+
+    Raises
+    ------
+    UnreadableError
+        It is not read, and transcribed by hand; the class is `trouble` of the error.
+
+    Examples
+    --------
+    >>> [step.relation for step in formula("matrixsplit.9").steps]
+    ['=', '=', '=']
+    """
+    block = blocks()[identifier]
+    return read_formula(block.text, names().of(identifier), block.source, block.line)
+
+
+def steps(identifier: str, given: Mapping[str, Any] | None = None, branch: int = 1) -> tuple[Relation, ...]:
+    r"""Return the steps of a printed formula in SymPy: what the checks are about.
+
+    The left side of a formula that continues the display before it is the last side of that one, and None where that
+    one is not read.
+
+    Parameters
+    ----------
+    identifier : str
+    given : mapping, optional
+        Pattern of a name -> what stands for it.
+    branch : int
+        1 or -1, which sign `\pm` stands for.
+
+    Examples
+    --------
+    >>> [step] = steps("matrixsplit.6", {"Z": 2, "M": 3})
+    >>> step.right.shape
+    (1, 1)
+    """
+    return relations(formula(identifier), _before(identifier), given, branch)
+
+
+def letter(identifier: str, pattern: str) -> Any:
+    """Return the SymPy symbol that a name of a formula converts to.
+
+    Examples
+    --------
+    >>> letter("explanation.5", "a")
+    a
+    """
+    return symbol(pattern, names().of(identifier))
+
+
+def _before(identifier: str) -> Formula | None:
+    order = [block.id for block in blocks().values() if block.kind == "math"]
+    place = order.index(identifier)
+    try:
+        return formula(order[place - 1]) if place else None
+    except UnreadableError:
+        return None
+
+
+# What no rule translates, and what stands for it.
+_REPLACED = {"bsplines.9": {"copy of control points": "copy(points)"}}
+
+
+@cache
+def code(identifier: str) -> Program:
+    """Return a printed piece of pseudo-code, translated.
+
+    Raises
+    ------
+    UnreadableCodeError
+        It is no code: a list of words.
+
+    Examples
+    --------
+    >>> list(code("curvature.3").functions)
+    ['kappa']
+    """
+    return load(blocks()[identifier].text, _REPLACED.get(identifier))
+
+
+def run_code(
+    identifier: str, call: str = "", arguments: Sequence[Any] = (), given: Mapping[str, Any] | None = None
+) -> Outcome:
+    """Run a printed piece of pseudo-code, or one of its functions.
+
+    Raises
+    ------
+    FaultError
+        It does not come to its end; the message names the printed line.
+
+    Examples
+    --------
+    >>> run_code("intersections.1", "lli8", [0, 0, 2, 2, 1, 1, 2, 2]).value
+    False
+    """
+    return run(code(identifier), call, arguments, given)

@@ -1,0 +1,5 @@
+"""Pseudo-code, run as printed: translated by rules, exact, with limits. Knows no paper."""
+
+import lazy_loader as _lazy
+
+__getattr__, __dir__, __all__ = _lazy.attach_stub(__name__, __file__)
