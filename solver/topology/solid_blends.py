@@ -16,12 +16,14 @@ from semispline.solver.options import BlendOptions, Continuity, named_options
 from semispline.solver.topology.bases import edge_bases
 from semispline.solver.topology.edge_base import EdgeBase
 from semispline.solver.topology.edge_blends import blend_bases
-from semispline.solver.topology.end_faces import blend_onto, check_ends, faces_at_ends, going_on
-from semispline.solver.topology.face_runs import FaceRun, ReplacedRun, replaced_run
+from semispline.solver.topology.end_faces import blend_onto, faces_at_ends, going_on
+from semispline.solver.topology.face_runs import FaceRun
 from semispline.solver.topology.kept_edges import KeptEdge, KeptEnd, ended_on_edges, kept_edges, measured_again
 from semispline.solver.topology.panels import panels_of
 from semispline.solver.topology.relations import relate
+from semispline.solver.topology.replaced_runs import ReplacedRun, replaced_run
 from semispline.solver.topology.resolving import Resolved
+from semispline.solver.topology.run_ends import check_ends
 from semispline.solver.topology.solid_gate import GateReport
 from semispline.solver.topology.solid_orders import Joining, NewFace, Outcome, Replacement, Rounding
 
@@ -235,9 +237,10 @@ def _blended(found: ReplacedRun, options: BlendOptions, *, keep_ends: bool) -> _
     else:
         rows = run.ends(graph)
         smooth = going_on(graph, relations, rows) if keep_ends else []
-        check_ends(graph, relations, run.faces, [row for row in rows if row not in smooth])
+        rest = [row for row in rows if row not in smooth]
+        at = faces_at_ends(graph, relations, rest)
+        check_ends(graph, relations, run, rest)
         kept = kept_edges(graph, relations, smooth)
-        at = faces_at_ends(graph, relations, [row for row in rows if row not in smooth])
         result, surface = blend_onto(graph, a, b, options, at, kept)
         surface, made = ended_on_edges(surface, kept)
         ends = tuple(made)

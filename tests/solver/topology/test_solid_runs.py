@@ -1,6 +1,7 @@
 """Fillets that go on into each other replaced together; or with their old end edges kept, where contact falls to G1."""
 
 import json
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -160,7 +161,9 @@ def test_an_end_edge_is_kept_and_contact_says_so(continuity, tmp_path):
     assert groups == []
     number = next(iter(accepted))
     path = written(shape, tmp_path / "part.brep")
-    with pytest.raises(EdgeError, match=r"goes on into face \d+ over e\d.*--keep-ends"):
+    # With a ball there is no chain that could be replaced.
+    said = r"goes on into face \d+ over e\d.* face \d+ cannot be replaced with it \(.*three-sided\): keep this edge"
+    with pytest.raises(EdgeError, match=said):
         replace_face(path, number, tmp_path / "out.step")
     found = replace_face(path, number, tmp_path / "out.step", keep_ends=True, continuity=continuity)
     assert is_valid(tmp_path / "out.step")
@@ -260,8 +263,13 @@ def test_ends_of_a_chain_are_kept_and_its_joints_are_not(tmp_path):
     graph, relations, _, (ring,) = found_in(shape)
     pair = face_run(graph, relations, ring).faces[:2]
     path = written(shape, tmp_path / "part.brep")
-    with pytest.raises(EdgeError, match=r"\d+,\d+: it goes on into faces \d+ and \d+ over \d+:e\d and \d+:e\d"):
+    with pytest.raises(
+        EdgeError, match=r"\d+,\d+: they go on into faces \d+ and \d+ over \d+:e\d and \d+:e\d"
+    ) as found:
         replace_face(path, pair, tmp_path / "out.step")
+    # All eight are named, not only the next ones, and what is printed does it.
+    named = re.search(r"\(--replace ([\d,]+)\)", str(found.value))
+    assert set(map(int, named[1].split(","))) == set(ring)
     found = replace_face(path, pair, tmp_path / "out.step", keep_ends=True)
     assert is_valid(tmp_path / "out.step")
     assert len(found.kept) == 2
@@ -274,13 +282,21 @@ def test_what_is_no_run_is_refused(tmp_path):
     graph, relations, accepted, (ring,) = found_in(shape)
     order = face_run(graph, relations, ring).faces
     path, out = written(shape, tmp_path / "part.brep"), tmp_path / "out.step"
-    with pytest.raises(EdgeError, match="do not go on into each other over ends of both"):
+    with pytest.raises(EdgeError, match="belong to one chain of fillets: replace all of it") as found:
         replace_face(path, [order[0], order[4]], out)
+    named = re.search(r"\(--replace ([\d,]+)\)", str(found.value))
+    assert set(map(int, named[1].split(","))) == set(ring)
     with pytest.raises(EdgeError, match="is there twice"):
         replace_face(path, [order[0], order[0]], out)
     uprights = [face for face in accepted if face not in ring]
-    with pytest.raises(EdgeError, match="do not go on into each other over ends of both"):
+    with pytest.raises(EdgeError, match="do not go on into each other over ends of both; replace them one after"):
         replace_face(path, uprights[:2], out)
+    # An upright round ends on one of the ring: that lies across.
+    with pytest.raises(EdgeError, match=r"it is a fillet across\): keep this edge, .* \(--keep-ends\)"):
+        replace_face(path, uprights[0], out)
+    flat = next(n for n in range(len(graph.faces)) if graph.uses.of_face(n).stop - graph.uses.of_face(n).start == 8)
+    with pytest.raises(EdgeError, match=rf"face {flat} has no two opposite sides at whose ends face \d+ begins"):
+        replace_face(path, [order[0], flat], out)
     assert not out.exists()
 
 
