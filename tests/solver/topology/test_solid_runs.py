@@ -194,6 +194,53 @@ def test_a_kept_edge_at_the_pole_of_a_ball_is_measured(tmp_path):
         assert max(x.contact.gap for x in contacts) <= 1e-6 * 40
 
 
+def test_a_crease_at_a_kept_edge_is_stopped(tmp_path, monkeypatch):
+    """The end lies on the edge, and the row beside it leaves the tangent plane of the ball by one part in a hundred."""
+    shape = three_edges()
+    _, _, accepted, _ = found_in(shape)
+    real = solid_blends.ended_on_edges
+
+    def creased(surface, edges):
+        made, kept = real(surface, edges)
+        points, end = made.control_points.copy(), kept[0].range[0] > made.domain[1][0]
+        near, way = (-2, points[:, -1] - points[:, -2]) if end else (1, points[:, 0] - points[:, 1])
+        # Rows of the contacts stay.
+        points[2:-2, near] += 0.01 * np.cross(way, points[1:, near][:1] - points[:1, near])[2:-2]
+        return replace(made, control_points=points), kept
+
+    path, out = written(shape, tmp_path / "part.brep"), tmp_path / "out.step"
+    found = replace_face(path, next(iter(accepted)), out, keep_ends=True)
+    assert 0 < found.gate.crease_degrees < 1e-4
+    out.unlink()
+    monkeypatch.setattr(solid_blends, "ended_on_edges", creased)
+    with pytest.raises(
+        SolidError, match=r"at a crease of .* where the old one went on smoothly, expected at most 0.01"
+    ):
+        replace_face(path, next(iter(accepted)), out, keep_ends=True)
+    assert not out.exists()
+
+
+def test_contacts_beside_kept_ends_are_told_from_the_rest(tmp_path):
+    shape = three_edges()
+    _, _, accepted, _ = found_in(shape)
+    path, out, report = (tmp_path / name for name in ("part.brep", "out.step", "report.json"))
+    words = ["--replace", str(next(iter(accepted))), "--keep-ends", "-o", str(out), "--report", str(report)]
+    done = CliRunner().invoke(app, ["blend", str(written(shape, path)), *words])
+    assert done.exit_code == 0, done.output
+    rows = json.loads(report.read_text())["contacts_in_solid"]
+    kinds = [row["stretch"] for row in rows]
+    assert sorted(kinds) == ["", "", "beside a kept end", "beside a kept end", "kept end"]
+    for row in rows:
+        # Curvature has no limit where contact is G1 alone.
+        assert ("curvature_jump_relative" in row["allowed"]) == (row["stretch"] == "")
+        assert all(row[name] <= limit for name, limit in row["allowed"].items() if row[name] is not None)
+        if row["stretch"] == "beside a kept end":
+            # The jump is at the edge, a radius from the corner.
+            place = np.array(row["at"]["curvature_jump_relative"]["point"])
+            assert sorted(np.abs(place)) == pytest.approx([0, 3, 3], abs=1e-6)
+    assert done.output.count("beside a kept end: G1, the jump at (") == 2
+
+
 def test_beyond_the_stated_length_contact_is_what_was_asked(tmp_path):
     shape = three_edges()
     _, _, accepted, _ = found_in(shape)
