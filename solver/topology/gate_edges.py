@@ -149,6 +149,10 @@ class EdgeTable:
             found.append([v for other, v in at_ends if any(x.IsSame(y) for x in own for y in ends(other))])
         return found
 
+    def largest_tolerance(self) -> float:
+        """Return the largest tolerance of all edges and their vertices."""
+        return max([*self.tolerance, *(tolerance for _, tolerance, _ in self.vertices())], default=0.0)
+
     def vertices(self) -> list[tuple[FloatArray, float, list[int]]]:
         """Return where each vertex is, its tolerance, and the edges that end there."""
         from OCP.collections import IndexedMap_TopoDS_Shape_TopTools_ShapeMapHasher

@@ -13,10 +13,11 @@ from typing import Any
 
 from semispline.solver.errors import EdgeError
 from semispline.solver.io import MILLIMETRES
+from semispline.solver.topology.gate_report import Change, GateReport
 from semispline.solver.topology.occ_joining import joined
 from semispline.solver.topology.occ_parts import Part, PartFile, move_labels, open_parts, placed, root_of
 from semispline.solver.topology.occ_shapes import children, copy_of, parts
-from semispline.solver.topology.solid_gate import Change, GateReport, gate
+from semispline.solver.topology.solid_gate import gate
 from semispline.solver.topology.solid_orders import Joining, Outcome
 from semispline.solver.topology.xcaf_words import Words, pieces_of, set_words, words_of
 

@@ -13,12 +13,13 @@ import OCP  # noqa: F401
 
 from semispline.solver.errors import ComputationError, SemisplineError
 from semispline.solver.io import MILLIMETRES
+from semispline.solver.topology.gate_report import Change, GateReport
 from semispline.solver.topology.occ_joined_parts import join_parts
 from semispline.solver.topology.occ_parts import PartFile, open_parts, placed
 from semispline.solver.topology.occ_replacing import change_of, opening, put_in
 from semispline.solver.topology.occ_rounding import rounded
 from semispline.solver.topology.occ_shapes import copy_of, parts
-from semispline.solver.topology.solid_gate import Change, GateReport, gate
+from semispline.solver.topology.solid_gate import gate
 from semispline.solver.topology.solid_orders import Joining, Outcome, Replacement, Rounding
 
 

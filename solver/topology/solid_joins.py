@@ -79,7 +79,7 @@ def joined_solid(specs: tuple[str, str], suffix: str, options: BlendOptions, spl
     result = _blended(ends, options)
     surfaces = tuple(as_spline(one) for one in faces_of_blend(result, split))
     order = Joining(face, None if is_same else other, beyond, surfaces)
-    outcome = operated(path, order, suffix)
+    outcome = operated(path, order, suffix, f"--from {specs[0]} --to {specs[1]}")
     assert outcome.content is not None
     assert outcome.read_back is not None
     counts = [word.count("+") + 1 for word in words]

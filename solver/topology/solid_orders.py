@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from semispline.solver.splines import BSplineSurface
-from semispline.solver.topology.solid_gate import GateReport
+from semispline.solver.topology.gate_report import GateReport
 
 
 @dataclass(frozen=True, eq=False)

@@ -29,6 +29,8 @@ from semispline import (
 from semispline.solver.topology import solid_blends, solid_gate
 from semispline.solver.topology.end_faces import blend_onto
 from semispline.solver.topology.fillets import find_fillets
+from semispline.solver.topology.gate_report import Change, GateReport
+from semispline.solver.topology.gate_sides import NotSoundError
 from semispline.solver.topology.occ_faces import rebuilt
 from semispline.solver.topology.occ_joining import joined
 from semispline.solver.topology.occ_new_edges import copied_edge
@@ -49,7 +51,7 @@ from semispline.solver.topology.occ_shapes import (
     with_range,
 )
 from semispline.solver.topology.relations import relate
-from semispline.solver.topology.solid_gate import Change, GateReport, gate
+from semispline.solver.topology.solid_gate import gate
 
 OUT = np.array([-1.0, -1.0, 0.0]) / np.sqrt(2)
 
@@ -392,7 +394,7 @@ def test_an_area_that_stays_has_a_limit(share, is_same):
     if is_same:
         solid_gate._unchanged(both, GateReport(None), read_back=False)
     else:
-        with pytest.raises(solid_gate._NotSoundError, match="was not to be changed"):
+        with pytest.raises(NotSoundError, match="was not to be changed"):
             solid_gate._unchanged(both, GateReport(None), read_back=False)
 
 

@@ -179,6 +179,16 @@ def test_the_command_rounds_an_edge(tmp_path):
     assert "one sound solid of 7 faces: 6 is the blend" in done.output
 
 
+def test_what_was_said_is_what_is_refused(tmp_path):
+    path, out = written(box(20, 30, 40), tmp_path / "part.brep"), tmp_path / "out.step"
+    words = ["blend", f"{path}#0", f"{path}#2", "--cut-a", "50", "--cut-b", "3", "-o", str(out)]
+    done = CliRunner().invoke(app, words)
+    assert done.exit_code == 2
+    assert "--cut-a 50 --cut-b 3 from edge e0 of face 0: face 0: 50 reaches beyond the face" in done.output
+    done = CliRunner().invoke(app, ["blend", str(path), "--round", "0:e0", "--distance", "50", "-o", str(out)])
+    assert "--round 0:e0: face 0: 50 reaches beyond the face" in done.output
+
+
 @pytest.mark.parametrize(
     ("words", "said"),
     [
