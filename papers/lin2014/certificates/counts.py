@@ -13,8 +13,8 @@ from semispline.derivations.splines import end_derivatives, span_symbols
 from semispline.papers.ledger import Claim, Formula, given
 from semispline.papers.lin2014 import printed as pr
 from semispline.papers.lin2014 import printed_figures as figures
-from semispline.papers.lin2014.certificates.conditions import contact_curve, three_rows
 from semispline.papers.lin2014.certificates.contact import INDUCTION, induction
+from semispline.papers.lin2014.certificates.untouched_bases import contact_curve, three_rows
 from semispline.papers.lin2014.checks.bezier_patch import DEGREES
 from semispline.papers.lin2014.checks.construction import contact_matrix, set_rows
 from semispline.papers.lin2014.checks.printed_numbers import CONTACTS

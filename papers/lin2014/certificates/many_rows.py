@@ -1,8 +1,8 @@
-"""What becomes of the least energy when rows are added, and where it lies over alpha and beta between facing bases."""
+"""What becomes of the least energy when rows, or knots along them, are added."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from fractions import Fraction
 from typing import Any
 
@@ -10,11 +10,18 @@ import sympy as sp
 
 from semispline.derivations.splines import end_derivatives
 from semispline.papers.ledger import Claim, Formula, clamped, given
-from semispline.papers.lin2014.certificates.energy import NO_ENERGY, fewer_rows, one_minimum
-from semispline.papers.lin2014.certificates.surfaces import INDUCTION, SPACES, spaces
+from semispline.papers.lin2014.certificates.knot_vectors import nested_pairs
+from semispline.papers.lin2014.certificates.minima import NO_ENERGY, one_minimum
+from semispline.papers.lin2014.certificates.spline_steps import INDUCTION, SPACES, insertion, spaces
 from semispline.papers.lin2014.checks import energy
-from semispline.papers.lin2014.checks import facing_bases as facing
-from semispline.papers.lin2014.checks.printed_pairs import WITH_MIDDLE_CURVE, merged, printed_pair
+from semispline.papers.lin2014.checks import fewer_control_points as fewer
+from semispline.papers.lin2014.checks.printed_pairs import (
+    PRINTED_PAIRS,
+    WITH_MIDDLE_CURVE,
+    inner_knots,
+    merged,
+    printed_pair,
+)
 from semispline.papers.lin2014.printed import CUBIC
 from semispline.papers.recheck import (
     Draft,
@@ -36,6 +43,65 @@ CUBICS = (
 )
 LAYER = "middle rows give nothing in a direction that is orthogonal to all splines over the averaged knots"
 LEAST = "the least energy of a strip is at the solution of its normal equation"
+
+
+def fewer_rows(claim: Claim) -> Draft:
+    """Return least energies without and with a middle curve, and their difference as a sum of two squares."""
+    cases: list[Statement] = []
+    for label, data in (
+        ("a step at rest", (0, 0, 0, 1, 0, 0)),
+        ("a slope that stops", (0, 1, 0, 0, 0, 0)),
+        ("curvature at both ends", (0, 0, 1, 0, 0, 1)),
+    ):
+        few, more = fewer.least_energies(*map(sp.Integer, data)).values()
+        if few > more:
+            cases.append(
+                positive(f"{label}: 6 rows cost more than 7", Text(f"{text(few)} - {text(more)}", 1), affirmed=False)
+            )
+        else:
+            cases.append(positive(f"{label}: 6 rows cost no more than 7", Text(f"{text(more)} - {text(few)} + 1", 1)))
+    squares, nested = claim.corrected_formulas
+    few, more = fewer.least_energies(*fewer.DATA).values()
+    correction: list[Statement] = [
+        identity("any contact data", squares.relation.rhs, as_text(few) - as_text(more)),
+        positive("which is never negative", squares.relation.rhs, over=_squares(squares.relation.rhs), strict=False),
+    ]
+    value = "c + 2*g*x + h*x^2"
+    correction.append(
+        identity(
+            "one control point more: value at 0 less value at -g/h",
+            nested.relation.rhs,
+            Text(f"c - ({value})", 1),
+            where=(("x", "-g/h"),),
+        )
+    )
+    return Draft([cases], correction, ("the least energy of a strip is at the solution of its normal equation",))
+
+
+def _squares(expression: Any) -> list[Term]:
+    return [
+        Term(coefficient=text(c), squares=(text(sp.Mul(*rest).base),))
+        for c, rest in (term.as_coeff_mul() for term in sp.Add.make_args(expression))
+    ]
+
+
+def fairness(_: Claim) -> Draft:
+    """Return knot lines in the printed pairs, and least energies over the rule's knots and over all."""
+    lines: list[Statement] = []
+    for name, keys in PRINTED_PAIRS.items():
+        vectors = [set(inner_knots(key)) for key in keys]
+        both = len(set.union(*vectors))
+        lines += [
+            positive(f"{name}: {both} inner knots against {len(v)}", Text(f"{both} - {len(v)}", 1)) for v in vectors
+        ]
+    own, refined = energy.middle_knot_energies()
+    less = positive(
+        "orders 4, 2, inner knots 1/2 and 1/3: less energy on all knots",
+        Text(f"{text(own)} - {text(refined)}", 1),
+        affirmed=False,
+    )
+    return Draft([lines, [less, *insertion(), *nested_pairs()]], believed=(INDUCTION, SPACES))
+
 
 # A clamped cubic with spans of length 1; those of length h have h times the integrals of functions over spans.
 _UNIT = [Fraction(max(i - 3, 0)) for i in range(11)]
@@ -137,53 +203,8 @@ def over_rows(claim: Claim) -> Draft:
     return Draft([one_minimum(2), never], correction, (INDUCTION, NO_ENERGY, LEAST, CUBICS))
 
 
-def facing_pairs(claim: Claim) -> Draft:
-    """Return where the energy over alpha^2, beta^2 is least between straight plates, every gap and pair of angles."""
-    relation = claim.formulas[0].relation
-    total_, _, (a, b) = facing.strip_energy()
-    exchanged = {facing.COS_THETA: facing.COS_PHI, facing.COS_PHI: facing.COS_THETA}
-    where = (
-        ("a_least", text(relation.rhs)),
-        ("b_least", text(relation.rhs.subs(exchanged, simultaneous=True))),
-    )
-    least = [sp.Symbol("a_least"), sp.Symbol("b_least")]
-    moved = total_.subs({a: least[0] + sp.Symbol("x"), b: least[1] + sp.Symbol("y")}, simultaneous=True)
-    there = total_.subs({a: least[0], b: least[1]}, simultaneous=True)
-    form = sp.hessian(total_, (a, b)) / 2
-    around = Text(f"({text(form[0, 0])})*x^2 + 2*({text(form[0, 1])})*x*y + ({text(form[1, 1])})*y^2", 1)
-    determinant = Text(f"({text(form[0, 0])})*({text(form[1, 1])}) - ({text(form[0, 1])})^2", 1)
-    angle = (("c_between", "(1 - t^2)/(1 + t^2)"),)
-    cases: list[Statement] = [
-        identity("the energy around its least point", as_text(moved) - as_text(there), around, where=where, own=False),
-        positive(
-            "which is one, at every angle between the two ways", determinant, where=angle, nonnegative=("t",), own=False
-        ),
-        positive("along alpha^2 too", form[0, 0], own=False),
-    ]
-    for label, angles in facing.PLATES.items():
-        cases += _plates(label, where, angles)
-    return Draft([cases], believed=(LEAST,))
-
-
-def _plates(label: str, least: Any, angles: Any) -> Iterator[Statement]:
-    """Yield the signs of alpha^2 and beta^2 at one pair of angles, given by cosines and sines, over a gap of 1."""
-    (c, s), (c_2, s_2) = angles
-    names = (facing.COS_THETA, facing.COS_PHI, facing.COS_BETWEEN, facing.GAP)
-    cosines = tuple((text(n), text(x)) for n, x in zip(names, (c, c_2, c * c_2 + s * s_2, 1), strict=True))
-    meets = all(39 * one > 25 * other * (c * c_2 + s * s_2) for one, other in ((c, c_2), (c_2, c)))
-    flags: dict[str, Any] = {"own": meets, "meets": meets}
-    for number in (c, c_2):
-        yield positive(f"{label}: an acute angle", number, own=False)
-    for name, letter in (("a_least", "alpha^2"), ("b_least", "beta^2")):
-        where = (*cosines, *least)
-        if meets:
-            yield positive(f"{label}: {letter} is positive", name, where=where)
-        elif name == "a_least":
-            yield positive(f"{label}: {letter} is negative", Text(f"-{name}", 1), where=where, affirmed=False, **flags)
-
-
-DRAFTS = {
+DRAFTS: dict[str, Callable[[Claim], Draft]] = {
+    "sec-1.fairness": fairness,
     "sec-3.fewer-better": fewer_better,
     "sec-3.minimum-over-rows": over_rows,
-    "sec-4.facing": facing_pairs,
 }

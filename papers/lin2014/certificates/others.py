@@ -10,7 +10,7 @@ import sympy as sp
 from semispline.derivations.splines import end_derivatives, span_symbols
 from semispline.papers.ledger import Claim, bernstein, given, union
 from semispline.papers.lin2014.certificates.contact import INDUCTION, induction
-from semispline.papers.lin2014.certificates.surfaces import SPACES, spaces
+from semispline.papers.lin2014.certificates.spline_steps import SPACES, spaces
 from semispline.papers.lin2014.checks.hartmann import ROUNDING
 from semispline.papers.lin2014.checks.other_methods import JUMP
 from semispline.papers.lin2014.checks.printed_pairs import PRINTED_PAIRS, printed_pair

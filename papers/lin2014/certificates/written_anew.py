@@ -14,8 +14,9 @@ from semispline.derivations.splines import span_symbols
 from semispline.papers.ledger import Claim, Formula, Sample, clamped, given, union
 from semispline.papers.lin2014 import printed as pr
 from semispline.papers.lin2014.certificates.contact import INDUCTION, closed_derivative, induction, row_cases
-from semispline.papers.lin2014.certificates.energy import FUBINI, NO_ENERGY
-from semispline.papers.lin2014.certificates.surfaces import UNROLLED, triangle_step
+from semispline.papers.lin2014.certificates.linear_system import FUBINI
+from semispline.papers.lin2014.certificates.minima import NO_ENERGY
+from semispline.papers.lin2014.certificates.sums import UNROLLED, triangle_step
 from semispline.papers.lin2014.checks import closed_seam as seam
 from semispline.papers.lin2014.checks.contact_rows import w_kr1
 from semispline.papers.recheck import (

@@ -174,7 +174,11 @@ def converted_counterexample() -> Counterexample:
 
 
 def few_knots_cases() -> Iterator[Case]:
-    """Yield pairs of vectors, true where the rule gives the middle curve an inner knot."""
+    """Yield every number of knots from 2 on, then pairs of vectors, true where the rule gives a knot."""
+    place, gap = sp.symbols("v g", positive=True)
+    mean = pair_means((place, place + gap))[0]
+    inside = bool((mean - place).is_positive and (place + gap - mean).is_positive)
+    yield Case("every n from 2 on: v_1 and v_2 are a pair, and their mean lies between them", inside)
     for label, (first, second) in _all_pairs().items():
         v = merged_once(first, second)
         yield Case(f"{label}: n = {len(v)}", bool(pair_means(v)), own=len(v) >= 2, meets=len(v) >= 2)
