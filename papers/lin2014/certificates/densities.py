@@ -15,7 +15,7 @@ from semispline.papers.lin2014.certificates.minima import NO_ENERGY, line
 from semispline.papers.lin2014.certificates.spline_steps import INDUCTION as RECURRENCE
 from semispline.papers.lin2014.certificates.spline_steps import sharp_continuity
 from semispline.papers.lin2014.checks import energy
-from semispline.papers.recheck import Draft, Statement, Text, as_text, different, identity, integral, rank, text
+from semispline.papers.recheck import Draft, Statement, Text, as_text, different, identity, integral_text, rank, text
 
 CURVATURES = "principal curvatures are the eigenvalues of [P_uu, P_uv; P_uv, P_vv] where lengths and angles are kept"
 
@@ -32,7 +32,7 @@ def density(claim: Claim) -> Draft:
     )
     there = printed.subs({s: sp.Symbol(f"A_{s.name[2:]}") for s in (pr.P_uu, pr.P_uv, pr.P_vv)}, simultaneous=True)
     cases: list[Statement] = [
-        identity("the derived density", Text(f"({text(printed)})*1", 2), thin_plate_density()),
+        identity("the derived density", printed, thin_plate_density()),
         *curvatures(Text("kappa_1^2 + kappa_2^2", 1), printed),
         identity("rotation by every angle, t the tangent of its half", there, printed, where=turned),
         *sharp_continuity(own=False),
@@ -61,10 +61,8 @@ def gram_entries(label: str, d: int, space: Any, **flags: Any) -> Iterator[State
     order = len(knots) - space.size
     for i in range(space.size):
         for j in range(i, space.size):
-            true = integral(order, (knots, i, d), (knots, j, d))
-            yield identity(
-                f"{label}: entry {i}, {j} by the recursion", Text(f"{text(gram[i, j])} + 0", 1), true, **flags
-            )
+            true = integral_text(order, (knots, i, d), (knots, j, d))
+            yield identity(f"{label}: entry {i}, {j} by the recursion", gram[i, j], true, **flags)
 
 
 def strain(claim: Claim) -> Draft:
@@ -73,10 +71,9 @@ def strain(claim: Claim) -> Draft:
     def cases(formula: Formula, *, equal: bool) -> list[Statement]:
         printed = formula.relation.rhs
         scaled = as_text(printed.subs(pr.area, sp.Symbol("c") * pr.area))
-        usual = printed.subs(pr.area, 1)
         return [
             identity("u replaced by u / c", scaled / Text("c"), printed, equal=equal),
-            identity("unit area element", Text(f"({text(usual)})*1", 2), Text("kappa_1^2 + kappa_2^2", 1)),
+            identity("unit area element", printed, Text("kappa_1^2 + kappa_2^2", 1), where=((text(pr.area), "1"),)),
         ]
 
     first, second = (given(reading.parts[0].formula) for reading in claim.readings)

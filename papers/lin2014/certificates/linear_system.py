@@ -4,24 +4,43 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from functools import cache
+from math import prod
 from typing import Any
 
 import sympy as sp
 
 from semispline.derivations.energy import energy_matrix, gram_block, thin_plate_density
-from semispline.papers.ledger import Claim, Formula, as_fraction
+from semispline.papers.ledger import Claim, Formula, as_expression, as_fraction
 from semispline.papers.lin2014 import printed as pr
 from semispline.papers.lin2014.certificates.contact import INDUCTION, induction
 from semispline.papers.lin2014.checks import energy
-from semispline.papers.recheck import Draft, Statement, Text, identity, integral, integrals, rank, text, total
+from semispline.papers.lin2014.printed import CUBIC
+from semispline.papers.recheck import (
+    Draft,
+    Statement,
+    Text,
+    identity,
+    integral,
+    integral_text,
+    integrals,
+    rank,
+    text,
+    total,
+)
 
 FUBINI = "the integral of a function of u times one of v is a product of integrals"
 _PAIRS = (((3, 0), (3, 0)), ((3, 1), (3, 1)), ((3, 2), (3, 2)), ((3, 1), (3, 3)), ((3, 2), (2, 1)), ((3, 3), (4, 2)))
 
 
+Integrand = tuple[int, Any, Any]
+
+
 @cache
-def _true_entries() -> dict[tuple[tuple[int, int], tuple[int, int]], tuple[Any, dict[Any, Any]]]:
-    """Return entries of the derived matrix, and the letters of (14) with values by the recursion."""
+def _true_entries() -> dict[tuple[tuple[int, int], tuple[int, int]], tuple[Any, dict[Any, tuple[Integrand, ...]]]]:
+    """Return entries of the derived matrix, and which integrals by the recursion the letters of (14) stand for.
+
+    Each letter is a product of integrals, each of them of one function or of a product of two.
+    """
     surface = energy.layout()
     matrix = energy_matrix(surface)
     index = list(surface.index)
@@ -31,21 +50,17 @@ def _true_entries() -> dict[tuple[tuple[int, int], tuple[int, int]], tuple[Any, 
     for one, other in _PAIRS:
         (i, j), (k, at) = one, other
         mine, theirs = vectors[i], vectors[k]
-        values = {}
-        for letter, d in zip((pr.A_0, pr.A_1, pr.A_2), range(3), strict=True):
-            values[letter] = integral(4, (u, i, d), (u, k, d))
-        values[pr.A_10] = integral(4, (u, i, 1), (u, k, 0))
-        for letter, d in zip((pr.G_0, pr.G_1, pr.G_2), range(3), strict=True):
-            values[letter] = integral(4, (mine, j, d), (theirs, at, d))
-        values[pr.G_12] = integral(4, (mine, j, 1), (theirs, at, 2))
-        for (row, point, knots), letters_ in (
+        values: dict[Any, tuple[Integrand, ...]] = {}
+        for letter, d, e in ((pr.A_0, 0, 0), (pr.A_1, 1, 1), (pr.A_2, 2, 2), (pr.A_10, 1, 0)):
+            values[letter] = ((CUBIC, (u, i, d), (u, k, e)),)
+        for letter, d, e in ((pr.G_0, 0, 0), (pr.G_1, 1, 1), (pr.G_2, 2, 2), (pr.G_12, 1, 2)):
+            values[letter] = ((CUBIC, (mine, j, d), (theirs, at, e)),)
+        for (row, point, knots), letters in (
             ((i, j, mine), (pr.a_1, pr.b_1, pr.c_1)),
             ((k, at, theirs), (pr.a_2, pr.b_2, pr.c_2)),
         ):
-            across = [integral(4, (u, row, d)) for d in range(3)]
-            along = [integral(4, (knots, point, d)) for d in range(3)]
-            products = across[2] * along[0], across[0] * along[2], across[1] * along[1]
-            values |= dict(zip(letters_, products, strict=True))
+            for letter, (d, e) in zip(letters, ((2, 0), (0, 2), (1, 1)), strict=True):
+                values[letter] = (CUBIC, (u, row, d), None), (CUBIC, (knots, point, e), None)
         found[one, other] = matrix[index.index(one), index.index(other)], values
     return found
 
@@ -53,14 +68,18 @@ def _true_entries() -> dict[tuple[tuple[int, int], tuple[int, int]], tuple[Any, 
 def entry_cases(formula: Formula, *, equal: bool) -> Iterator[Statement]:
     """Yield entries over the knots of Fig. 5: by the formula, with integrals by the recursion, and as derived."""
     for (one, other), (true, values) in _true_entries().items():
-        where = tuple((text(letter), text(number)) for letter, number in values.items())
+        where = tuple((text(letter), _spelled(factors)) for letter, factors in values.items())
         label = f"control points {one[0]},{one[1]} and {other[0]},{other[1]}"
-        holds = (
-            equal
-            or formula.relation.rhs.subs({s: sp.Rational(x.numerator, x.denominator) for s, x in values.items()})
-            == true
-        )
+        numbers = {letter: as_expression(prod(integral(*x) for x in factors)) for letter, factors in values.items()}
+        holds = equal or formula.relation.rhs.subs(numbers) == true
         yield identity(label, formula.relation.rhs, true, where=where, equal=holds)
+
+
+def _spelled(factors: tuple[Integrand, ...]) -> str:
+    first, *more = (integral_text(*factor) for factor in factors)
+    for factor in more:
+        first = first * factor
+    return str(first)
 
 
 def gram_general(formula: Formula, *, equal: bool = True) -> Iterator[Statement]:
@@ -91,7 +110,7 @@ def gram_general(formula: Formula, *, equal: bool = True) -> Iterator[Statement]
     yield identity(
         "any two basis functions of any orders and knots", formula.relation.rhs, mixed / 2, where=products, equal=equal
     )
-    yield identity("the derived entry", Text(f"({text(formula.relation.rhs)})*1", 2), block, equal=equal)
+    yield identity("the derived entry", formula.relation.rhs, block, equal=equal)
 
 
 def corrected_entry(claim: Claim) -> list[Statement]:

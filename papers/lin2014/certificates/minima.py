@@ -28,15 +28,20 @@ def line() -> Statement:
     )
 
 
-def one_minimum(order: int) -> Iterator[Statement]:
-    """Yield why the free rows have one minimum, and pivots of exact energy matrices."""
-    yield positive(
+def squares() -> Statement:
+    """Return that (11) is a sum of squares."""
+    return positive(
         "(11) is a sum of squares",
         thin_plate_density(),
         strict=False,
         own=False,
         over=[Term(coefficient=c, squares=(s,)) for c, s in (("1", "P_uu"), ("2", "P_uv"), ("1", "P_vv"))],
     )
+
+
+def one_minimum(order: int) -> Iterator[Statement]:
+    """Yield why the free rows have one minimum, and pivots of exact energy matrices."""
+    yield squares()
     ends = end_derivatives(1, pr.k - 1, span_symbols(1))
     determinant = as_text(ends[0, 0]) * as_text(ends[1, 1]) - as_text(ends[0, 1]) * as_text(ends[1, 0])
     yield positive(

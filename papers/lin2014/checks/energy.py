@@ -269,10 +269,11 @@ def shape_cases() -> Iterator[Case]:
 
 
 @cache
-def middle_knot_energies() -> tuple[Any, Any]:
-    """Return least energies of a C2 blend with the rule's middle knot 5/12, and with the union {1/3, 1/2} there.
+def middle_knot_blends() -> tuple[tuple[ExactSurface, Any, Any], ...]:
+    """Return C2 blends of least energy with the rule's middle knot 5/12, and with the union {1/3, 1/2} there.
 
-    Cubic across, linear along, so that it stays small; a base with a ridge and a flat one.
+    Bases, control points and energy of each. Cubic across, linear along, so that they stay small; a base with a ridge
+    and a flat one.
     """
     a, b = basis(2, Fraction(1, 2)), basis(2, Fraction(1, 3))
     found = []
@@ -283,9 +284,15 @@ def middle_knot_energies() -> tuple[Any, Any]:
             ExactBase(across, tuple(tuple((x + dx * i, j, z) for j, z in enumerate(heights)) for i in range(3)))
             for x, dx, heights in ((0, -1, (0, 1, 0)), (2, 1, (0, 0, 0)))
         ]
-        least, _ = exact_minimum(blend_problem(2, surface, *sides), 1, 1)
-        found.append(as_expression(least))
-    return found[0], found[1]
+        least, points = exact_minimum(blend_problem(2, surface, *sides), 1, 1)
+        found.append((surface, points, as_expression(least)))
+    return tuple(found)
+
+
+def middle_knot_energies() -> tuple[Any, Any]:
+    """Return the least energies with the rule's middle knot, and with the union there."""
+    (*_, rule), (*_, union) = middle_knot_blends()
+    return rule, union
 
 
 def strain_cases(formula: Formula | None) -> Iterator[Case]:
