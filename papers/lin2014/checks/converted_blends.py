@@ -150,19 +150,27 @@ def saving_consequence() -> Consequence:
         name = figure.replace("fig-", "Fig. ")
         first, second = (inner_knots(key) for key in pair)
         rows = 6 + int(counts[figure])
-        direct = rows * (together(first, second).total() + CUBIC)
+        of_contacts = 3 * (len(first) + len(second) + 2 * CUBIC)
+        averages = {word: len(rule(merged_once(first, second))) for word, rule in UNPAIRED.items()}
+        own = {word: of_contacts + (rows - 6) * (number + CUBIC) for word, number in averages.items()}
         converted = {word: rows * (_inner_knots(figure, word)[1] + CUBIC) for word in UNPAIRED}
-        averages = UNPAIRED["dropped"](merged_once(first, second))
-        own = 3 * (len(first) + len(second) + 2 * CUBIC) + (rows - 6) * (len(averages) + CUBIC)
-        measured |= {f"{name}, own knots": own, f"{name}, knots of both": direct}
-        if len(set(converted.values())) == 1:
-            measured[f"{name}, converted"] = converted["dropped"]
-        else:
-            kinds: dict[int, list[str]] = {}
-            for word, number in converted.items():
-                kinds.setdefault(number, []).append(word)
-            measured |= {f"{name}, converted ({' or '.join(words)})": n for n, words in kinds.items()}
+        measured |= _by_reading(f"{name}, own knots", own)
+        measured[f"{name}, knots of both"] = rows * (together(first, second).total() + CUBIC)
+        measured |= _by_reading(f"{name}, converted", converted)
     return Consequence("Control points with the printed knots, by what becomes of an unpaired knot", measured)
+
+
+def _by_reading(name: str, found: dict[str, int]) -> dict[str, int]:
+    """Return a count, or one for each of those that the readings of the rule give."""
+    kinds: dict[int, list[str]] = {}
+    for word, number in found.items():
+        kinds.setdefault(number, []).append(word)
+    if len(kinds) == 1:
+        return {name: next(iter(kinds))}
+    # Where no knot is left without a partner all readings that pair are one.
+    pairing = [word for word in UNPAIRED if word != "each with the next"]
+    said = {number: "in pairs" if words == pairing else " or ".join(words) for number, words in kinds.items()}
+    return {f"{name} ({words})": number for number, words in said.items()}
 
 
 def converted_counterexample() -> Counterexample:
