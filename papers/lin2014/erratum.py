@@ -110,12 +110,12 @@ def _measures(ledger: Ledger) -> dict[str, Any]:
 
 
 def _saving(counts: Mapping[str, float]) -> list[str]:
-    """Return the rows of the table of control points; Figs. 8 and 9 have the same bases."""
-    rows = []
-    for figure, name in ((5, "5"), (6, "6"), (8, "8, 9"), (10, "10")):
+    """Return the rows of the table of control points, one for all figures with the same counts."""
+    figures: dict[str, list[str]] = {}
+    for figure in ("5", "6", "8", "9", "10"):
         cells = [_range(counts, f"Fig. {figure}, {what}") for what in ("own knots", "knots of both", "converted")]
-        rows.append(f"| {name} | {' | '.join(cells)} |")
-    return rows
+        figures.setdefault(" | ".join(cells), []).append(figure)
+    return [f"| {', '.join(names)} | {cells} |" for cells, names in figures.items()]
 
 
 def _range(counts: Mapping[str, float], beginning: str) -> str:

@@ -1,4 +1,4 @@
-"""Deciding how often the least energy over alpha and beta lies where a blend has no tangent plane, on strips.
+"""Deciding how often the least energy over alpha and beta lies where a blend leaves a base at an angle, on strips.
 
 Two bases face each other if the way out of each makes an acute angle with the chord from contact to contact. The
 family: straight strips of unit speed in one plane, theta and phi the angles, with signs, that the way out of R and

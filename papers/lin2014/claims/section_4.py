@@ -225,7 +225,8 @@ CLAIMS: tuple[Claim, ...] = (
              "least energy lies there, and the blend stands at right angles on both. It may lie there between bases "
              "that face each other too: sec-4.facing."),
     holds_if("sec-4.facing", _WHERE,
-             "Between bases that face each other the search ends at a blend with tangent planes, alpha, beta not zero.",
+             "Between bases that face each other the search ends at a blend with their tangent planes, alpha and beta "
+             "not zero.",
              "39 cos theta > 25 cos phi cos(theta - phi), and the same with theta and phi exchanged, these being the "
              "angles that the ways out of R and into S make with the chord (straight bases of unit speed)",
              part(facing.FACING_CHECK, facing.BEST_ALPHA),
