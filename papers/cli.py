@@ -158,14 +158,20 @@ def _second_system(ledger: Ledger, system: str | None, folder: str | None) -> Re
 
 
 def recheck_text(second: Recheck) -> str:
-    """Return in one line what was exported and what the second system agrees on."""
+    """Return what was exported and what the second system agrees on, and why records are not repeated as a whole."""
     counts = second.counts()
     done = (
         f", {counts['identities_agreed']} agreed; {counts['rechecked']} records rechecked as a whole"
         if second.refused is not None
         else ""
     )
-    return f"{counts['identities_exported']} identities exported{done}; {counts['not_expressible']} not expressible"
+    said = f"{counts['identities_exported']} identities exported{done}; {counts['not_expressible']} not expressible"
+    named: dict[str, list[str]] = {}
+    for identifier, reason in second.reasons().items():
+        named.setdefault(reason, []).append(identifier)
+    reasons = [f"{', '.join(found) if len(found) < 4 else len(found)}: {why}" for why, found in named.items()]
+    same = f"{counts['identities_of_one_text']} identities are one text on both sides, and not counted"
+    return "\n".join([said, *([same] if counts["identities_of_one_text"] else []), *reasons])
 
 
 @app.command("new-paper")

@@ -27,7 +27,7 @@ class CheckFailedError(LedgerError):
 
 
 class Verdict(StrEnum):
-    """What is known of a claim; see the table in the README of the project's design."""
+    """What is known of a claim."""
 
     HOLDS = "holds"
     HOLDS_IF = "holds-if"
@@ -35,6 +35,23 @@ class Verdict(StrEnum):
     AMBIGUOUS = "ambiguous"
     DEFINITION = "definition"
     NOT_CHECKABLE = "not-checkable"
+
+    @property
+    def text(self) -> str:
+        """What it means, and what a record of it has to carry."""
+        return _VERDICT_TEXT[self]
+
+
+_VERDICT_TEXT = {
+    Verdict.HOLDS: "true as printed, under the paper's own assumptions",
+    Verdict.HOLDS_IF: "true only under a condition that the paper does not state and that its own setting (its orders, "
+    "its choice of knots) meets; with an exact instance on each side of the condition",
+    Verdict.FAILS: "false as printed, or false in the paper's own setting; with what it leaves, the smallest rational "
+    "counterexample, what is right instead and the proof of that, and what the error does to a surface",
+    Verdict.AMBIGUOUS: "can be read in more than one way; each reading is decided",
+    Verdict.DEFINITION: "says what a name means, and cannot be false",
+    Verdict.NOT_CHECKABLE: "data are missing, or nothing in it can be computed; with the reason",
+}
 
 
 class Strength(IntEnum):

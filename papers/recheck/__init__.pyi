@@ -5,6 +5,7 @@ from .definition import curve_jet as curve_jet
 from .definition import derivative as derivative
 from .definition import end_jets as end_jets
 from .definition import integral as integral
+from .definition import integral_text as integral_text
 from .definition import integrals as integrals
 from .definition import span_of as span_of
 from .definition import span_value as span_value

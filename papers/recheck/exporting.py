@@ -25,7 +25,7 @@ from semispline.papers.recheck.statements import (
     Rank,
     Term,
 )
-from semispline.papers.recheck.texts import NotExpressibleError, lets, number_text, text
+from semispline.papers.recheck.texts import NotExpressibleError, Spelled, lets, number_text, text
 
 Where = Mapping[Any, Any] | Sequence[tuple[str, str]]
 
@@ -375,7 +375,7 @@ def _in_sympy(expression: str, pairs: Sequence[tuple[str, str]]) -> Any:
     meaning = dict(pairs)
 
     def letter(name: str) -> Any:
-        return read(meaning[name]) if name in meaning else sp.Symbol(name)
+        return read(meaning[name]) if name in meaning else Spelled(name)
 
     def read(source: str) -> Any:
         return value(source, {name: letter(name) for name in names(source)}, sp.Integer)

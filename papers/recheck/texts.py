@@ -41,6 +41,10 @@ class NotExpressibleError(InputError):
     """An expression that is not a rational function of its letters."""
 
 
+class Spelled(sp.Symbol):  # type: ignore[misc]  # SymPy has no types
+    """A letter that came from a text, where its name is one that all systems read."""
+
+
 @dataclass(frozen=True)
 class Text:
     """An expression as text: operators put texts together and simplify nothing.
@@ -212,7 +216,7 @@ def _written(expression: Any) -> Text:
         return _product(expression)
     if expression.is_Pow and expression.exp.is_Integer:
         return _written(expression.base) ** int(expression.exp)
-    return Text(name_of(_letter(expression)))
+    return Text(expression.name if isinstance(expression, Spelled) else name_of(_letter(expression)))
 
 
 def _letter(expression: Any) -> str:

@@ -13,6 +13,7 @@ from semispline.papers.report.ledger_words import (
     evidence_words,
     mutants_text,
     residual_of,
+    words,
 )
 
 
@@ -27,7 +28,9 @@ def ledger_html(ledger: Ledger) -> str:
     )
     pairs = zip(ledger.paper.claims, ledger.decisions, strict=True)
     claims = "\n".join(_claim_html(claim, decision) for claim, decision in pairs)
-    return f"<p>{escape(counts_text(ledger))}</p><p class='filters'>{filters}</p>\n{claims}"
+    meanings = "".join(f"<li>{escape(line)}</li>" for line in words())
+    told = f"<details><summary>What the words mean</summary><ul>{meanings}</ul></details>"
+    return f"<p>{escape(counts_text(ledger))}</p>{told}<p class='filters'>{filters}</p>\n{claims}"
 
 
 def _mutants_and_reasons(decision: Decision) -> str:

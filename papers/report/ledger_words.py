@@ -86,7 +86,11 @@ def counts_text(ledger: Ledger) -> str:
     n = ledger.counts()
     verdicts = ", ".join(f"{n[verdict]} {verdict}" for verdict in Verdict)
     told = f", {n['consistent']} found consistent with what is printed and no more" if n["consistent"] else ""
-    causes = f"what is not true as printed has {n['causes']} causes; " if n["causes"] else ""
+    others = n[Verdict.HOLDS_IF] + n[Verdict.FAILS] + n[Verdict.AMBIGUOUS]
+    caused = sum(len(decisions) for _, decisions in ledger.causes())
+    causes = (
+        f"of the {others} that do not hold as they stand {caused} have {n['causes']} causes; " if n["causes"] else ""
+    )
     kinds = ", ".join(f"{number} {kind}" for kind, number in sorted(ledger.mutants_by_kind().items()))
     return (
         f"{n['printed']} printed claims, {n['decided']} decided, {n['proved']} of them proved or disproved exactly"
@@ -95,6 +99,19 @@ def counts_text(ledger: Ledger) -> str:
         f"without a reason, {n['mutants_equivalent']} say the same as the formula, {n['mutants_undecidable']} change "
         "printed data on which nothing else printed depends (each with its reason)."
     )
+
+
+def words() -> list[str]:
+    """Return what verdicts and strengths mean, one a line."""
+    return [
+        *(f"{verdict}: {verdict.text}." for verdict in Verdict),
+        "Evidence, the strongest first: " + "; ".join(strength.text for strength in Strength if strength < 5) + ".",
+        f"{Strength.CONSISTENT.text}: numbers agree, or something of the kind exists; that proves nothing, and counts "
+        "apart.",
+        "proof, disproved: the cases prove the claim, or one exact case is against it; otherwise cases were checked.",
+        "vacuous: a check without a single instance, which is a failure of the check; changed: another verdict than "
+        "the recorded one.",
+    ]
 
 
 def evidence_words(reading: ReadingDecision) -> str:

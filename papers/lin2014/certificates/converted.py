@@ -83,8 +83,7 @@ def after_conversion(claim: Claim) -> Draft:
             no_more.append(identity(f"{label}: as many as both curves have", Text(f"{len(rows)} - {len(both)}", 1), 0))
     converted = claim.corrected_formulas[0].relation.rhs
     correction: list[Statement] = [
-        positive("a mean lies above the first of its two knots", Text("(v + (v + g))/2 - v", 1), positive=("g",)),
-        positive("and below the second one", Text("(v + g) - (v + (v + g))/2", 1), positive=("g",)),
+        *between(),
         identity("one knot for each pair", converted, Text("N_u + 1*q", 1)),
     ]
     for label, a, b in _vectors():
@@ -95,9 +94,17 @@ def after_conversion(claim: Claim) -> Draft:
     return Draft([saved(given(claim.readings[0].parts[0].formula)), no_more], correction, (RULE,))
 
 
+def between() -> Iterator[Statement]:
+    """Yield that the mean of two knots lies between them."""
+    yield positive("a mean lies above the first of its two knots", Text("(v + (v + g))/2 - v", 1), positive=("g",))
+    yield positive("and below the second one", Text("(v + g) - (v + (v + g))/2", 1), positive=("g",))
+
+
 def few_knots(_: Claim) -> Draft:
-    """Return for which pairs of vectors the rule has a pair: n >= 2."""
-    cases: list[Statement] = []
+    """Return that the rule has a pair for every n >= 2, and for which pairs of vectors it has one."""
+    room = Text("2 + r - 2 + 1", 1)
+    last = positive("every n = 2 + r: v_2, the second of a pair, is one of v_1 .. v_n", room, nonnegative=("r",))
+    cases: list[Statement] = [last, *between()]
     for label, one, other in _vectors():
         n = len({*one, *other})
         if n >= 2:
@@ -125,7 +132,7 @@ def direction(claim: Claim) -> Draft:
     for n, equal in (("2*q", True), ("(2*q + 1)", False)):
         for here, there in ((first, places[1]), (second, places[0])):
             label = f"n = {n.strip('()')}: v_{here} in one direction and in the other one"
-            pairs.append(identity(label, Text(f"({here})*1", 2), mirrored(there, n), equal=equal))
+            pairs.append(identity(label, Text(here, 1), mirrored(there, n), equal=equal))
     neighbours: list[Statement] = [
         identity("neighbours, every n: the first of mean i", Text(i), Text(f"n + 1 - (n - {i} + 1)", 1)),
         identity("neighbours, every n: the second one", Text(f"{i} + 1", 1), Text(f"n + 1 - (n - {i})", 1)),

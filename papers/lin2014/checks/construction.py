@@ -37,6 +37,7 @@ from semispline.papers.ledger import (
 from semispline.papers.lin2014 import printed as pr
 from semispline.papers.lin2014.checks.contact_rows import ORDERS
 from semispline.papers.lin2014.checks.energy import u_basis
+from semispline.papers.lin2014.checks.printed_numbers import added_cases
 from semispline.papers.lin2014.checks.printed_pairs import (
     PRINTED_PAIRS,
     WITH_MIDDLE_CURVE,
@@ -100,7 +101,8 @@ def nested_space_cases() -> Iterator[Case]:
 
 
 def knot_line_cases() -> Iterator[Case]:
-    """Yield printed pairs of contact curves: the union of their inner knots is larger than either."""
+    """Yield that the union of two different vectors has knots that one lacks, and printed pairs: larger than either."""
+    yield from premises(added_cases())
     for name, keys in PRINTED_PAIRS.items():
         vectors = [set(inner_knots(key)) for key in keys]
         union_of_knots = set.union(*vectors)

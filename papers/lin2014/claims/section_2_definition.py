@@ -26,7 +26,6 @@ from semispline.papers.ledger import (
     number_changes,
     premises,
     proved,
-    question,
 )
 from semispline.papers.lin2014 import printed as pr
 from semispline.papers.lin2014.checks import order_of_evaluation, representation
@@ -253,10 +252,11 @@ CLAIMS = (
             Reading(
                 (
                     Part(
-                        question(
+                        proved(
                             order_of_evaluation.columns_first_cases,
-                            "triangles first along u on columns of control points, rows of equal length, any control "
-                            "points; orders 2 to 4",
+                            "smoothness at a knot that one vector has more often, every order and knots; triangles "
+                            "first along u on columns of control points, rows of equal length, any control points, "
+                            "orders 2 to 4",
                         )
                     ),
                 ),

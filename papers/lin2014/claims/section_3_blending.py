@@ -246,7 +246,8 @@ CLAIMS: tuple[Claim, ...] = (
               "surfaces it is measured."),
     ambiguous("sec-1.fairness", "Section 1",
               "Inserting knots until both contact curves share theirs worsens the fairness.",
-              Reading((part(question(construction.knot_line_cases, "knot lines counted in the printed pairs")),),
+              Reading((part(proved(construction.knot_line_cases, "multiplicities of any knot in two vectors and in "
+                                   "their union; knot lines counted in the printed pairs")),),
                       label="if fairness means few knot lines, across which a cubic is C2 only, then by definition"),
               Reading((part(question(_fairness_cases, "least energy (11), exactly; one counterexample is enough")),
                        part(proved(construction.nested_space_cases,
@@ -287,8 +288,8 @@ CLAIMS: tuple[Claim, ...] = (
               remark="Pairs agree exactly where n is even. In Figs. 5, 8 and 9 n = 3: read from the other end the "
               "blend is another one. Our own examples pair from both ends, so that the middle three make one mean."),
     holds_if("sec-3.averaging-few", _MIDDLE, "The rule gives P_3 inner knots.", "V_n has two knots or more",
-             part(question(converted.few_knots_cases, "the rule on vectors with no, one and more knots, shared ones "
-                           "and equal vectors among them", Strength.RATIONAL)),
+             part(proved(converted.few_knots_cases, "the first pair of every number of knots; the rule on vectors with "
+                         "no, one and more knots, shared ones and equal vectors among them")),
              cause="knots-rule",
              remark="With n = 0 or 1 there are no adjacent knots, and P_3 is one polynomial piece whatever the bases "
              "do. For equal vectors the averages are still new: the blend of two bases that one classical surface "

@@ -1,35 +1,18 @@
-"""(15) to (18) and what the appendix makes of them: the chain rule, vectors coordinate by coordinate, printed steps."""
+"""(15) and (16): the chain rule, and vectors coordinate by coordinate, for any surfaces with a common curve."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from functools import cache
 from typing import Any
 
 import sympy as sp
 
-from semispline.derivations.contact import A, contact_conditions, special_conditions
-from semispline.papers.ledger import Claim, Formula, given
+from semispline.derivations.contact import contact_conditions
+from semispline.papers.ledger import Claim
 from semispline.papers.lin2014 import printed as pr
-from semispline.papers.lin2014.certificates.contact import INDUCTION, Pairs, closed_derivative, induction, letters
-from semispline.papers.lin2014.checks.contact_rows import BASE_H, BASE_ROWS, BLEND_H, ROWS, Side, u_last
-from semispline.papers.recheck import (
-    Draft,
-    Lets,
-    Statement,
-    Text,
-    as_text,
-    contained,
-    curve_jet,
-    derivative,
-    different,
-    end_jets,
-    identity,
-    lets,
-    not_zero,
-    text,
-    total,
-)
+from semispline.papers.lin2014.certificates.contact import Pairs
+from semispline.papers.recheck import Draft, Statement, Text, as_text, contained, identity, not_zero, text, total
 
 Vector = list[Text]
 _AXES = ("x", "y", "z")
@@ -55,7 +38,8 @@ def cross(a: Vector, b: Vector) -> Vector:
     return [a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3] for i in range(3)]
 
 
-def _named(pairs: list[tuple[str, str]], name: str, values: Vector) -> Vector:
+def named_vector(pairs: list[tuple[str, str]], name: str, values: Vector) -> Vector:
+    """Return letters for the coordinates of a vector; `pairs` gets what they stand for."""
     named = [Text(f"{name}_{axis}") for axis in _AXES]
     pairs += [(str(n), str(v)) for n, v in zip(named, values, strict=True)]
     return named
@@ -73,7 +57,7 @@ def _at_coordinate(expression: Any, c: int) -> Text:
 def _frame() -> tuple[Pairs, Vector, Vector, Vector, Text]:
     pairs: list[tuple[str, str]] = []
     across, along = vector(pr.R_w), vector(pr.R_v)
-    normal = _named(pairs, "N", cross(across, along))
+    normal = named_vector(pairs, "N", cross(across, along))
     pairs.append(("NN", str(dot(normal, normal))))
     return tuple(pairs), across, along, normal, Text("NN")
 
@@ -280,194 +264,7 @@ def general(order: int) -> Any:
     return draft
 
 
-def special(formula: Formula, order: int, *, equal: bool = True) -> list[Statement]:
-    """Return (17) or (18) against the chain rule, and against R(w_s - a u) itself."""
-    letter = pr.R_w if order == 1 else pr.R_ww
-    derived = special_conditions(order)[order].subs(sp.Symbol(letter.name), letter)
-    where = ((text(A), text(pr.alpha**2)),)
-    right = formula.relation.rhs
-    return [
-        identity(f"every alpha and {letter}: the derived condition", right, derived, equal=equal, where=where),
-        identity(
-            f"every alpha and {letter}: derivative {order} of R(w_s - a u)",
-            right,
-            Text(f"(-a)^{order}") * as_text(letter),
-            equal=equal,
-            where=where,
-        ),
-    ]
-
-
-def special_contact(order: int) -> Iterator[Statement]:
-    """Yield that P_u = -alpha^2 R_w, and P_uu = alpha^4 R_ww, are contact of an order, any regular R."""
-    chosen = ((text(pr.p_1), text(-(pr.alpha**2))), (text(pr.q_1), "0"), (text(pr.p_2), "0"), (text(pr.q_2), "0"))
-    for n in range(1, order + 1):
-        letter = pr.R_w if n == 1 else pr.R_ww
-        printed = (pr.EQ_15, pr.EQ_16)[n - 1].relation.rhs
-        right = Text(f"(-alpha^2)^{n}") * as_text(letter)
-        yield identity(f"the condition of order {n} with p_1 = -alpha^2", printed, right, where=chosen, own=False)
-    yield from first_order(pr.EQ_15.relation.rhs, own=False)
-    if order == 2:
-        yield from second_order(pr.EQ_16.relation.rhs, own=False)
-
-
-def shape_parameters(sign: int = -1) -> Iterator[Statement]:
-    """Yield values of alpha: the patch by p_1 = -alpha^2 touches the base, and is regular unless alpha is 0.
-
-    With `sign` 1 the one by p_1 = alpha^2, as (17) has it.
-    """
-    if sign < 0:
-        yield from special_contact(1)
-    else:
-        yield from first_order(pr.EQ_15.relation.rhs, own=False)
-    third, half = sp.Rational(1, 3), sp.Rational(1, 2)
-    x, y = _W + third * _W**2 + half * _W * _V, _V + _W**2 / 5 + third * _V**2
-    base = [x, y, x**2 - x * y / 2 + y**3 / 3 + y / 7]
-    for alpha in (sp.Integer(1), half, sp.Integer(-2), sp.Integer(0)):
-        functions = (sign * alpha**2, 0, 0, 0)
-        yield from joined(f"alpha = {alpha}", 1, base, functions, pr.EQ_15.relation.rhs, meets=alpha != 0)
-    flat = [_W**2, _V, sp.Integer(0)]
-    yield from joined("alpha = 1, a base with R_w = 0", 1, flat, (sign, 0, 0, 0), pr.EQ_15.relation.rhs, meets=False)
-
-
-def sides() -> Iterator[Statement]:
-    """Yield on which side of the contact P_u points: P_u . n = p_1 n . n, n = R_w less its part along the contact."""
-    across, along = vector(pr.R_w), vector(pr.R_v)
-    share = dot(across, along) / dot(along, along)
-    inwards: list[tuple[str, str]] = []
-    n = _named(inwards, "n", [a - share * b for a, b in zip(across, along, strict=True)])
-    slope = [Text("p_1") * a + Text("q_1") * b for a, b in zip(across, along, strict=True)]
-    yield identity("P_u . n = p_1 n . n, any R", dot(slope, n), Text("p_1") * dot(n, n), where=inwards, own=False)
-
-
-def equation_17(claim: Claim) -> Draft:
-    """Return (17) as tangent planes see it, and as a blend that goes on from R."""
-    first, second = (given(reading.parts[0].formula) for reading in claim.readings)
-    chosen = ((text(pr.p_1), text(pr.alpha**2)), (text(pr.q_1), "0"))
-    planes: list[Statement] = [
-        identity("(15) with p_1 = alpha^2", first.relation.rhs, pr.EQ_15.relation.rhs, where=chosen, own=False),
-        *shape_parameters(1),
-    ]
-    join = [*sides(), *special(second, 1, equal=False)]
-    return Draft([planes, join], [*sides(), *special(claim.corrected_formulas[0], 1)], (PLANES,))
-
-
-def special_choice(_: Claim) -> Draft:
-    """Return that the special choice suffices, and blends with contact of order 2 that it does not have."""
-    others = [*instances(2, pr.EQ_16.relation.rhs, admitted=True)]
-    for letter, value in (("p_2", "1"), ("q_2", "-1/3"), ("q_1", "1/2")):
-        others.append(different(f"one of them has {letter} = {value}", Text(value, 2), 0))
-    return Draft([special_contact(2), others], believed=(PLANES, FORMS))
-
-
-def substitution(claim: Claim) -> Draft:
-    """Return that p_1 = alpha^2, the rest zero, turns (15), (16) into (17), (18)."""
-    chosen = ((text(pr.p_1), text(pr.alpha**2)), (text(pr.q_1), "0"), (text(pr.p_2), "0"), (text(pr.q_2), "0"))
-    general_ = (pr.EQ_15, pr.EQ_16)
-    return Draft(
-        [
-            [
-                identity(f"({17 + n}), all alpha", formula.relation.rhs, general_[n].relation.rhs, where=chosen)
-                for n, formula in enumerate(claim.formulas)
-            ]
-        ]
-    )
-
-
-def derivative_cases(formula: Formula, *, equal: bool = True) -> Iterator[Statement]:
-    """Yield what decides a printed end derivative of the blend or the base."""
-    yield from induction()
-    relation = formula.relation
-    blend = relation.lhs in (pr.P_u, pr.P_uu)
-    d = 1 if relation.lhs in (pr.P_u, pr.R_w) else 2
-    of, order, rows, h = (
-        ("blend", pr.k, ROWS["start"], BLEND_H[:2]) if blend else ("base", pr.k_r, BASE_ROWS["start"], BASE_H)
-    )
-    where = tuple(pair for pair in letters("start") if pair[0] != "a")
-    closed = closed_derivative("start", of, d)
-    yield identity(f"every order: {relation.lhs}", relation.rhs, closed, equal=equal, where=where)
-    for number in (4, 3, 5):
-        unrolled = Lets("c")
-        jets = end_jets(unrolled, number - 1, [text(x) for x in h], d)
-        true = derivative(curve_jet(jets, [as_text(row) for row in rows]), d)
-        yield identity(
-            f"order {number}, by the recursion: {relation.lhs}",
-            relation.rhs,
-            true,
-            equal=equal,
-            where=((text(order), str(number)), *where, *unrolled.pairs),
-            own=number == 4,
-        )
-
-
-def first_derivatives(claim: Claim) -> Draft:
-    """Return the first end derivatives of the appendix."""
-    return Draft([[case for formula in claim.formulas for case in derivative_cases(formula)]], believed=(INDUCTION,))
-
-
-def second_derivatives(claim: Claim) -> Draft:
-    """Return the second end derivatives, which fail in both readings."""
-    readings = [
-        [case for part in reading.parts for case in derivative_cases(given(part.formula), equal=False)]
-        for reading in claim.readings
-    ]
-    correction = [case for formula in claim.corrected_formulas for case in derivative_cases(formula)]
-    return Draft(readings, correction, (INDUCTION,))
-
-
-def solved_row(formula: Formula, order: int, *, equal: bool = True) -> Statement:
-    """Return whether a row satisfies (17) or (18) with the end derivatives, all as printed."""
-    condition, of_p, of_r = (pr.EQ_17, pr.APP_D1_P, pr.APP_D1_R) if order == 1 else (pr.EQ_18, pr.APP_D2_P, pr.APP_D2_R)
-    where = (lets({formula.relation.lhs: formula.relation.rhs})[0], lets({of_r.relation.lhs: of_r.relation.rhs})[0])
-    return identity(f"put into ({16 + order})", of_p.relation.rhs, condition.relation.rhs, where=where, equal=equal)
-
-
-def gives_2_1(claim: Claim) -> Draft:
-    """Return whether (17) gives (2.1)."""
-    row, slope = claim.corrected_formulas
-    return Draft([[solved_row(claim.formulas[0], 1, equal=False)]], [solved_row(row, 1), *special(slope, 1)])
-
-
-def similarly(claim: Claim) -> Draft:
-    """Return the conditions at S as those at R, mirrored."""
-    sides: tuple[Side, Side] = ("start", "end")
-    names = dict(zip(ROWS[sides[0]] + BASE_ROWS[sides[0]], ROWS[sides[1]] + BASE_ROWS[sides[1]], strict=True))
-    names |= {pr.alpha: pr.beta, pr.k_r: pr.k_s, pr.w_kr: pr.t_ks, pr.w_s: pr.t_s, pr.u_1: 1 - u_last}
-    cases: list[Statement] = []
-    for row, (at_r, at_s) in enumerate(zip((pr.COND_1_1, pr.COND_2_1, pr.COND_3_1), claim.formulas, strict=True)):
-        left, right = at_s.relation.rhs, at_r.relation.rhs
-        last = ((text(pr.u_m3), text(u_last)),) if row else ()
-        mirrored = lets(names)
-        cases.append(
-            identity(f"row {row}, k = 4, where u_{{m-3}} is the last inner knot", left, right, where=(*last, *mirrored))
-        )
-        if row:
-            cases += [
-                identity(
-                    f"row {row}, k = {k}, where it is another knot",
-                    left,
-                    right,
-                    equal=False,
-                    own=False,
-                    meets=False,
-                    where=((text(pr.k), str(k)), *mirrored),
-                    conditions=("u_m_less_3 != u_m_less_k_plus_1",),
-                )
-                for k in (3, 5, 6)
-            ]
-    return Draft([cases])
-
-
-DRAFTS = {
+DRAFTS: dict[str, Callable[[Claim], Draft]] = {
     "eq-15": general(1),
     "eq-16": general(2),
-    "eq-17": equation_17,
-    "eq-18": lambda claim: Draft([special(claim.formulas[0], 2)]),
-    "app-d1": first_derivatives,
-    "app-d2": second_derivatives,
-    "sec-A.substitution": substitution,
-    "sec-A.17-gives-2.1": gives_2_1,
-    "sec-A.18-gives-3.1": lambda claim: Draft([[solved_row(claim.formulas[0], 2)]]),
-    "sec-A.similarly": similarly,
-    "sec-A.special-choice": special_choice,
 }
