@@ -275,7 +275,8 @@ CLAIMS = (
              cause="indices-for-cubics",
              remark="For k > 4 (2.2) puts row m-1 on row m, so that P_u = 0 at S; for k < 4 P_u is a multiple of S_t, "
              "by another factor than beta^2. At alpha = 0 rows 0 and 1 of the blend are one, and P_u = 0: it leaves "
-             "the base at an angle, in general; nothing in the method keeps the search away from there (see sec-4.unconstrained)."),
+             "the base at an angle, in general; nothing in the method keeps the search away from there (see "
+             "sec-4.unconstrained)."),
     Claim("sec-3.one-surface", _WHERE,
           "(3.1) is a condition on two surfaces: it gives one row 2, up to the tangent plane, however the base is "
           "written.", Verdict.FAILS,

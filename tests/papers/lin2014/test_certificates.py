@@ -25,6 +25,7 @@ from semispline.papers.lin2014.certificates import (
     special_choice,
     written_anew,
 )
+from semispline.papers.lin2014.checks import energy
 from semispline.papers.recheck import Export, rechecked, write_certificates
 from semispline.papers.recheck.draft import UNWRITTEN, Draft, export_of, is_decided
 from semispline.papers.recheck.statements import Identity
@@ -164,6 +165,8 @@ BROKEN = {
     "contact_rows at a seam": (written_anew, "contact_rows", lambda m: m + _at(m, 1, 1), "fig-10.seam"),
     "energy_matrix at a seam": (written_anew, "energy_matrix", lambda m: m + _at(m, 18, 18), "fig-10.seam"),
     "end_derivatives of strips": (many_rows, "end_derivatives", lambda m: m + _at(m, 2, 2), "sec-3.minimum-over-rows"),
+    "end_energy": (energy, "end_energy", lambda x: x + sp.Rational(1, 7), "sec-3.minimum-over-rows"),
+    "exact_minimum": (energy, "middle_knot_blends", lambda x: (x[0], (*x[1][:2], x[0][2])), "sec-1.fairness"),
     "de_casteljau": (bezier, "de_casteljau", lambda x: x * x, "eq-4"),
     "division_curve": (bezier, "division_curve", lambda x: x[::-1], "eq-6"),
 }  # fmt: skip
