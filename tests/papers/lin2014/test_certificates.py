@@ -22,7 +22,9 @@ from semispline.papers.lin2014.certificates import (
     linear_system,
     many_rows,
     others,
+    set_rows,
     special_choice,
+    subpatch_counts,
     written_anew,
 )
 from semispline.papers.lin2014.checks import energy
@@ -155,8 +157,8 @@ BROKEN = {
     "functions_of_order": (counts, "functions_of_order", lambda x: x + 1, "sec-3.uniform-knots"),
     "support_end": (counts, "support_end", lambda x: 2 * x, "sec-3.contact-domain"),
     "domain_ends": (counts, "domain_ends", lambda x: x[::-1], "sec-3.inner-knots"),
-    "row_degrees": (counts, "row_degrees", lambda x: x[::-1], "sec-2.bottom-counts"),
-    "contact_matrix": (counts, "contact_matrix", lambda m: m + _at(m, 2, 1), "sec-4.no-middle-curve"),
+    "row_degrees": (subpatch_counts, "row_degrees", lambda x: x[::-1], "sec-2.bottom-counts"),
+    "contact_matrix": (set_rows, "contact_matrix", lambda m: m + _at(m, 2, 1), "sec-4.no-middle-curve"),
     "gram_matrix": (densities, "gram_matrix", lambda m: m + _at(m, 1, 1), "eq-11"),
     "energy_matrix": (linear_system, "energy_matrix", lambda m: 2 * m, "sec-4.third-term"),
     "gram_block": (linear_system, "gram_block", lambda x: x.subs(sp.Symbol("A1"), sp.Symbol("A1") / 2), "eq-14"),
