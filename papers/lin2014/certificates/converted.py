@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from fractions import Fraction
 from itertools import zip_longest
 from typing import Any
@@ -20,6 +20,35 @@ from semispline.papers.recheck import Draft, Statement, Text, identity, knots, n
 RULE = "v_1 .. v_n are the inner knots of both curves, each once, and the rule pairs 1 and 2, 3 and 4, and so on"
 
 Vector = list[Fraction]
+
+
+def averaging(claim: Claim) -> Draft:
+    """Return the averages by pairs, the last of which may not exist, and those of all neighbours."""
+    relation = given(claim.readings[0].parts[0].formula).relation
+    pair = [entry.indices[0] for entry in sorted(relation.rhs.atoms(sp.Indexed), key=str)]
+    before = Text("2*(i - 1)", 2)
+    used: list[Statement] = [
+        identity("every pair: its first knot", min(pair, key=lambda e: e.subs(pr.i, 1)), before + 1),
+        identity("every pair: its second knot", max(pair, key=lambda e: e.subs(pr.i, 1)), before + 2),
+    ]
+    last = text(max(pair, key=lambda e: e.subs(pr.i, 1)))
+    missing = positive(
+        "n = 2 q + 1, i = q + 1: the second knot would have an index above n",
+        Text(f"({last}) - (2*q + 1)", 1),
+        where=((text(pr.i), "q + 1"),),
+        nonnegative=("q",),
+        affirmed=False,
+    )
+    complete = [
+        identity("n = 2 q or 2 q + 1, i = q: its last knot is v_2q", last, Text("2*q", 2), where=((text(pr.i), "q"),)),
+    ]
+    first, second = Text("(v + (v + g))/2", 2), Text("((v + g) + (v + g + h))/2", 2)
+    sliding: list[Statement] = [
+        positive("neighbours: a mean lies above the first knot", first - "v", positive=("g", "h", "v")),
+        positive("and the next one above it", second - first, positive=("g", "h", "v")),
+        positive("and below the last knot", Text("v + g + h", 1) - second, positive=("g", "h", "v")),
+    ]
+    return Draft([[*used, missing], [*used, *complete], sliding])
 
 
 def mismatched(_: Claim) -> Draft:
@@ -140,7 +169,8 @@ def direction(claim: Claim) -> Draft:
     return Draft([pairs, neighbours], believed=(RULE,))
 
 
-DRAFTS = {
+DRAFTS: dict[str, Callable[[Claim], Draft]] = {
+    "sec-3.averaging": averaging,
     "sec-1.mismatched": mismatched,
     "sec-1.after-conversion": after_conversion,
     "sec-3.averaging-few": few_knots,

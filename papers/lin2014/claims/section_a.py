@@ -104,9 +104,9 @@ CLAIMS = (
         Verdict.HOLDS_IF,
         (Reading((Part(general_check(1), pr.EQ_15),), condition=_REGULAR),),
         remark="Where p_1 vanishes P_u and P_v are parallel and give P no tangent plane, although the equation holds; "
-        "where R_w vanishes smooth continuations exist that satisfy no such equation. The equation does not see "
-        "the sign of p_1: a fold (p_1 > 0 when both surfaces lie on the positive side of their parameters) "
-        "satisfies it too, as tangent planes alone are compared; eq-17 is decided both ways.",
+        "where R_w vanishes smooth continuations exist that satisfy no such equation. The equation does not see the "
+        "sign of p_1: a fold (p_1 > 0 when both surfaces lie on the positive side of their parameters) satisfies it "
+        "too, as tangent planes alone are compared; eq-17 is decided both ways.",
     ),
     Claim(
         "eq-16",

@@ -22,9 +22,12 @@ from semispline.papers.lin2014.certificates import (
     linear_system,
     many_rows,
     others,
+    set_rows,
     special_choice,
+    subpatch_counts,
     written_anew,
 )
+from semispline.papers.lin2014.checks import energy
 from semispline.papers.recheck import Export, rechecked, write_certificates
 from semispline.papers.recheck.draft import UNWRITTEN, Draft, export_of, is_decided
 from semispline.papers.recheck.statements import Identity
@@ -154,8 +157,8 @@ BROKEN = {
     "functions_of_order": (counts, "functions_of_order", lambda x: x + 1, "sec-3.uniform-knots"),
     "support_end": (counts, "support_end", lambda x: 2 * x, "sec-3.contact-domain"),
     "domain_ends": (counts, "domain_ends", lambda x: x[::-1], "sec-3.inner-knots"),
-    "row_degrees": (counts, "row_degrees", lambda x: x[::-1], "sec-2.bottom-counts"),
-    "contact_matrix": (counts, "contact_matrix", lambda m: m + _at(m, 2, 1), "sec-4.no-middle-curve"),
+    "row_degrees": (subpatch_counts, "row_degrees", lambda x: x[::-1], "sec-2.bottom-counts"),
+    "contact_matrix": (set_rows, "contact_matrix", lambda m: m + _at(m, 2, 1), "sec-4.no-middle-curve"),
     "gram_matrix": (densities, "gram_matrix", lambda m: m + _at(m, 1, 1), "eq-11"),
     "energy_matrix": (linear_system, "energy_matrix", lambda m: 2 * m, "sec-4.third-term"),
     "gram_block": (linear_system, "gram_block", lambda x: x.subs(sp.Symbol("A1"), sp.Symbol("A1") / 2), "eq-14"),
@@ -164,6 +167,8 @@ BROKEN = {
     "contact_rows at a seam": (written_anew, "contact_rows", lambda m: m + _at(m, 1, 1), "fig-10.seam"),
     "energy_matrix at a seam": (written_anew, "energy_matrix", lambda m: m + _at(m, 18, 18), "fig-10.seam"),
     "end_derivatives of strips": (many_rows, "end_derivatives", lambda m: m + _at(m, 2, 2), "sec-3.minimum-over-rows"),
+    "end_energy": (energy, "end_energy", lambda x: x + sp.Rational(1, 7), "sec-3.minimum-over-rows"),
+    "exact_minimum": (energy, "middle_knot_blends", lambda x: (x[0], (*x[1][:2], x[0][2])), "sec-1.fairness"),
     "de_casteljau": (bezier, "de_casteljau", lambda x: x * x, "eq-4"),
     "division_curve": (bezier, "division_curve", lambda x: x[::-1], "eq-6"),
 }  # fmt: skip
