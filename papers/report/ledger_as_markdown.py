@@ -17,6 +17,7 @@ from semispline.papers.report.ledger_words import (
     counts_text,
     kind_text,
     mutants_text,
+    print_lines,
 )
 
 # Heads what a study adds after the ledger in the same file.
@@ -141,6 +142,8 @@ def _erratum(ledger: Ledger) -> Iterator[str]:
 def _failure_lines(claim: Claim, decision: Decision) -> Iterator[tuple[str, str]]:
     """Yield five lines: what is printed, what is wrong, where it shows first, what is true, what it does."""
     yield "Printed:", f"{claim.statement} {_formulas(claim.formulas)}".rstrip()
+    for heading, text in print_lines(claim):
+        yield f"{heading.capitalize()}:", f"`{' '.join(text.split())}`"
     minus = (
         "printed minus true" if all(isinstance(f.relation, Equality) for f in claim.formulas) else "left minus right"
     )
