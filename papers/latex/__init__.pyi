@@ -3,6 +3,7 @@ from .conversion import relations as relations
 from .conversion import symbol as symbol
 from .documents import Block as Block
 from .documents import read_blocks as read_blocks
+from .echoing import echo as echo
 from .errors import UnreadableError as UnreadableError
 from .names import NamesTable as NamesTable
 from .names import read_names as read_names

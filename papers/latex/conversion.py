@@ -150,23 +150,26 @@ def relations(
     """
     found: list[Relation] = []
     for step in formula.steps:
-        left, right = (_with_names_put_in(side, step.conditions) for side in (step.left, step.right))
-        of = formula.names
+        left, names = step.left, formula.names
         if left is None and previous is not None:
-            left, of = previous.statements[-1].sides[-1], previous.names
-        known = None if left is None else to_sympy(left, of, given, branch)
-        found.append(Relation(known, step.relation, to_sympy(right, formula.names, given, branch), step))
+            left, names = previous.statements[-1].sides[-1], previous.names
+        known, right = (
+            None if side is None else to_sympy(_with_names_put_in(side, step.conditions), of, given, branch)
+            for side, of in ((left, names), (step.right, formula.names))
+        )
+        found.append(Relation(known, step.relation, right, step))
     return tuple(found)
 
 
-def _with_names_put_in(tree: Tree | None, conditions: tuple[Statement, ...]) -> Tree | None:
+def _with_names_put_in(tree: Tree, conditions: tuple[Statement, ...]) -> Tree:
     """Return a tree with each name replaced that a condition gives; inside of sums too, before SymPy sees it."""
+    given: Any = tree
     meanings = [condition.sides for condition in conditions if _gives_name(condition)]
     # A meaning may have names in it that others give, before it or after it.
     for _ in meanings:
         for name, meaning in meanings:
-            tree = substituted(tree, name, meaning)
-    return tree
+            given = substituted(given, name, meaning)
+    return given
 
 
 def _gives_name(condition: Statement) -> bool:

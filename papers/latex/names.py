@@ -26,7 +26,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 from semispline.papers.latex.errors import NamesError, UnreadableError
@@ -275,7 +275,8 @@ def _names(kept: list[tuple[_Line, str, Items]], integers: set[str], source: str
             raise _error(
                 source, declaration.line, f"{declaration.pattern}: looks like {other.pattern} of line {other.line}"
             )
-    return Names(tuple(declarations), *(frozenset(words[w]) for w in words), postfix)
+    colours, labels, products = (frozenset(words[kind]) for kind in ("colour", "label", "product"))
+    return Names(tuple(declarations), colours, labels, products, postfix)
 
 
 def _kind(line: _Line, source: str) -> tuple[str, str]:
@@ -300,12 +301,10 @@ def _declaration(
     size: tuple[str, ...] = ()
     if value == "matrix" and (found := re.fullmatch(r"(\w+)\s*x\s*(\w+)", options)):
         size, options = (found[1], found[2]), ""
-    shape = _shape(line, items, integers, source)
-    if (kind == "function") != (shape["arguments"] is not None):
+    shape = _shape(line, text, items, integers, source)
+    if (kind == "function") != (shape.arguments is not None):
         raise _error(source, line.number, f"{text}: found {kind}, expected a function just where arguments are named")
-    return Declaration(
-        text, kind=kind, value=value, line=line.number, bare=bare, word=word, size=size, range=options, **shape
-    )
+    return replace(shape, kind=kind, value=value, bare=bare, word=word, size=size, range=options)
 
 
 def head_of(item: Item) -> str:
@@ -326,35 +325,33 @@ def head_of(item: Item) -> str:
     return ""
 
 
-def _shape(line: _Line, items: Items, integers: set[str], source: str) -> dict[str, object]:
-    """Return head, scripts, primes, arguments and bracket of a pattern."""
+def _shape(line: _Line, text: str, items: Items, integers: set[str], source: str) -> Declaration:
+    """Return a pattern with its head, scripts, primes, arguments and bracket; its kind is not known yet."""
     below: list[tuple[Slot, ...]] = []
     above: list[tuple[Slot, ...]] = []
     after: list[tuple[Slot, ...]] = []
-    primes, bracket, arguments = 0, False, None
-    rest = list(items)
+    primes, bracket = 0, False
+    arguments: tuple[str, ...] | None = None
     # `{P_i}_x`: what stands in braces comes first.
-    while rest and rest[0].kind == "group":
-        rest = [*rest[0].parts[0], *rest[1:]]
-    head = head_of(rest[0]) if rest else ""
+    while items and items[0].kind == "group":
+        items = (*items[0].parts[0], *items[1:])
+    head = head_of(items[0]) if items else ""
     if not head:
         raise _error(source, line.number, f"{line.patterns!r} is no name")
-    for item in rest[1:]:
+    for item in items[1:]:
         if item.kind in ("sub", "sup"):
             slots = _slots(item.parts[0], integers)
             (above if item.kind == "sup" else below if arguments is None else after).append(slots)
         elif item.kind == "prime":
             primes += 1
         elif item.kind == "fence" and item.text == "()" and arguments is None:
-            arguments = tuple("".join(i.text for i in part) for part in split(item.parts[0]))
+            arguments = tuple(label_of(part) for part in split(item.parts[0]))
         elif item.kind == "fence" and item.text == "[]":
             bracket = True
         else:
             raise _error(source, line.number, f"{line.patterns!r} is no name")
-    return {
-        "head": head, "below": tuple(below), "above": tuple(above), "after": tuple(after), "primes": primes,
-        "arguments": arguments, "bracket": bracket,
-    }  # fmt: skip
+    scripts = tuple(below), tuple(above), tuple(after)
+    return Declaration(text, head, "", "", line.number, *scripts, primes, arguments, bracket)
 
 
 def label_of(items: Items) -> str:

@@ -11,7 +11,7 @@ import re
 from collections.abc import Iterable, Mapping
 
 from semispline.papers.latex.documents import Block
-from semispline.papers.latex.echo import echo, echo_statement
+from semispline.papers.latex.echoing import echo, echo_statement
 from semispline.papers.latex.errors import UnreadableError
 from semispline.papers.latex.names import NamesTable
 from semispline.papers.latex.reading import Formula, free_names, read_formula

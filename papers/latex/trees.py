@@ -279,7 +279,7 @@ def parts(node: Any) -> Iterator[Any]:
     >>> list(parts(Quotient(Number("1"), Number("2"))))
     [Number(text='1'), Number(text='2')]
     """
-    for name in _field_names(type(node)):
+    for name in _field_names(node.__class__):
         yield from _nodes(getattr(node, name))
 
 
@@ -291,7 +291,7 @@ def walk(node: Any) -> Iterator[Any]:
 
 
 @cache
-def _field_names(kind: type) -> tuple[str, ...]:
+def _field_names(kind: Any) -> tuple[str, ...]:
     return tuple(f.name for f in fields(kind))
 
 
@@ -316,5 +316,5 @@ def substituted(node: Any, one: Any, other: Any) -> Any:
     if isinstance(node, tuple):
         return tuple(substituted(entry, one, other) for entry in node)
     if hasattr(node, "__dataclass_fields__"):
-        return replace(node, **{f: substituted(getattr(node, f), one, other) for f in _field_names(type(node))})
+        return replace(node, **{f: substituted(getattr(node, f), one, other) for f in _field_names(node.__class__)})
     return node

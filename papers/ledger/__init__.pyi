@@ -42,6 +42,7 @@ from .records import Formula as Formula
 from .records import LedgerError as LedgerError
 from .records import Paper as Paper
 from .records import Part as Part
+from .records import Print as Print
 from .records import Reading as Reading
 from .records import Strength as Strength
 from .records import Verdict as Verdict

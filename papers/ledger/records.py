@@ -285,6 +285,25 @@ class Cause:
 
 
 @dataclass(frozen=True)
+class Print:
+    """What is printed of a claim as LaTeX, and what was read of it: its formulas are made of that.
+
+    Attributes
+    ----------
+    latex : str
+        As printed.
+    echo : str
+        What was read, as LaTeX with every product and bracket; empty where nothing was.
+    by_hand : str
+        Why and where it was not read: then the formulas are transcribed by hand.
+    """
+
+    latex: str
+    echo: str = ""
+    by_hand: str = ""
+
+
+@dataclass(frozen=True)
 class Claim:
     """One record.
 
@@ -312,6 +331,8 @@ class Claim:
         Special cases, possible misreads of the scan.
     cause : str
         Key of the cause of what is wrong in it, where something is.
+    printed : Print, optional
+        What a report shows beside the formulas.
     """
 
     id: str
@@ -325,6 +346,7 @@ class Claim:
     reason: str = ""
     remark: str = ""
     cause: str = ""
+    printed: Print | None = None
 
     @property
     def formulas(self) -> tuple[Formula, ...]:

@@ -13,12 +13,14 @@ from semispline.papers.latex import (
     NamesTable,
     Relation,
     UnreadableError,
+    echo,
     read_blocks,
     read_formula,
     read_names,
     relations,
     symbol,
 )
+from semispline.papers.ledger import Print
 from semispline.papers.pseudocode import Outcome, Program, load, run
 
 _FOLDER = Path(__file__).parent
@@ -54,6 +56,22 @@ def formula(identifier: str) -> Formula:
     """
     block = blocks()[identifier]
     return read_formula(block.text, names().of(identifier), block.source, block.line)
+
+
+def printed(identifier: str) -> Print:
+    r"""Return what is printed, with what was read of it, for a record.
+
+    Examples
+    --------
+    >>> printed("explanation.1").latex, printed("canonical.4").by_hand
+    ('  f(x) = \\cos(x)\n', 'numeral at 17_canonical.md:25:5')
+    """
+    latex = blocks()[identifier].text
+    try:
+        found = formula(identifier)
+    except UnreadableError as error:
+        return Print(latex, by_hand=f"{error.trouble} at {error.place}")
+    return Print(latex, echo(found.statements, found.names))
 
 
 def steps(identifier: str, given: Mapping[str, Any] | None = None, branch: int = 1) -> tuple[Relation, ...]:

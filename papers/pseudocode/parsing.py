@@ -121,8 +121,8 @@ def _program(rows: list[_Row], rules: list[tuple[int, str]]) -> Program:
             raise UnreadableCodeError(f"line {rows[k].number}: found an indentation that no line above opens")
         head = next((found for pattern in _HEADS if (found := pattern.match(rows[k].text))), None)
         if head is None:
-            found, k = reader.statement(rows, k)
-            lines += found
+            more, k = reader.statement(rows, k)
+            lines += more
             continue
         function, k = reader.function(head, rows, k)
         functions[function.name] = (*functions.get(function.name, ()), function)

@@ -12,6 +12,7 @@ from semispline.papers.report.ledger_words import (
     counts_text,
     evidence_words,
     mutants_text,
+    print_lines,
     residual_of,
     words,
 )
@@ -42,6 +43,7 @@ def _mutants_and_reasons(decision: Decision) -> str:
 def _claim_html(claim: Claim, decision: Decision) -> str:
     verdict = str(decision.verdict or "no answer")
     rows: list[tuple[str, str]] = [("where", escape(claim.where))]
+    rows += [(heading, f"<pre>{escape(text)}</pre>") for heading, text in print_lines(claim)]
     rows += [("printed", mathml(f.relation)) for f in claim.formulas]
     residual = residual_of(decision)
     rows += [("residual", mathml(residual))] if residual is not None else []

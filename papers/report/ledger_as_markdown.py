@@ -17,6 +17,7 @@ from semispline.papers.report.ledger_words import (
     counts_text,
     kind_text,
     mutants_text,
+    print_lines,
     words,
 )
 
@@ -173,6 +174,8 @@ def _erratum(ledger: Ledger) -> Iterator[str]:
 def _failure_lines(claim: Claim, decision: Decision) -> Iterator[tuple[str, str]]:
     """Yield what is printed, what is wrong, where it shows first, what is true, and what it does if measured."""
     yield "Printed:", f"{claim.statement} {_formulas(claim.formulas)}".rstrip()
+    for heading, text in print_lines(claim):
+        yield f"{heading.capitalize()}:", f"`{' '.join(text.split())}`"
     minus = (
         "printed minus true" if all(isinstance(f.relation, Equality) for f in claim.formulas) else "left minus right"
     )

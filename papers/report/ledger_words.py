@@ -32,6 +32,22 @@ def strength_text(decision: Decision) -> str:
     return max(reading.strength for reading in decision.readings).text if decision.readings else ""
 
 
+def print_lines(claim: Claim) -> list[tuple[str, str]]:
+    r"""Return what is printed as LaTeX, beside it what was read of it, or why it was read by hand.
+
+    Examples
+    --------
+    >>> from semispline.papers.ledger import Print
+    >>> claim = Claim("eq-1", "Section 1", "..", Verdict.HOLDS, printed=Print("2at", r"2 \cdot a \cdot t"))
+    >>> print_lines(claim)
+    [('as printed', '2at'), ('read as', '2 \\cdot a \\cdot t')]
+    """
+    if claim.printed is None:
+        return []
+    lines = (("as printed", "latex"), ("read as", "echo"), ("read by hand", "by_hand"))
+    return [(heading, text) for heading, name in lines if (text := getattr(claim.printed, name).strip())]
+
+
 def consequence_text(consequence: Consequence | None) -> str:
     """Return a measured consequence in one sentence."""
     if consequence is None:

@@ -3,7 +3,7 @@
 import pytest
 
 from semispline.papers.latex import UnreadableError, read_formula, read_names
-from semispline.papers.latex.echo import echo
+from semispline.papers.latex.echoing import echo
 from semispline.papers.latex.errors import NamesError, Trouble
 from semispline.papers.latex.reading import free_names
 from semispline.papers.latex.trees import (

@@ -6,7 +6,7 @@ from collections import Counter
 import pytest
 
 from semispline.papers.latex import NamesTable, UnreadableError, read_formula, read_names
-from semispline.papers.latex.echo import echo
+from semispline.papers.latex.echoing import echo
 from semispline.papers.latex.errors import Trouble
 from semispline.papers.latex.page import COMPARED, NOT_COMPARED, echo_page
 from semispline.papers.latex.trees import Named, walk
