@@ -47,7 +47,7 @@ _VERDICT_TEXT = {
     Verdict.HOLDS_IF: "true only under a condition that the paper does not state and that its own setting (its orders, "
     "its choice of knots) meets; with an exact instance on each side of the condition",
     Verdict.FAILS: "false as printed, or false in the paper's own setting; with what it leaves, the smallest rational "
-    "counterexample, what is right instead and the proof of that, and what the error does to a surface",
+    "counterexample, what is right instead and the proof of that, and what the error does, where it can be measured",
     Verdict.AMBIGUOUS: "can be read in more than one way; each reading is decided",
     Verdict.DEFINITION: "says what a name means, and cannot be false",
     Verdict.NOT_CHECKABLE: "data are missing, or nothing in it can be computed; with the reason",

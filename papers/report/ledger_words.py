@@ -117,11 +117,14 @@ def counts_text(ledger: Ledger) -> str:
     )
 
 
+_PROVING = [strength for strength in Strength if strength is not Strength.CONSISTENT]
+
+
 def words() -> list[str]:
     """Return what verdicts and strengths mean, one a line."""
     return [
         *(f"{verdict}: {verdict.text}." for verdict in Verdict),
-        "Evidence, the strongest first: " + "; ".join(strength.text for strength in Strength if strength < 5) + ".",
+        "Evidence, the strongest first: " + "; ".join(strength.text for strength in _PROVING) + ".",
         f"{Strength.CONSISTENT.text}: numbers agree, or something of the kind exists; that proves nothing, and counts "
         "apart.",
         "proof, disproved: the cases prove the claim, or one exact case is against it; otherwise cases were checked.",

@@ -244,7 +244,7 @@ def excess_of_c2_check(m: int, *, squares: bool) -> Check:
     return Check(cases, Strength.GENERAL, method, proof=True, probe=difference)
 
 
-_STEP = "the control points of the base step as R_2 - R_1 = s (R_1 - R_0) all along the contact, s = "
+_STEP = "the control points of each base step as R_2 - R_1 = s (R_1 - R_0) all along the contact, at S alike, s = "
 _SPEED = (
     ": the base is straight across there and its speed changes by just that much, upwards if s > 0; if s < 0 its "
     "control points turn back"
