@@ -1,6 +1,7 @@
 from .conversion import Relation as Relation
 from .conversion import relations as relations
 from .conversion import symbol as symbol
+from .conversion import terms as terms
 from .documents import Block as Block
 from .documents import read_blocks as read_blocks
 from .echoing import echo as echo

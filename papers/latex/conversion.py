@@ -161,6 +161,35 @@ def relations(
     return tuple(found)
 
 
+def terms(formula: Formula, given: Mapping[str, Any] | None = None, branch: int = 1) -> tuple[tuple[Any, ...], ...]:
+    """Return the terms of the last side of each statement in SymPy, one by one: added up they might cancel.
+
+    Parameters
+    ----------
+    formula : Formula
+    given, branch
+        As in `to_sympy`.
+
+    Raises
+    ------
+    ConversionError
+
+    Examples
+    --------
+    >>> from semispline.papers.latex.names import read_names
+    >>> from semispline.papers.latex.reading import read_formula
+    >>> names = read_names("x, y : real").of("eq-1")
+    >>> terms(read_formula(r"y = (1 - x) + x", names))
+    ((1 - x, x),)
+    """
+    found = []
+    for statement in formula.statements:
+        side = _with_names_put_in(statement.sides[-1], statement.conditions)
+        parts = side.terms if isinstance(side, Sum) else (("+", side),)
+        found.append(tuple(to_sympy(Sum(((sign, part),)), formula.names, given, branch) for sign, part in parts))
+    return tuple(found)
+
+
 def _with_names_put_in(tree: Tree, conditions: tuple[Statement, ...]) -> Tree:
     """Return a tree with each name replaced that a condition gives; inside of sums too, before SymPy sees it."""
     given: Any = tree

@@ -10,7 +10,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from semispline.papers.latex import echo_page
-from semispline.papers.primer.formulas import blocks, code, names
+from semispline.papers.primer.printed import blocks, code, names
 from semispline.papers.pseudocode import UnreadableCodeError
 
 PAGE = Path(__file__).parent / "echoes.md"

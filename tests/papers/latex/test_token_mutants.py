@@ -9,7 +9,7 @@ from dataclasses import replace
 
 from helpers.token_mutants import mutants, neutral
 from semispline.papers.latex import UnreadableError, expressions, read_formula, resolving, statements
-from semispline.papers.primer.formulas import blocks, formula
+from semispline.papers.primer.printed import blocks, formula
 
 FORMULAS = {}
 for block in blocks().values():

@@ -9,7 +9,7 @@ from math import comb
 import pytest
 import sympy as sp
 
-from semispline.papers.primer.formulas import run_code
+from semispline.papers.primer.printed import run_code
 from semispline.papers.pseudocode.errors import FaultError
 from semispline.papers.pseudocode.values import Vector
 

@@ -11,7 +11,7 @@ from semispline.papers.latex.errors import Trouble
 from semispline.papers.latex.page import COMPARED, NOT_COMPARED, echo_page
 from semispline.papers.latex.trees import Named, walk
 from semispline.papers.primer import echoes
-from semispline.papers.primer.formulas import blocks, code, formula, names, steps
+from semispline.papers.primer.printed import blocks, code, formula, names, steps
 from semispline.papers.pseudocode import UnreadableCodeError
 
 MATH = [block.id for block in blocks().values() if block.kind == "math"]

@@ -19,6 +19,7 @@ from semispline.papers.latex import (
     read_names,
     relations,
     symbol,
+    terms,
 )
 from semispline.papers.ledger import Print
 from semispline.papers.pseudocode import Outcome, Program, load, run
@@ -95,6 +96,17 @@ def steps(identifier: str, given: Mapping[str, Any] | None = None, branch: int =
     (1, 1)
     """
     return relations(formula(identifier), _before(identifier), given, branch)
+
+
+def terms_of(identifier: str, given: Mapping[str, Any] | None = None, branch: int = 1) -> tuple[tuple[Any, ...], ...]:
+    """Return the terms of the last side of each line in SymPy, as `steps` does of whole sides.
+
+    Examples
+    --------
+    >>> terms_of("explanation.7")[2]
+    (1, 3, 3, 1)
+    """
+    return terms(formula(identifier), given, branch)
 
 
 def letter(identifier: str, pattern: str) -> Any:
