@@ -5,6 +5,9 @@ from .bezier_facts import is_one as is_one
 from .counts import Counting as Counting
 from .counts import count_check as count_check
 from .identities import identity as identity
+from .inductions import induction as induction
+from .printed_code import Code as Code
+from .printed_code import code as code
 from .printed_digits import Digits as Digits
 from .printed_digits import digits as digits
 from .spline_facts import identity_cases as identity_cases

@@ -41,7 +41,7 @@ def equation_statement(
     ----------
     label : str
     printed, carried : pairs of sympy.Expr
-        Both sides as they are printed, and carried out at the instance.
+        Both sides as they are printed (or as text), and carried out at the instance.
     where : mapping
         What letters stand for.
     assumptions : iterable of sympy.Rel
@@ -82,6 +82,8 @@ class _Texts:
 
     def of(self, e: Any) -> Text:  # noqa: PLR0911  # one for each kind of node
         """Return an expression as text."""
+        if isinstance(e, Text):
+            return e
         if e in self.numbers:
             return as_text(self.numbers[e])
         if e in self.where:
@@ -96,6 +98,9 @@ class _Texts:
             exponent = self._carried(e.exp)
             if exponent.is_Integer:
                 return self.of(e.base) ** int(exponent)
+        if isinstance(e, sp.Indexed):
+            carried = self._carried(e)
+            return as_text(as_letters(carried)) if isinstance(carried, sp.Indexed) else self.of(carried)
         if isinstance(e, sp.binomial | sp.factorial):
             numbers = [self._carried(a) for a in e.args]
             if all(n.is_Integer and n >= 0 for n in numbers) and (len(numbers) == 1 or numbers[1] <= numbers[0]):

@@ -83,7 +83,7 @@ def identity(
     return Check(
         rules.cases,
         Strength.GENERAL if tried is None or complete else Strength.EACH,
-        method or (_GENERAL if tried is None else _EACH.format(_ranges(tried))),
+        method or (_GENERAL if tried is None else _EACH.format(ranges_text(tried))),
         proof=tried is None or complete,
         probe=rules.probe,
         search=rules.search,
@@ -91,7 +91,7 @@ def identity(
     )
 
 
-def _ranges(tried: list[dict[Any, Any]]) -> str:
+def ranges_text(tried: list[dict[Any, Any]]) -> str:
     """Return which numbers are tried, in words."""
     letters = list(dict.fromkeys(letter for instance in tried for letter in instance))
     texts = []
