@@ -10,9 +10,10 @@ from typing import Any
 import sympy as sp
 
 from semispline.derivations.bezier import blossom, de_casteljau
+from semispline.papers.ledger import UndefinedError
 
 # The orders at which sums over the points of a curve of any order are carried out.
-ORDERS = range(1, 7)
+ORDERS = range(1, 5)
 
 
 @cache
@@ -33,7 +34,13 @@ def basis(n: int, i: int, t: Any) -> Any:
 
 def curve_of(weights: Callable[[int], Any]) -> Callable[..., Any]:
     """Return (n, t) -> the curve of order n with the weights 0 .. n."""
-    return lambda n, t: de_casteljau([weights(i) for i in range(int(n) + 1)], t)
+
+    def curve(n: Any, t: Any) -> Any:
+        if n < 0:
+            raise UndefinedError(f"a curve of order {n}")
+        return sp.Add(*(weights(i) * basis(int(n), i, t) for i in range(int(n) + 1)))
+
+    return curve
 
 
 def part_of_curve(points: Sequence[Any], start: Any, end: Any) -> list[Any]:

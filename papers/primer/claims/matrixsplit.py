@@ -145,7 +145,7 @@ CLAIMS = (
     fails(
         "matrixsplit.18",
         "The part from z on is given by M Q applied to the points, and Q' may be applied to them first.",
-        *_chain("matrixsplit.18", _SECOND),
+        *parts(identity(), *equations("matrixsplit.18", _SECOND, _t >= 0, _t <= 1, _z > 0, _z < 1)),
         correction=corrected(
             "Q' in both places: B(t) = (1, t, t^2) M Q' P = (1, t, t^2) M (Q' P)", *parts(identity(), *_RIGHT_18)
         ),
