@@ -50,6 +50,29 @@ def with_empty_terms(formula: Formula, basis: Any) -> Formula:
     return replace(formula, equivalent=dict.fromkeys(found, "the term that is lost is zero"))
 
 
+def said_again(formula: Formula, at: Mapping[Any, Any], reason: str) -> Formula:
+    """Return a formula with those mutants explained whose sides are the same polynomials as its own.
+
+    Parameters
+    ----------
+    formula : Formula
+    at : mapping
+        Letter -> what stands for it wherever the formula is meant.
+    reason : str
+        Why they say the same.
+    """
+
+    def same(one: Any, other: Any) -> bool:
+        apart = (one - other).xreplace(at)
+        return bool(apart.expand().is_zero_matrix) if isinstance(apart, sp.MatrixBase) else sp.expand(apart) == 0
+
+    def again(relation: Any) -> bool:
+        return all(a == b or same(a, b) for a, b in zip(relation.args, formula.relation.args, strict=True))
+
+    found = [m.text for m in mutants(formula) if m.kind in ("sign", "factor", "entry") and again(m.relation)]
+    return replace(formula, equivalent=dict.fromkeys(found, reason))
+
+
 def _lost(printed: Any, changed: Any, basis: Any) -> Any:
     [(before, after)] = [(a, b) for a, b in zip(printed.args, changed.args, strict=True) if a != b]
     [one], [other] = (a.atoms(sp.Sum) - b.atoms(sp.Sum) for a, b in ((before, after), (after, before)))

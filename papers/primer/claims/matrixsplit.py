@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Any
 
 import sympy as sp
 
 from semispline.derivations.bezier import de_casteljau
 from semispline.papers.checks import identity
-from semispline.papers.ledger import Formula, corrected, formula, mutants, part, parts
+from semispline.papers.ledger import corrected, formula, part, parts
 from semispline.papers.primer.checks.curves import basis, column, part_of_curve
+from semispline.papers.primer.checks.general import said_again
 from semispline.papers.primer.printed import letter, steps
 from semispline.papers.primer.writing import equations, fails, holds
 
@@ -53,17 +53,6 @@ def _points(identifier: str, n: int, start: Any, end: Any) -> tuple[Any, ...]:
         *parts(identity(), *equations(identifier)),
         part(identity(), formula(sp.Eq(true, step.right, evaluate=False))),
     )
-
-
-def _with_zeros(printed: Formula) -> Formula:
-    """Return a formula in which entries that come out as zero may change their sign or their place."""
-
-    def same(mutant: Any) -> bool:
-        pairs = zip(mutant.relation.args, printed.relation.args, strict=True)
-        return all(a == b or (a - b).expand().is_zero_matrix for a, b in pairs)
-
-    found = [m.text for m in mutants(printed) if m.kind in ("sign", "entry") and same(m)]
-    return replace(printed, equivalent=dict.fromkeys(found, "what is changed is zero"))
 
 
 def _chain(identifier: str, given: dict[str, Any]) -> tuple[Any, ...]:
@@ -140,7 +129,10 @@ CLAIMS = (
         "Q' is the inverse of M times Z' times M, which is the product of three matrices, which is one with entries in "
         "z - 1 and z.",
         part(identity(), equations("matrixsplit.17", _SECOND)[0]),
-        *parts(identity(), *map(_with_zeros, equations("matrixsplit.17", _SECOND)[1:])),
+        *parts(
+            identity(),
+            *(said_again(e, {}, "what is changed is zero") for e in equations("matrixsplit.17", _SECOND)[1:]),
+        ),
     ),
     fails(
         "matrixsplit.18",
