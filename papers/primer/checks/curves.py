@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from functools import cache
 from itertools import pairwise
+from math import comb, hypot
 from typing import Any
 
 import sympy as sp
@@ -58,6 +59,29 @@ def differences(points: Sequence[Any]) -> list[Any]:
     [2, 6]
     """
     return [(len(points) - 1) * (b - a) for a, b in pairwise(points)]
+
+
+def greatest_distance(one: Sequence[Sequence[Any]], other: Sequence[Sequence[Any]]) -> float:
+    """Return how far two curves are apart at most at the same parameter, among 101: each by its points.
+
+    Examples
+    --------
+    >>> greatest_distance([(0, 0), (1, 0)], [(0, 0), (1, 2)])
+    2.0
+    """
+    n = len(one) - 1
+    far = 0.0
+    for step in range(101):
+        t = step / 100
+        apart = [
+            sum(
+                comb(n, i) * t**i * (1 - t) ** (n - i) * (float(a[c]) - float(b[c]))
+                for i, (a, b) in enumerate(zip(one, other, strict=True))
+            )
+            for c in (0, 1)
+        ]
+        far = max(far, hypot(*apart))
+    return far
 
 
 def row(*entries: Any) -> Any:

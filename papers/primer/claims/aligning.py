@@ -9,7 +9,7 @@ import sympy as sp
 from semispline.derivations.bezier import de_casteljau
 from semispline.papers.checks import Digits, digits, identity
 from semispline.papers.ledger import Consequence, Formula, corrected, formula, parts
-from semispline.papers.primer.checks.curves import basis
+from semispline.papers.primer.checks.curves import basis, greatest_distance
 from semispline.papers.primer.printed import letter, terms_of
 from semispline.papers.primer.writing import equations, fails, holds
 
@@ -60,25 +60,13 @@ _RIGHT_3 = [[0, -85, -13, 156], [0, -40, 141, 0]]
 _RIGHT_4 = [[-85, -13, 156], [-40, 141]]
 
 
-def _farthest(printed: list[list[Any]]) -> float:
-    """Return how far a curve with rounded points comes from the turned one, at most, at the same parameter."""
-    far = 0.0
-    for n in range(101):
-        at = {_t: sp.Rational(n, 100)}
-        apart = [
-            sum(float(basis(3, i, _t).subs(at)) * (float(true[c]) - float(row[i])) for i, true in enumerate(_TURNED))
-            for c, row in enumerate(printed)
-        ]
-        far = max(far, (apart[0] ** 2 + apart[1] ** 2) ** 0.5)
-    return far
-
-
 def _consequence() -> Consequence:
+    printed, right = (list(zip(*rows, strict=True)) for rows in (_PRINTED_3, _RIGHT_3))
     return Consequence(
         "distance at the same parameter between the curve with the rounded points and the turned one, at 101 "
         "parameters, in units of the coordinates",
-        {"greatest distance": _farthest(_PRINTED_3)},
-        {"greatest distance": _farthest(_RIGHT_3)},
+        {"greatest distance": greatest_distance(printed, _TURNED)},
+        {"greatest distance": greatest_distance(right, _TURNED)},
     )
 
 
@@ -110,6 +98,7 @@ CLAIMS = (
         correction=corrected(
             "-13 in the place of -12 and 141 in the place of 140", *parts(_ROUNDED, *_rounded(1, _RIGHT_4))
         ),
+        consequence=_consequence,
         remark="To leave the terms out is right; the two numbers are those of aligning.3.",
     ),
 )

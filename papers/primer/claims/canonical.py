@@ -59,6 +59,7 @@ _P1, _U2, _V3, _W3 = (
     for name in ("P_1", "U_2", "V_3", "W_3")
 )
 _V2 = letter("canonical.8", "{V_2}_y")
+_V3_Y = sp.Symbol("{V_3}_y", real=True)
 
 
 def _product(*factors: Any) -> Any:
@@ -87,10 +88,11 @@ def _steps(sides: tuple[Any, ...]) -> tuple[Any, ...]:
     return tuple(formula(sp.Eq(a, b, evaluate=False)) for a, b in pairwise(sides))
 
 
-def _takes(identifier: str, point: Any, to: Any) -> Any:
-    """Return that a printed matrix takes one point to another."""
+def _takes(identifier: str, points: tuple[Any, ...], to: tuple[Any, ...]) -> Any:
+    """Return that a printed matrix takes plane points to others; all have 1 for a third coordinate."""
     [step] = steps(identifier)
-    return formula(sp.Eq(column(*to), _product(step.right, column(*point)), evaluate=False))
+    before, after = (sp.ImmutableMatrix([[p[0] for p in q], [p[1] for p in q], [1] * len(q)]) for q in (points, to))
+    return formula(sp.Eq(after, _product(step.right, before), evaluate=False))
 
 
 _X, _Y = ([letter("canonical.10", f"{c}_{i}") for i in range(1, 5)] for c in "xy")
@@ -149,7 +151,7 @@ CLAIMS = (
         "canonical.2",
         "With the fourth point on this arc of an ellipse, x from 0 to 1, the curve passes through its own end.",
         part(identity(where=_AT_END), _SQUARES),
-        *(part(identity(where=_at(sp.Rational(n, 3))), equations("canonical.2")[0]) for n in (1, 2, 3)),
+        *(part(identity(where=_at(sp.Rational(n, 3))), equations("canonical.2")[0]) for n in (1, 2)),
         _range(_limit("canonical.2", 0), _AT_END, -3 * _s**2 / (1 + _s + _s**2)),
         _range(_limit("canonical.2", 2), _AT_END, (1 - _s) * (1 + 2 * _s) / (1 + _s + _s**2)),
     ),
@@ -183,29 +185,30 @@ CLAIMS = (
         "canonical.7",
         "The matrix of that kind that brings the second point, moved, above or below the origin.",
         "the first two points differ in y",
-        part(_unless({_U2[1]: 0}), _takes("canonical.7", (*_U2, 1), (0, _U2[1], 1))),
+        part(_unless({_U2[1]: 0}), _takes("canonical.7", ((0, 0), _U2), ((0, 0), (0, _U2[1])))),
     ),
     holds_if(
         "canonical.8",
         "The matrix that then brings the second point to (0, 1), and the third one to x = 1.",
         "the first two points differ in y, and the first three are not on one line",
-        part(_unless({_V2: 0}), _takes("canonical.8", (0, _V2, 1), (0, 1, 1))),
-        part(_unless({_V3[0]: 0}), _takes("canonical.8", (_V3[0], _V2, 1), (1, 1, 1))),
+        part(
+            _unless({_V2: 0}, {_V3[0]: 0}),
+            _takes("canonical.8", ((0, 0), (0, _V2), (_V3[0], _V3_Y)), ((0, 0), (0, 1), (1, _V3_Y / _V2))),
+        ),
     ),
     holds(
         "canonical.9",
         "The matrix that then brings the third point to (1, 1) and leaves the first two.",
-        part(identity(where={_W3[0]: sp.Integer(1)}), _takes("canonical.9", (*_W3, 1), (1, 1, 1))),
-        part(identity(where={_W3[0]: sp.Integer(1)}), _takes("canonical.9", (0, 1, 1), (0, 1, 1))),
-        part(identity(where={_W3[0]: sp.Integer(1)}), _takes("canonical.9", (0, 0, 1), (0, 0, 1))),
+        part(identity(), _takes("canonical.9", ((0, 0), (0, 1), _W3), ((0, 0), (0, 1), (_W3[0], 1)))),
+        remark="The third point has x = 1 already, so that nothing is divided by zero.",
     ),
     holds_if(
         "canonical.10",
         "Where the fourth point comes to lie, for any four points.",
         "the first two points differ in y, and the first three are not on one line",
         part(_unless(_FLAT), formula(sp.Eq(_MAPPED, equations("canonical.10")[0].relation.rhs, evaluate=False))),
-        remark="The curve is asked not to lie on one line, which is less. Where the first two points have one y and the "
-        "first three are on no line, there is such a point, and the formula divides by zero.",
+        remark="The curve is asked not to lie on one line, which is less. Where the first two points have one y and "
+        "the first three are on no line, there is such a point, and the formula divides by zero.",
     ),
     ambiguous(
         "canonical.11",
@@ -222,6 +225,6 @@ CLAIMS = (
         "canonical.12",
         "The same with names for two quotients.",
         "the first two points differ in y, and the first three are not on one line",
-        part(_unless({_Y[1]: 0}, where=_IN_TWELVE), _TWELVE),
+        part(_unless({_Y[1]: 0}, where=lambda at: {k: v.xreplace(at) for k, v in _IN_TWELVE.items()}), _TWELVE),
     ),
 )

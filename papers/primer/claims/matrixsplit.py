@@ -8,8 +8,8 @@ import sympy as sp
 
 from semispline.derivations.bezier import de_casteljau
 from semispline.papers.checks import identity
-from semispline.papers.ledger import corrected, formula, part, parts
-from semispline.papers.primer.checks.curves import basis, column, part_of_curve
+from semispline.papers.ledger import Consequence, corrected, formula, part, parts
+from semispline.papers.primer.checks.curves import basis, column, greatest_distance, part_of_curve
 from semispline.papers.primer.checks.general import said_again
 from semispline.papers.primer.printed import letter, steps
 from semispline.papers.primer.writing import equations, fails, holds
@@ -63,6 +63,25 @@ _RIGHT_18 = tuple(
     formula(sp.Eq(_SECOND["B(t)"](_t), side[0, 0], evaluate=False))
     for side in (steps("matrixsplit.18", {**_SECOND, "Q": _Q_REST})[0].right, steps("matrixsplit.18", _SECOND)[1].right)
 )
+
+# The curve of control.2 without its last point.
+_SAMPLE = ((120, 160), (35, 200), (220, 260))
+
+
+def _consequence() -> Consequence:
+    """Return what comes of M Q P where M Q' P is meant: the first part in the place of the second."""
+    half = sp.Rational(1, 2)
+    first, second = (
+        list(zip(*(part_of_curve([p[c] for p in _SAMPLE], *ends) for c in (0, 1)), strict=True))
+        for ends in ((0, half), (half, 1))
+    )
+    return Consequence(
+        "second half of the quadratic curve with the points (120, 160), (35, 200), (220, 260), drawn with Q: distance "
+        "to the true one at the same parameter, at 101 parameters, in units of the coordinates",
+        {"greatest distance": greatest_distance(first, second)},
+        {"greatest distance": 0.0},
+    )
+
 
 CLAIMS = (
     holds(
@@ -141,6 +160,7 @@ CLAIMS = (
         correction=corrected(
             "Q' in both places: B(t) = (1, t, t^2) M Q' P = (1, t, t^2) M (Q' P)", *parts(identity(), *_RIGHT_18)
         ),
+        consequence=_consequence,
         remark="The prime is missing on the left: as printed both sides are the two parts of the curve, one each.",
     ),
     holds("matrixsplit.19", "The part from z on with numbers for M and Q'.", *_chain("matrixsplit.19", _SECOND)),

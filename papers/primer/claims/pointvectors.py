@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import numpy as np
 import sympy as sp
 
 from semispline.papers.checks import identity
-from semispline.papers.ledger import corrected, formula, part, parts
+from semispline.papers.ledger import Consequence, corrected, formula, part, parts
 from semispline.papers.primer.checks.general import said_again
 from semispline.papers.primer.printed import letter, steps
 from semispline.papers.primer.writing import definition, equations, fails, holds
@@ -64,6 +65,28 @@ _POLAR = {
     _y_new: _r * sp.sin(_angle + _phi),
 }
 
+_CURVE = ((120, 160), (35, 200), (220, 260), (220, 40))
+
+
+def _consequence() -> Consequence:
+    """Return how far the vector of the amounts is from the tangent in direction, and from 1 in length."""
+    t = np.linspace(0, 1, 101)[:, None]
+    a, b, c = (np.array(p) for p in 3 * np.diff(_CURVE, axis=0))
+    tangents = a * (1 - t) ** 2 + 2 * b * (1 - t) * t + c * t**2
+    amounts = np.abs(tangents)
+    lengths = np.linalg.norm(tangents, axis=1)
+    cosines = np.sum(tangents * amounts, axis=1) / lengths**2
+    return Consequence(
+        "the vector with the lengths of the coordinates of the tangent for its coordinates, at 101 parameters of the "
+        "curve with the points (120, 160), (35, 200), (220, 260), (220, 40): its angle to the tangent, and its length",
+        {
+            "greatest angle (degrees)": float(np.degrees(np.arccos(cosines.min()))),
+            "greatest length": float(lengths.max()),
+        },
+        {"greatest angle (degrees)": 0.0, "greatest length": 1.0},
+    )
+
+
 CLAIMS = (
     definition(
         "pointvectors.1",
@@ -84,6 +107,7 @@ CLAIMS = (
             "Without the bars round single coordinates: each is that coordinate through the length of the tangent",
             *parts(_CHECK, *_RIGHT),
         ),
+        consequence=_consequence,
         remark="Bars are the length in the same line and in the display before: round one coordinate they give its "
         "amount, neither divided by the length nor with its sign.",
     ),
