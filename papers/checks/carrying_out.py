@@ -68,6 +68,8 @@ class _Carrying:
         for kinds, rule in self._RULES.items():
             if isinstance(e, kinds):
                 return self._defined(e, rule(self, e))
+        if e in _UNDEFINED:
+            raise UndefinedError("a division by zero")
         if not e.args or isinstance(e, sp.CRootOf):
             return e
         return self._defined(e, e.func(*map(self.out, e.args)))

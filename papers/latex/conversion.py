@@ -164,6 +164,8 @@ def relations(
 def terms(formula: Formula, given: Mapping[str, Any] | None = None, branch: int = 1) -> tuple[tuple[Any, ...], ...]:
     """Return the terms of the last side of each statement in SymPy, one by one: added up they might cancel.
 
+    Names that the formula gives to expressions stay.
+
     Parameters
     ----------
     formula : Formula
@@ -184,7 +186,7 @@ def terms(formula: Formula, given: Mapping[str, Any] | None = None, branch: int 
     """
     found = []
     for statement in formula.statements:
-        side = _with_names_put_in(statement.sides[-1], statement.conditions)
+        side = statement.sides[-1]
         parts = side.terms if isinstance(side, Sum) else (("+", side),)
         found.append(tuple(to_sympy(Sum(((sign, part),)), formula.names, given, branch) for sign, part in parts))
     return tuple(found)

@@ -33,7 +33,23 @@ _RESERVED |= {"put_in", "rooted", "same_over", "real_root"}
 _RESERVED |= {"inner", "clamped", "single", "asked", "agreed", "check", "if", "my", "for", "x_", "fun", "let", "in"}
 # Words of small letters may be functions of PARI, of which there are a thousand; these letters are none.
 _WORD = re.compile(r"[a-z][a-z0-9]*[a-z][a-z0-9]*")
-_GREEK = {"alpha", "beta", "delta", "epsilon", "iota", "kappa", "mu", "nu", "xi", "rho", "tau", "phi", "chi", "pi"}
+_GREEK = {
+    "alpha",
+    "beta",
+    "delta",
+    "epsilon",
+    "iota",
+    "kappa",
+    "mu",
+    "nu",
+    "xi",
+    "rho",
+    "tau",
+    "phi",
+    "chi",
+    "pi",
+    "ell",
+}
 _SPELLED = {"+": "_plus_", "-": "_less_", "'": "_prime", "^": "_", ",": "_", " ": "_", ".": "_dot_"}
 
 

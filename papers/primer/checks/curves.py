@@ -5,14 +5,16 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from functools import cache
 from itertools import pairwise
+from math import comb, hypot
 from typing import Any
 
 import sympy as sp
 
 from semispline.derivations.bezier import blossom, de_casteljau
+from semispline.papers.ledger import UndefinedError
 
 # The orders at which sums over the points of a curve of any order are carried out.
-ORDERS = range(1, 7)
+ORDERS = range(1, 5)
 
 
 @cache
@@ -33,7 +35,13 @@ def basis(n: int, i: int, t: Any) -> Any:
 
 def curve_of(weights: Callable[[int], Any]) -> Callable[..., Any]:
     """Return (n, t) -> the curve of order n with the weights 0 .. n."""
-    return lambda n, t: de_casteljau([weights(i) for i in range(int(n) + 1)], t)
+
+    def curve(n: Any, t: Any) -> Any:
+        if n < 0:
+            raise UndefinedError(f"a curve of order {n}")
+        return sp.Add(*(weights(i) * basis(int(n), i, t) for i in range(int(n) + 1)))
+
+    return curve
 
 
 def part_of_curve(points: Sequence[Any], start: Any, end: Any) -> list[Any]:
@@ -51,6 +59,29 @@ def differences(points: Sequence[Any]) -> list[Any]:
     [2, 6]
     """
     return [(len(points) - 1) * (b - a) for a, b in pairwise(points)]
+
+
+def greatest_distance(one: Sequence[Sequence[Any]], other: Sequence[Sequence[Any]]) -> float:
+    """Return how far two curves are apart at most at the same parameter, among 101: each by its points.
+
+    Examples
+    --------
+    >>> greatest_distance([(0, 0), (1, 0)], [(0, 0), (1, 2)])
+    2.0
+    """
+    n = len(one) - 1
+    far = 0.0
+    for step in range(101):
+        t = step / 100
+        apart = [
+            sum(
+                comb(n, i) * t**i * (1 - t) ** (n - i) * (float(a[c]) - float(b[c]))
+                for i, (a, b) in enumerate(zip(one, other, strict=True))
+            )
+            for c in (0, 1)
+        ]
+        far = max(far, hypot(*apart))
+    return far
 
 
 def row(*entries: Any) -> Any:

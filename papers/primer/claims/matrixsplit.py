@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Any
 
 import sympy as sp
 
 from semispline.derivations.bezier import de_casteljau
 from semispline.papers.checks import identity
-from semispline.papers.ledger import Formula, corrected, formula, mutants, part, parts
-from semispline.papers.primer.checks.curves import basis, column, part_of_curve
+from semispline.papers.ledger import Consequence, corrected, formula, part, parts
+from semispline.papers.primer.checks.curves import basis, column, greatest_distance, part_of_curve
+from semispline.papers.primer.checks.general import said_again
 from semispline.papers.primer.printed import letter, steps
 from semispline.papers.primer.writing import equations, fails, holds
 
@@ -55,17 +55,6 @@ def _points(identifier: str, n: int, start: Any, end: Any) -> tuple[Any, ...]:
     )
 
 
-def _with_zeros(printed: Formula) -> Formula:
-    """Return a formula in which entries that come out as zero may change their sign or their place."""
-
-    def same(mutant: Any) -> bool:
-        pairs = zip(mutant.relation.args, printed.relation.args, strict=True)
-        return all(a == b or (a - b).expand().is_zero_matrix for a, b in pairs)
-
-    found = [m.text for m in mutants(printed) if m.kind in ("sign", "entry") and same(m)]
-    return replace(printed, equivalent=dict.fromkeys(found, "what is changed is zero"))
-
-
 def _chain(identifier: str, given: dict[str, Any]) -> tuple[Any, ...]:
     return parts(identity(), *equations(identifier, given))
 
@@ -74,6 +63,25 @@ _RIGHT_18 = tuple(
     formula(sp.Eq(_SECOND["B(t)"](_t), side[0, 0], evaluate=False))
     for side in (steps("matrixsplit.18", {**_SECOND, "Q": _Q_REST})[0].right, steps("matrixsplit.18", _SECOND)[1].right)
 )
+
+# The curve of control.2 without its last point.
+_SAMPLE = ((120, 160), (35, 200), (220, 260))
+
+
+def _consequence() -> Consequence:
+    """Return what comes of M Q P where M Q' P is meant: the first part in the place of the second."""
+    half = sp.Rational(1, 2)
+    first, second = (
+        list(zip(*(part_of_curve([p[c] for p in _SAMPLE], *ends) for c in (0, 1)), strict=True))
+        for ends in ((0, half), (half, 1))
+    )
+    return Consequence(
+        "second half of the quadratic curve with the points (120, 160), (35, 200), (220, 260), drawn with Q: distance "
+        "to the true one at the same parameter, at 101 parameters, in units of the coordinates",
+        {"greatest distance": greatest_distance(first, second)},
+        {"greatest distance": 0.0},
+    )
+
 
 CLAIMS = (
     holds(
@@ -140,15 +148,19 @@ CLAIMS = (
         "Q' is the inverse of M times Z' times M, which is the product of three matrices, which is one with entries in "
         "z - 1 and z.",
         part(identity(), equations("matrixsplit.17", _SECOND)[0]),
-        *parts(identity(), *map(_with_zeros, equations("matrixsplit.17", _SECOND)[1:])),
+        *parts(
+            identity(),
+            *(said_again(e, {}, "what is changed is zero") for e in equations("matrixsplit.17", _SECOND)[1:]),
+        ),
     ),
     fails(
         "matrixsplit.18",
         "The part from z on is given by M Q applied to the points, and Q' may be applied to them first.",
-        *_chain("matrixsplit.18", _SECOND),
+        *parts(identity(), *equations("matrixsplit.18", _SECOND, _t >= 0, _t <= 1, _z > 0, _z < 1)),
         correction=corrected(
             "Q' in both places: B(t) = (1, t, t^2) M Q' P = (1, t, t^2) M (Q' P)", *parts(identity(), *_RIGHT_18)
         ),
+        consequence=_consequence,
         remark="The prime is missing on the left: as printed both sides are the two parts of the curve, one each.",
     ),
     holds("matrixsplit.19", "The part from z on with numbers for M and Q'.", *_chain("matrixsplit.19", _SECOND)),
