@@ -64,10 +64,9 @@ class Code(sp.Basic):
         """Return the code."""
         pairs = sorted(dict(replace or {}).items())
         for old, _ in pairs:
-            if str(text).count(old) != 1:
-                raise UnsuitableError(
-                    f"Code: found {old!r} {str(text).count(old)} times in the printed lines, expected it once, to be replaced"
-                )
+            times = str(text).count(old)
+            if times != 1:
+                raise UnsuitableError(f"Code: found {old!r} {times} times in the printed lines, expected it once")
         words = [sp.core.symbol.Str(str(word)) for word in (text, call, note, *(w for pair in pairs for w in pair))]
         return super().__new__(cls, *words)
 

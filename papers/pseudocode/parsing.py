@@ -134,7 +134,7 @@ class _Blocks:
             self.context.rules.add((braces[0].line, "blocks are told by braces where there are some"))
             return _Braces(self.lines[start:end], self.context).statements()
         found: list[Statement] = []
-        indent = self.lines[start].indent
+        indent = self.lines[start].indent if start < end else 0
         while start < end:
             if self.lines[start].indent != indent and self.lines[start].tokens[0].text not in _ENDS:
                 raise CodeError(f"line {self.lines[start].number}: found an indentation that no line above has")

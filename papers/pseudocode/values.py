@@ -353,10 +353,10 @@ def smallest(values: Sequence[Any], sign: str = "<") -> Any:
     CodeFaultError
         There is none, one is no number, or letters leave open which one it is.
     """
-    if not values:
-        raise CodeFaultError("found no value, expected numbers")
+    if not values or not is_number(values[0]):
+        raise CodeFaultError(f"found {', '.join(map(shown, values)) or 'nothing'}, expected numbers")
     found = values[0]
-    for value in values:
+    for value in values[1:]:
         if _compared(sign, value, found):
             found = value
     return found
