@@ -143,6 +143,7 @@ CLAIMS = (
             part(identity(), formula(sp.Eq(_mixed(before).diff(_t), _mixed(after), evaluate=False)))
             for before, after in zip([_POINTS, *_NAMES[:-1]], _LISTS, strict=True)
         ),
-        remark="n stands for the factor of the row, which is the order of the curve that is derived.",
+        remark="n stands for the factor of the row, which is the order of the curve that is derived. The text "
+        "behind it says that a cubic curve has no third derivative; it has the constant one that is shown here.",
     ),
 )

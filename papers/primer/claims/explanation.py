@@ -38,7 +38,12 @@ _PRODUCTS = tuple(
 
 CLAIMS = (
     definition("explanation.1", "f is the cosine.", "a function of one number, as an example"),
-    definition("explanation.2", "Two functions, cosine and sine, each of a letter of its own.", "two functions"),
+    definition(
+        "explanation.2",
+        "Two functions, cosine and sine, each of a letter of its own.",
+        "two functions",
+        remark="Both are named f; as one function it would have two values at the same number.",
+    ),
     definition(
         "explanation.3", "Two functions, cosine and sine, of the same letter.", "a parametric function, as an example"
     ),

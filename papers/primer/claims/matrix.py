@@ -87,5 +87,7 @@ CLAIMS = (
         "matrix.10",
         "The quadratic curve as powers of t, times a matrix of size 3, times its points.",
         *parts(identity(), *equations("matrix.10", _QUADRATIC)),
+        remark="The text behind it says that the determinant is the product of the coordinates. It is 2 here, and 9 in "
+        "matrix.9: the product of the diagonal, with no coordinates in it.",
     ),
 )
