@@ -37,7 +37,8 @@ _AT_START = _fourth(*(sp.cancel(c / _s) for c in _coordinates(_s)))
 
 def _limit(identifier: str, place: int) -> Any:
     """Return a number of the condition that is printed behind a boundary."""
-    return sp.Rational(steps(identifier)[0].step.conditions[0].sides[place].text)
+    side: Any = steps(identifier)[0].step.conditions[0].sides[place]
+    return sp.Rational(side.text)
 
 
 def _range(limit: Any, known: Any, rest: Any) -> Any:
