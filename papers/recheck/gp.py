@@ -22,6 +22,7 @@ from semispline.papers.recheck.statements import (
     Term,
 )
 
+CONTROLS = "controls"
 CHECKER = r"""\\ What PARI is asked. same: both sides are the same rational function.
 same(a, b) = (a - b) == 0;
 \\ Every divisor of a text is a product of the factors that must not vanish, so that x/x is not taken for 1 unseen.
