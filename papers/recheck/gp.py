@@ -24,6 +24,7 @@ from semispline.papers.recheck.statements import (
     Term,
 )
 
+CONTROLS = "controls"
 CHECKER = r"""\\ What PARI is asked. same: both sides are the same rational function.
 same(a, b) = (a - b) == 0;
 \\ A polynomial in r, where r^q stands for A: numerators are compared, one root after another, the last one first.

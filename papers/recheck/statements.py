@@ -356,12 +356,15 @@ class Export:
         Changed formulas, one of each kind of change at the least, which must be refused.
     not_expressible : mapping
         Decided record -> why nothing of it is here.
+    theorems : mapping
+        What is believed, or a record -> theorems of the sources in `derivations/coq` that say so.
     """
 
     paper: str
     certificates: tuple[Certificate, ...]
     controls: tuple[Statement, ...] = ()
     not_expressible: Mapping[str, str] = field(default_factory=dict)
+    theorems: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
 
 def as_record(statement: Statement) -> dict[str, Any]:
