@@ -25,6 +25,7 @@ from semispline.papers.checks.instances import (
     spread_values,
 )
 from semispline.papers.checks.normal_form import difference
+from semispline.papers.checks.probing import quick_value
 from semispline.papers.ledger import (
     Case,
     Check,
@@ -195,6 +196,17 @@ class _Rules:
         """Return exact values of the difference at some numbers; None where there are no exact ones."""
         found: list[Any] = []
         for instance in self.tried[-2:]:
+            try:
+                where = meanings_at(self.where, instance)
+                one, other = (quick_value(side, instance, where) for side in formula.relation.args)
+                found.append(other - one)
+                continue
+            except UndefinedError:
+                found.append("undefined")
+                continue
+            except (TypeError, ValueError, ZeroDivisionError, AttributeError):
+                # Then as it is carried out.
+                pass
             try:
                 for _, one, other in self._entries(formula, instance):
                     left = as_letters(other - one)

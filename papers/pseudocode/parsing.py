@@ -665,15 +665,16 @@ class _Reader:
             return [Assign(line, target, Number(line, Fraction(1)), self.take().text[0])]
         if isinstance(target, Name):
             return [Assign(line, target, None, own=own)]
-        return [Evaluate(line, target)]
+        return [Evaluate(line, self._choice(target, False) if self.at("?") else target)]
 
     # Expressions.
 
     def expression(self, *, condition: bool = False, assigned: bool = False) -> Expression:
         """Read an expression; in a condition `=` is equality, else it ends one."""
         found = self._level(0, condition)
-        if assigned or not self.at("?"):
-            return found
+        return found if assigned or not self.at("?") else self._choice(found, condition)
+
+    def _choice(self, found: Expression, condition: bool) -> Expression:
         line = self.take().line
         yes = self.expression(condition=condition)
         self.take(":")
@@ -733,7 +734,10 @@ class _Reader:
         found = self._atom()
         while not self.is_at_end:
             line = self.token.line
-            if self.at("("):
+            if self.at("(") and isinstance(found, Number):
+                # 2(a + b) is a product.
+                found = Operation(line, "*", (found, self._atom()))
+            elif self.at("("):
                 found = Call(line, found, self._arguments())
             elif self.at("["):
                 found = self._index(found, line)
