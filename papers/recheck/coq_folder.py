@@ -1,4 +1,4 @@
-"""The Coq files of an export: hand-written sources, lemmas of its statements, and the theorems that its records cite."""
+"""The Coq files of an export: hand-written sources, lemmas of its statements, theorems that its records cite."""
 
 from __future__ import annotations
 
@@ -183,7 +183,9 @@ def write_coq(folder: CoqFolder, place: Path) -> list[Path]:
     sources = needed_sources(folder) | {file.name: file.text for file in folder.files}
     texts = {f"{name}.v": text for name, text in sources.items()}
     texts["order"] = "".join(f"{name}\n" for name in sources)
-    texts["check.sh"] = f"# sh check.sh: silent but for what each file rests on; the status is 0 where Coq accepts all.\n{_LOOP}"
+    texts["check.sh"] = (
+        f"# sh check.sh: silent but for what each file rests on; the status is 0 where Coq accepts all.\n{_LOOP}"
+    )
     place.mkdir(parents=True, exist_ok=True)
     for name, text in texts.items():
         (place / name).write_text(text, encoding="utf-8")

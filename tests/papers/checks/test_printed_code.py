@@ -110,7 +110,7 @@ def test_words_that_are_no_code_are_replaced_openly():
     printed = claim(sp.Integer(1), text, "points[0]", replace={"copy of points": "copy(points)"})
     assert [case.true for case in code(given={"points": [1, 2]}).cases(printed)] == [True]
     assert printed.relation.rhs.replaced == {"copy of points": "copy(points)"}
-    with pytest.raises(UnsuitableError, match="found no 'clone'"):
+    with pytest.raises(UnsuitableError, match="found 'clone' 0 times"):
         Code(text, "v", replace={"clone": "copy"})
 
 
