@@ -141,9 +141,9 @@ class _Rules:
         entries = list(self._entries(formula, instance))
         where = meanings_at(self.where, instance)
         if len(entries) > 1:
-            explicit = [side.xreplace(instance) for side in sides]
+            one, other = (side.xreplace(instance) for side in sides)
             try:
-                yield matrix_statement(case.label, *explicit, where, equal=bool(case.true), **flags)
+                yield matrix_statement(case.label, one, other, where, equal=bool(case.true), **flags)
                 return
             except NotExpressibleError:
                 # Then entry by entry, as they come out of the products.

@@ -159,7 +159,8 @@ class _Rules:
 
     def search(self, formula: Formula) -> Counterexample | None:
         """Return the smallest numbers at which both sides differ."""
-        return smallest_difference(*self._sides(formula), formula.assumptions)
+        one, other = self._sides(formula)
+        return smallest_difference(one, other, formula.assumptions)
 
     def random_export(self, formula: Formula | None) -> Iterator[Statement]:
         """Return both sides at the random points."""

@@ -144,7 +144,7 @@ def operate(sign: str, values: list[Any], limits: Limits) -> Any:
         if not is_number(value):
             raise CodeFaultError(f"found {shown(value)} with {sign}, expected numbers")
     try:
-        return bounded(_ON_NUMBERS[sign](*values) if sign != "^" else power(*values, limits), limits)
+        return bounded(power(values[0], values[1], limits) if sign == "^" else _ON_NUMBERS[sign](*values), limits)
     except KeyError:
         raise CodeFaultError(f"found {sign} between numbers, expected vectors") from None
 

@@ -135,9 +135,10 @@ def _rank(statement: Rank) -> tuple[str, str]:
         return stated, proof
     # A matrix of functions: the rank at the instance, and what sends its columns to zero everywhere.
     sums = []
-    for row in statement.matrix:
+    for texts in statement.matrix:
         for free in range(len(statement.free)):
-            terms = (f"({_expression(a)})*({_expression(k[free])})" for a, k in zip(row, statement.kernel, strict=True))
+            pairs = zip(texts, statement.kernel, strict=True)
+            terms = (f"({_expression(a)})*({_expression(k[free])})" for a, k in pairs)
             sums.append(f"{' + '.join(terms)} == 0")
     everywhere = _variables(statement) + _premises(_not_zero(statement)) + " /\\\n  ".join(sums or ["True"])
     return f"({everywhere}) /\\\n  {stated}", f"split; [repeat split; rational|{proof[:-1]}]."
