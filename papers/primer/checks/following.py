@@ -117,11 +117,60 @@ def of_squares(check: Check, at: Mapping[Any, Any], where: Mapping[Any, Any] | N
 
 
 def _sign_label(at: Mapping[Any, Any]) -> str:
-    return "positive at " + ", ".join(f"{letter} = {value}" for letter, value in at.items())
+    return f"positive {_place(at)}"
 
 
 def _squared(relation: Any) -> Any:
     return sp.Eq(relation.lhs**2, relation.rhs**2, evaluate=False)
+
+
+def refuted_at(check: Check, at: Mapping[Any, Any], where: Mapping[Any, Any]) -> Check:
+    """Return a check that looks at one place first: where both sides differ there by far, they are not the same.
+
+    Angles that are no simple multiples of each other make a normal form very large.
+
+    Parameters
+    ----------
+    check : Check
+        With one case.
+    at : mapping
+        Letter -> number.
+    where : mapping
+        What the printed letters stand for.
+    """
+
+    def apart(formula: Formula | None) -> Any:
+        """Return a difference of two entries that is far from zero, with its first digits; None where there is none."""
+        one, other = (side.xreplace(dict(where)).subs(at) for side in given(formula).relation.args)
+        difference = other - one
+        for entry in difference if isinstance(difference, sp.MatrixBase) else [difference]:
+            found = entry.evalf(30)
+            if found.is_real and abs(found) > _FAR_APART:
+                return entry, found
+        return None
+
+    def cases(formula: Formula | None) -> Iterator[Case]:
+        found = apart(formula)
+        if found is None:
+            yield from check.cases(formula)
+        else:
+            yield Case(_place(at), False, residual=found[1])
+
+    def export(formula: Formula | None) -> Iterator[Statement]:
+        found = apart(formula)
+        if found is None:
+            yield from check.export(formula) if check.export else ()
+        else:
+            yield number(_place(at), found[0], -_FAR_APART, _FAR_APART, inside=False)
+
+    return replace(check, cases=cases, export=export, probe=None)
+
+
+_FAR_APART = sp.Rational(1, 10**9)
+
+
+def _place(at: Mapping[Any, Any]) -> str:
+    return "at " + ", ".join(f"{letter} = {value}" for letter, value in at.items())
 
 
 def probed_at(check: Check, where: Mapping[Any, Any], *points: Mapping[Any, Any]) -> Check:

@@ -94,9 +94,7 @@ def _curves_apart(printed: list[Any], right: list[Any]) -> float:
         return values
 
     one, other = curve(printed), curve(right)
-    return max(
-        dist(*([_point(way, n / 100) for way in ways] for ways in (one, other))) for n in range(101)
-    )
+    return max(dist(*([_point(way, n / 100) for way in ways] for ways in (one, other))) for n in range(101))
 
 
 def _point(points: list[float], t: float) -> float:

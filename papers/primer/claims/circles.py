@@ -10,7 +10,7 @@ import sympy as sp
 from semispline.derivations.bezier import de_casteljau
 from semispline.papers.checks import Digits, digits, identity
 from semispline.papers.ledger import formula, part, parts
-from semispline.papers.primer.checks.following import of_changed, of_squares, positive_at
+from semispline.papers.primer.checks.following import of_changed, of_squares, positive_at, refuted_at
 from semispline.papers.primer.checks.plane import arc
 from semispline.papers.primer.printed import letter, steps
 from semispline.papers.primer.writing import definition, equations, holds
@@ -36,10 +36,14 @@ def _meanings() -> dict[Any, Any]:
     return found
 
 
-_FIT = identity(
-    where=_meanings(),
-    method="the tangents at both ends of the arc, their crossing, the middle of the curve by de Casteljau's triangle, the "
-    "middle of the arc on the bisector, for any angle, against the print in normal form",
+_FIT = refuted_at(
+    identity(
+        where=_meanings(),
+        method="the tangents at both ends of the arc, their crossing, the middle of the curve by de Casteljau's triangle, "
+        "the middle of the arc on the bisector, for any angle, against the print in normal form",
+    ),
+    {_phi: 1},
+    _meanings(),
 )
 _MIDDLES = identity(
     where={
@@ -50,7 +54,8 @@ _MIDDLES = identity(
     }
 )
 _DISTANCE = sp.Function("d(\\phi)", real=True)(_phi)
-_FAR = identity(where={**_meanings(), _DISTANCE: sp.sqrt(_APART[0] ** 2 + _APART[1] ** 2)})
+_WITH_DISTANCE = {**_meanings(), _DISTANCE: sp.sqrt(_APART[0] ** 2 + _APART[1] ** 2)}
+_FAR = refuted_at(identity(where=_WITH_DISTANCE), {_phi: 1}, _WITH_DISTANCE)
 
 
 def _at_error(relation: Any) -> Any:
@@ -84,7 +89,9 @@ CLAIMS = (
     holds(
         "circles.2",
         "The control point lies on the tangents at both ends: a along the one, b along the other.",
-        *parts(_FIT, *(replace(f, equivalent=same) for f, same in zip(equations("circles.2"), _NO_HEIGHT, strict=True))),
+        *parts(
+            _FIT, *(replace(f, equivalent=same) for f, same in zip(equations("circles.2"), _NO_HEIGHT, strict=True))
+        ),
     ),
     holds(
         "circles.3",

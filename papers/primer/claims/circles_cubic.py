@@ -10,8 +10,8 @@ import sympy as sp
 
 from semispline.derivations.bezier import de_casteljau
 from semispline.papers.checks import Digits, digits, identity
-from semispline.papers.ledger import chain, corrected, formula, part, parts
-from semispline.papers.primer.checks.following import of_squares
+from semispline.papers.ledger import Formula, chain, corrected, formula, mutants, part, parts
+from semispline.papers.primer.checks.following import of_squares, refuted_at
 from semispline.papers.primer.checks.plane import along_hat, arc
 from semispline.papers.primer.printed import letter, steps
 from semispline.papers.primer.writing import definition, equations, fails, holds
@@ -60,10 +60,14 @@ def _meanings() -> dict[Any, Any]:
 
 
 _MEANINGS = _meanings()
-_FIT = identity(
-    where=_MEANINGS,
-    method="control points along the tangents so far that the middle of the curve, by de Casteljau's triangle, is that of "
-    "the arc; for any angle, against the print in normal form",
+_FIT = refuted_at(
+    identity(
+        where=_MEANINGS,
+        method="control points along the tangents so far that the middle of the curve, by de Casteljau's triangle, is that "
+        "of the arc; for any angle, against the print in normal form",
+    ),
+    {_phi: 1},
+    _MEANINGS,
 )
 _LENGTHS = of_squares(_FIT, {_phi: 1}, _MEANINGS)
 
@@ -85,15 +89,29 @@ _WAY = identity(
     "curve to tip",
 )
 # circles_cubic.8 and circles_cubic.10, transcribed by hand.
-_v, _B, _C, _E, _E1 = (
-    [_letter(f"{name}_{axis}") for axis in "xy"] for name in ("\\vec{v}", "B", "C", "E", "E'")
-)
+_v, _B, _C, _E, _E1 = ([_letter(f"{name}_{axis}") for axis in "xy"] for name in ("\\vec{v}", "B", "C", "E", "E'"))
 _C2 = [_letter(f"C_2_{axis}") for axis in "xy"]
 _up = _letter("C_{1y}")
 _tangent = sp.Rational(4, 3) * sp.tan(_phi / 4)
-_length = sp.sqrt((-sp.sin(_phi)) ** 2 + sp.cos(_phi) ** 2)
+_squared_length = (-sp.sin(_phi)) ** 2 + sp.cos(_phi) ** 2
 _speed = _letter("speed")
-_END = identity(where={**_MEANINGS, _speed: sp.Integer(1), **dict(zip(_C2, _SECOND, strict=True))})
+_AT_END = {**_MEANINGS, _speed: sp.Integer(1), **dict(zip(_C2, _SECOND, strict=True))}
+_END = refuted_at(identity(where=_AT_END), {_phi: 1}, _AT_END)
+
+
+def _whatever_power(step: Formula) -> Formula:
+    """Say of each mutant that has but another power of the length of the tangent that it is the same."""
+    same = [m.text for m in mutants(step) if m.relation.subs(_speed, 1) == step.relation.subs(_speed, 1)]
+    return replace(step, equivalent=dict.fromkeys(same, "the length is 1"))
+
+
+def _whatever_sign(point: Formula) -> Formula:
+    """Say of each mutant that turns the sign of a coordinate that is 0 that it is the same."""
+    zeros = {letter_: 0 for letter_ in point.relation.lhs.free_symbols if _QUARTER[letter_] == 0}
+    same = [m.text for m in mutants(point) if m.relation.subs(zeros) == point.relation.subs(zeros)]
+    return replace(point, equivalent=dict.fromkeys(same, "the coordinate is 0"))
+
+
 _QUARTER = {letter_: sp.sympify(value).subs(_phi, sp.pi / 2) for letter_, value in _MEANINGS.items()}
 _NO_HEIGHT = {
     f"Eq(Matrix([[C_1.x], [C_1.y]]), Matrix([[{other}]]))": "the y of S is 0"
@@ -161,20 +179,25 @@ CLAIMS = (
     holds(
         "circles_cubic.10",
         "The second control point lies as far back along the tangent at the end, which has the length 1.",
-        *parts(_END, _of(_E1[0], -sp.sin(_phi)), _of(_E1[1], sp.cos(_phi)), _of(_speed**2, _length**2)),
+        *parts(_END, _of(_E1[0], -sp.sin(_phi)), _of(_E1[1], sp.cos(_phi)), _of(sp.Integer(1), _squared_length)),
         *parts(
             _END,
-            *chain(
-                _C2[0],
-                _E[0] - _up * _E1[0] / _speed,
-                sp.cos(_phi) + _up * sp.sin(_phi),
-                sp.cos(_phi) + _tangent * sp.sin(_phi),
-            ),
-            *chain(
-                _C2[1],
-                _E[1] - _up * _E1[1] / _speed,
-                sp.sin(_phi) - _up * sp.cos(_phi),
-                sp.sin(_phi) - _tangent * sp.cos(_phi),
+            *map(
+                _whatever_power,
+                (
+                    *chain(
+                        _C2[0],
+                        _E[0] - _up * _E1[0] / _speed,
+                        sp.cos(_phi) + _up * sp.sin(_phi),
+                        sp.cos(_phi) + _tangent * sp.sin(_phi),
+                    ),
+                    *chain(
+                        _C2[1],
+                        _E[1] - _up * _E1[1] / _speed,
+                        sp.sin(_phi) - _up * sp.cos(_phi),
+                        sp.sin(_phi) - _tangent * sp.cos(_phi),
+                    ),
+                ),
             ),
         ),
     ),
@@ -191,7 +214,7 @@ CLAIMS = (
     holds(
         "circles_cubic.13",
         "All four points for a quarter of the circle.",
-        *parts(identity(where=_QUARTER), *equations("circles_cubic.13")),
+        *parts(identity(where=_QUARTER), *map(_whatever_sign, equations("circles_cubic.13"))),
     ),
     holds(
         "circles_cubic.14",

@@ -114,7 +114,10 @@ def _where(identifier: str, powers: str) -> Any:
 _SQUARE = letter("curvefitting.16", "P").shape
 _GRADIENT = sp.MatrixSymbol("G", *_SQUARE)
 _NOTHING = sp.MatrixSymbol("O", *letter("curvefitting.18", "C").shape)
-_LEAST_SQUARES = {"each": _SIZES, "method": "sums over 2 to 4 points, 2 or 3 weights, by de Casteljau's triangle, first parameter 0, last 1"}
+_LEAST_SQUARES = {
+    "each": _SIZES,
+    "method": "sums over 2 to 4 points, 2 or 3 weights, by de Casteljau's triangle, first parameter 0, last 1",
+}
 
 
 def _as_sum_of_squares(relation: Any) -> Any:
@@ -125,9 +128,7 @@ def _as_sum_of_squares(relation: Any) -> Any:
 def _at_weights(relation: Any) -> Any:
     """Return that half of the gradient, its sign changed, is nothing at the weights that are printed."""
     powers, to_basis, points = (letter("curvefitting.18", name) for name in ("𝕋", "M", "P"))
-    return sp.Eq(
-        _NOTHING, to_basis.T * powers.T * (points - powers * to_basis * relation.rhs), evaluate=False
-    )
+    return sp.Eq(_NOTHING, to_basis.T * powers.T * (points - powers * to_basis * relation.rhs), evaluate=False)
 
 
 def _gradient(side: Any) -> Any:
@@ -225,7 +226,9 @@ CLAIMS = (
         "the parameters of the points",
         "That the last one is 1 follows, unless all points are the same.",
     ),
-    definition("curvefitting.11", "The squared distance of a point from the curve at its parameter.", "the error there"),
+    definition(
+        "curvefitting.11", "The squared distance of a point from the curve at its parameter.", "the error there"
+    ),
     definition("curvefitting.12", "The sum of these over all points.", "the error of a curve"),
     holds(
         "curvefitting.13",
@@ -260,7 +263,9 @@ CLAIMS = (
         ),
         correction=corrected(
             "the last power is n - 1: as printed the matrix has n + 1 columns, and M, of n rows, does not fit behind it",
-            part(identity(where={_last: _s ** (_count - 1)}), formula(sp.Eq(_last, _s ** (_count - 1), evaluate=False))),
+            part(
+                identity(where={_last: _s ** (_count - 1)}), formula(sp.Eq(_last, _s ** (_count - 1), evaluate=False))
+            ),
         ),
     ),
     holds(

@@ -53,9 +53,7 @@ def _pulled() -> Consequence:
         printed.append((line[0], v1 + (v1 - line[0]) / t, v2 + (v2 - line[-1]) / (1 - t), line[-1]))
         v1, v2 = tip - (tip - e1) / (1 - t), tip + (e2 - tip) / t
         right.append((line[0], line[0] + (v1 - line[0]) / t, line[-1] + (v2 - line[-1]) / (1 - t), line[-1]))
-    missed, met = (
-        dist(goal, [(a + 3 * b + 3 * c + d) / 8 for a, b, c, d in ways]) for ways in (printed, right)
-    )
+    missed, met = (dist(goal, [(a + 3 * b + 3 * c + d) / 8 for a, b, c, d in ways]) for ways in (printed, right))
     return Consequence(
         "a cubic curve 150 wide, its middle pulled by (10, 30): how far the new curve passes from there",
         {"distance": missed},
