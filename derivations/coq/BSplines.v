@@ -90,6 +90,13 @@ Proof. induction p as [|q IH]; intros i x; cbn [cox]; [reflexivity|]. now rewrit
 Lemma N_shift t p i x : N (shift t) p i x = N t p (S i) x.
 Proof. unfold N, shift. exact (cox_shift (fun j => inside (t j) (t (S j)) x) t p i x). Qed.
 
+(** A function depends on its own p + 2 knots alone. *)
+Theorem own_knots s t p i : (forall j, (i <= j <= S (i + p))%nat -> s j = t j) -> forall x, N s p i x = N t p i x.
+Proof.
+  intros H x. unfold N. rewrite (cox_ext _ (fun j => inside (t j) (t (S j)) x)); [now apply cox_knots|].
+  intros j Hj. now rewrite !H by lia.
+Qed.
+
 Section Ascending.
 Variable t : nat -> R.
 Hypothesis up : ascending t.
@@ -123,6 +130,24 @@ Proof.
     + destruct (Rle_dec (t (S i + S q)%nat) x).
       * rewrite local_support; [lra|right]. now replace (S (S i + q)) with (S i + S q)%nat by lia.
       * apply Rmult_le_pos; [apply quo_nonneg|apply IH]; [lra|]. knots (S i) (S i + S q)%nat. lra.
+Qed.
+
+(** And is positive inside of it. *)
+Theorem positive_inside p i k x : t k < x < t (S k) -> (i <= k <= i + p)%nat -> 0 < N t p i x.
+Proof.
+  intro Hx. revert i. induction p as [|q IH]; intros i Hi.
+  - replace i with k by lia. cbn. rewrite inside_1; lra.
+  - rewrite N_step. pose proof (non_negative q i x). pose proof (non_negative q (S i) x).
+    knots i k. knots (S k) (S (i + S q)).
+    destruct (le_lt_dec k (i + q)) as [L|L].
+    + knots (S k) (i + S q)%nat. apply Rplus_lt_le_0_compat.
+      * apply Rmult_lt_0_compat; [|apply IH; lia]. rewrite quo_div by lra. apply Rdiv_lt_0_compat; lra.
+      * apply Rmult_le_pos; [apply quo_nonneg|assumption]; [change (S i + S q)%nat with (S (i + S q)); lra|].
+        knots (S i) (S i + S q)%nat. lra.
+    + apply Rplus_le_lt_0_compat.
+      * apply Rmult_le_pos; [apply quo_nonneg|assumption]; [lra|]. knots i (i + S q)%nat. lra.
+      * knots (S i) k. change (S i + S q)%nat with (S (i + S q)).
+        apply Rmult_lt_0_compat; [|apply IH; lia]. rewrite quo_div by lra. apply Rdiv_lt_0_compat; lra.
 Qed.
 
 Lemma some_span p m x : t p <= x < t (S m) -> exists k, (p <= k <= m)%nat /\ span t k x.

@@ -71,17 +71,6 @@ Proof. unfold bell_polynomial. simpl. unfold C. simpl. split; [reflexivity|field
 Lemma bell_2 g : bell_polynomial g 2 0 = 0 /\ bell_polynomial g 2 1 = g 2%nat /\ bell_polynomial g 2 2 = g 1%nat ^ 2.
 Proof. unfold bell_polynomial. simpl. unfold C. simpl. repeat split; field. Qed.
 
-(** The derivatives that (2.1) and (3.1) are made of. *)
-Lemma differences_1 q u Q : (1 <= q)%nat -> differences 1 q u Q = INR q / u 1%nat * (Q 1%nat - Q O).
-Proof. destruct q; [lia|]. intros _. apply first_derivative. Qed.
-
-Lemma differences_2 q u Q : (1 <= q)%nat -> differences 2 q u Q =
-  INR q * (INR q - 1) / u 1%nat * ((Q 2%nat - Q 1%nat) / u 2%nat - (Q 1%nat - Q O) / u 1%nat).
-Proof.
-  destruct q as [|[|q]]; intro H; [lia|cbn; unfold Rdiv; ring|].
-  rewrite second_derivative. rewrite (S_INR (S q)). f_equal. f_equal. f_equal. ring.
-Qed.
-
 Lemma knot_positive s r j : ascending s -> clamped s r -> (1 <= j)%nat -> 0 < knot s r j.
 Proof.
   intros Hs [_ H] Hj. unfold knot. pose proof (ascending_le s Hs (S r) (r + j) ltac:(lia)). lra.
@@ -118,7 +107,7 @@ Qed.
 Theorem condition_2_1 a P Q : contact 1 a m t p P m' w q Q <-> P O = Q O /\
   P 1%nat = a * u 1%nat * INR q / (h 1%nat * INR p) * (Q O - Q 1%nat) + P O.
 Proof.
-  rewrite contact_step, condition_1_1, !end_derivatives, !differences_1 by (auto; lia).
+  rewrite contact_step, condition_1_1, !end_derivatives, !first_derivative by (auto; lia).
   fold u h. pose proof (knot_positive t p 1 up Ct ltac:(lia)) as U. pose proof (knot_positive w q 1 up' Cw ltac:(lia)) as H.
   fold u in U. fold h in H. assert (Np : INR p <> 0) by (apply not_0_INR; lia).
   split; intros [E0 E1]; split; auto.
@@ -132,7 +121,7 @@ Theorem condition_3_1 a P Q : (2 <= p)%nat -> contact 2 a m t p P m' w q Q <-> c
     + a ^ 2 * (u 1%nat * u 2%nat * INR q * (INR q - 1)) / (h 1%nat * INR p * (INR p - 1))
       * ((Q 2%nat - Q 1%nat) / h 2%nat - (Q 1%nat - Q O) / h 1%nat).
 Proof.
-  intro Hp'. rewrite contact_step, !end_derivatives, !differences_2 by (auto; lia). fold u h.
+  intro Hp'. rewrite contact_step, !end_derivatives, !second_derivative by (auto; lia). fold u h.
   pose proof (knot_positive t p 1 up Ct ltac:(lia)) as U. pose proof (knot_positive t p 2 up Ct ltac:(lia)) as U'.
   pose proof (knot_positive w q 1 up' Cw ltac:(lia)) as H. pose proof (knot_positive w q 2 up' Cw ltac:(lia)) as H'.
   fold u in U, U'. fold h in H, H'.

@@ -120,13 +120,15 @@ Proof.
   intros i Hi. now apply dpoints_knot.
 Qed.
 
-(** The first and the second one written out: [app-d1], and what [app-d2] should be. *)
-Corollary first_derivative p u P : differences 1 (S p) u P = INR (S p) / u 1%nat * (P 1%nat - P O).
-Proof. cbn [differences]. unfold Rdiv. ring. Qed.
+(** The first and the second one written out, for every degree: [app-d1], and what [app-d2] should be. *)
+Corollary first_derivative p u P : differences 1 p u P = INR p / u 1%nat * (P 1%nat - P O).
+Proof. destruct p as [|p]; cbn [differences]; [cbn [INR]|]; unfold Rdiv; ring. Qed.
 
-Corollary second_derivative p u P : differences 2 (S (S p)) u P =
-  INR (S (S p)) * INR (S p) / u 1%nat * ((P 2%nat - P 1%nat) / u 2%nat - (P 1%nat - P O) / u 1%nat).
-Proof. cbn [differences]. unfold Rdiv. ring. Qed.
+Corollary second_derivative p u P : differences 2 p u P =
+  INR p * (INR p - 1) / u 1%nat * ((P 2%nat - P 1%nat) / u 2%nat - (P 1%nat - P O) / u 1%nat).
+Proof.
+  destruct p as [|[|p]]; cbn [differences]; [cbn; unfold Rdiv; ring..|]. rewrite (S_INR (S p)). unfold Rdiv. ring.
+Qed.
 
 (** e_k(u_1, .., u_i), the elementary symmetric polynomial. *)
 Fixpoint esym (u : nat -> R) (i k : nat) : R :=

@@ -220,7 +220,7 @@ Lemma values : x1 <> 0 /\ z1 = 0 /\ z2 = 2 /\ X1 = - al ^ 2 * x1 /\ Z1 = 0 /\ Pz
 Proof.
   destruct U_knots as [U1 U2], W_knots as [W1 W2].
   apply ends in D1, D2, D3, D4, D5, D6, D7, D8; auto using U_ascending, W_ascending, U_clamped, W_clamped; try lia.
-  rewrite differences_1 in D1, D3, D5, D7 by lia. rewrite differences_2 in D4, D8 by lia.
+  rewrite first_derivative in D1, D3, D5, D7. rewrite second_derivative in D4, D8.
   rewrite W1 in D1, D3. rewrite W1, W2 in D4. rewrite U1 in D5, D7. rewrite U1, U2 in D8. replace (INR 3) with 3 in * by (cbn; ring). cbn in D3, D4.
   apply equation_2_1 in Cx, Cz; auto using U_ascending, W_ascending, U_clamped, W_clamped; try lia.
   destruct Cx as [Cx0 Cx1], Cz as [Cz0 Cz1]. unfold printed_2_1 in *. rewrite U1, W1 in *. cbn in Cz0, Cz1.

@@ -5,6 +5,14 @@ from .bezier_facts import is_one as is_one
 from .counts import Counting as Counting
 from .counts import count_check as count_check
 from .identities import identity as identity
+from .inductions import induction as induction
+from .inequalities import inequality as inequality
+from .inequalities import not_sharp as not_sharp
+from .points import at_random_points as at_random_points
+from .points import on_a_grid as on_a_grid
+from .power_series import series as series
+from .printed_code import Code as Code
+from .printed_code import code as code
 from .printed_digits import Digits as Digits
 from .printed_digits import digits as digits
 from .spline_facts import identity_cases as identity_cases
@@ -22,6 +30,7 @@ from .spline_values import de_boor as de_boor
 from .spline_values import net_ring as net_ring
 from .spline_values import rational_points as rational_points
 from .spline_values import spline_basis as spline_basis
+from .sums_by_letter import linear_sums as linear_sums
 from .symbolic_sums import SAME as SAME
 from .symbolic_sums import WITHIN as WITHIN
 from .symbolic_sums import coefficient as coefficient

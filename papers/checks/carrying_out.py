@@ -63,6 +63,8 @@ class _Carrying:
     def out(self, e: Any) -> Any:
         if e in self.where:
             return carried_out(self.where[e])
+        if e in _UNDEFINED:
+            raise UndefinedError("division by zero")
         if isinstance(e, sp.MatrixBase):
             return sp.ImmutableDenseMatrix(e.rows, e.cols, [self.out(entry) for entry in e])
         for kinds, rule in self._RULES.items():

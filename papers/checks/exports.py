@@ -33,7 +33,7 @@ def equation_statement(
     where: Where,
     assumptions: Iterable[Any],
     instance: Mapping[Any, Any],
-    **flags: bool,
+    **flags: Any,
 ) -> Statement:
     """Return that two expressions are the same, or are not: as they stand, sums term by term.
 
@@ -41,7 +41,7 @@ def equation_statement(
     ----------
     label : str
     printed, carried : pairs of sympy.Expr
-        Both sides as they are printed, and carried out at the instance.
+        Both sides as they are printed (or as text), and carried out at the instance.
     where : mapping
         What letters stand for.
     assumptions : iterable of sympy.Rel
@@ -57,11 +57,11 @@ def equation_statement(
     found = difference(one, other)
     if found.zero or found.decided:
         texts = _Texts(where, instance, carried)
-        sides = [texts.of(side) for side in printed]
+        left, right = (texts.of(side) for side in printed)
         if found.zero:
             roots = [(root.letter, root.radicand, root.degree) for root in texts.rewriting.roots]
-            return identity(label, *sides, roots=roots, meaning=texts.rewriting.meaning, **flags)
-        return different(label, *sides, conditions=_conditions(assumptions, instance), **flags)
+            return identity(label, left, right, roots=roots, meaning=texts.rewriting.meaning, **flags)
+        return different(label, left, right, conditions=_conditions(assumptions, instance), **flags)
     counterexample = smallest_difference(one, other, assumptions, instance)
     if counterexample is None:
         raise NotExpressibleError(f"{label}: found no numbers at which both sides differ")
@@ -82,6 +82,8 @@ class _Texts:
 
     def of(self, e: Any) -> Text:  # noqa: PLR0911  # one for each kind of node
         """Return an expression as text."""
+        if isinstance(e, Text):
+            return e
         if e in self.numbers:
             return as_text(self.numbers[e])
         if e in self.where:
@@ -96,6 +98,9 @@ class _Texts:
             exponent = self._carried(e.exp)
             if exponent.is_Integer:
                 return self.of(e.base) ** int(exponent)
+        if isinstance(e, sp.Indexed):
+            carried = self._carried(e)
+            return as_text(as_letters(carried)) if isinstance(carried, sp.Indexed) else self.of(carried)
         if isinstance(e, sp.binomial | sp.factorial):
             numbers = [self._carried(a) for a in e.args]
             if all(n.is_Integer and n >= 0 for n in numbers) and (len(numbers) == 1 or numbers[1] <= numbers[0]):
@@ -158,7 +163,7 @@ def _conditions(assumptions: Iterable[Any], instance: Mapping[Any, Any]) -> list
     return found
 
 
-def matrix_statement(label: str, one: Any, other: Any, where: Where, *, equal: bool, **flags: bool) -> Statement:
+def matrix_statement(label: str, one: Any, other: Any, where: Where, *, equal: bool, **flags: Any) -> Statement:
     """Return that two expressions of matrices are the same, or are not: products and inverses as they stand.
 
     Raises
@@ -167,8 +172,7 @@ def matrix_statement(label: str, one: Any, other: Any, where: Where, *, equal: b
         An entry has roots, angles, factorials or powers with letters: what they stand for is not said of matrices.
     """
     texts = _MatrixTexts(where)
-    sides = [texts.of(side) for side in (one, other)]
-    return matrices(label, *map(str, sides), texts.named, equal=equal, **flags)
+    return matrices(label, str(texts.of(one)), str(texts.of(other)), texts.named, equal=equal, **flags)
 
 
 class _MatrixTexts:

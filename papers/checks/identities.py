@@ -25,6 +25,7 @@ from semispline.papers.checks.instances import (
     spread_values,
 )
 from semispline.papers.checks.normal_form import difference
+from semispline.papers.checks.probing import quick_value
 from semispline.papers.ledger import (
     Case,
     Check,
@@ -83,7 +84,7 @@ def identity(
     return Check(
         rules.cases,
         Strength.GENERAL if tried is None or complete else Strength.EACH,
-        method or (_GENERAL if tried is None else _EACH.format(_ranges(tried))),
+        method or (_GENERAL if tried is None else _EACH.format(ranges_text(tried))),
         proof=tried is None or complete,
         probe=rules.probe,
         search=rules.search,
@@ -91,7 +92,7 @@ def identity(
     )
 
 
-def _ranges(tried: list[dict[Any, Any]]) -> str:
+def ranges_text(tried: list[dict[Any, Any]]) -> str:
     """Return which numbers are tried, in words."""
     letters = list(dict.fromkeys(letter for instance in tried for letter in instance))
     texts = []
@@ -140,9 +141,9 @@ class _Rules:
         entries = list(self._entries(formula, instance))
         where = meanings_at(self.where, instance)
         if len(entries) > 1:
-            explicit = [side.xreplace(instance) for side in sides]
+            one, other = (side.xreplace(instance) for side in sides)
             try:
-                yield matrix_statement(case.label, *explicit, where, equal=bool(case.true), **flags)
+                yield matrix_statement(case.label, one, other, where, equal=bool(case.true), **flags)
                 return
             except NotExpressibleError:
                 # Then entry by entry, as they come out of the products.
@@ -195,6 +196,17 @@ class _Rules:
         """Return exact values of the difference at some numbers; None where there are no exact ones."""
         found: list[Any] = []
         for instance in self.tried[-2:]:
+            try:
+                where = meanings_at(self.where, instance)
+                one, other = (quick_value(side, instance, where) for side in formula.relation.args)
+                found.append(other - one)
+                continue
+            except UndefinedError:
+                found.append("undefined")
+                continue
+            except (TypeError, ValueError, ZeroDivisionError, AttributeError):
+                # Then as it is carried out.
+                pass
             try:
                 for _, one, other in self._entries(formula, instance):
                     left = as_letters(other - one)

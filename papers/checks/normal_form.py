@@ -52,6 +52,7 @@ def difference(one: Any, other: Any) -> Difference:
     >>> difference(sp.cos(x) ** 2 - sp.sin(x) ** 2, sp.cos(2 * x)).zero
     True
     """
+    one, other = sp.sympify(one), sp.sympify(other)
     rewriting = Rewriting()
     rewriting.prepare((one, other))
     sides = [rewriting.rational(side) for side in (one, other)]

@@ -218,7 +218,7 @@ def _at_most(one: Any, other: Any) -> bool | None:
     return False if one > other else None
 
 
-_IS_RIGHT: dict[str, Callable[[Any, Any, Any], bool | None]] = {"rounded": _rounded, "cut": _cut}
+_IS_RIGHT: dict[Ending, Callable[[Any, Any, Any], bool | None]] = {"rounded": _rounded, "cut": _cut}
 
 
 def _shown(exact: Any) -> str:

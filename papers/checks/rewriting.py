@@ -16,6 +16,7 @@ import sympy as sp
 from sympy.core.function import AppliedUndef
 
 from semispline.papers.checks.carrying_out import UnsuitableError
+from semispline.papers.checks.instances import as_letters
 
 _FACTORIALS = (sp.factorial, sp.binomial, sp.gamma)
 _ANGLES = (sp.sin, sp.cos, sp.tan, sp.cot, sp.sec, sp.csc)
@@ -61,8 +62,11 @@ class Rewriting:
 
     @property
     def is_free(self) -> bool:
-        """Whether no letter stands for anything that another one may determine."""
-        return not self.meaning
+        """Whether no letter stands for anything that another one may determine.
+
+        Indexed letters, and values of functions of which nothing is known, are as free as letters.
+        """
+        return all(isinstance(part, sp.Indexed | AppliedUndef) for part in self.meaning.values())
 
     def prepare(self, expressions: Iterable[Any]) -> None:
         """Look at all expressions that are to be compared, so that their angles become multiples of the same ones."""
@@ -98,7 +102,11 @@ class Rewriting:
             return self._root(e, self.rational(e.args[0]) ** 2, 2)
         if e is sp.I:
             return self._root(e, sp.Integer(-1), 2)
-        if isinstance(e, sp.Indexed | AppliedUndef | sp.Derivative) or e in (sp.pi, sp.E) or isinstance(e, _OPAQUE):
+        if isinstance(e, sp.Indexed | AppliedUndef):
+            letter = as_letters(e)
+            self.meaning[letter] = e
+            return letter
+        if isinstance(e, sp.Derivative) or e in (sp.pi, sp.E) or isinstance(e, _OPAQUE):
             return self._letter(e, e)
         raise UnsuitableError(
             f"found {e} ({type(e).__name__}), expected sums, products, quotients, powers, roots, factorials and "

@@ -21,7 +21,7 @@ def coefficient(expression: Any, unit: Any) -> Any:
     Parameters
     ----------
     expression : Expr
-        Sums and products; linear in the letter of `unit`.
+        Sums and products; linear in the letter of `unit`. Terms without that letter count for nothing.
     unit : Indexed or applied function
         One control point (or curve), with symbols of its own as indices.
 
@@ -43,6 +43,8 @@ def coefficient(expression: Any, unit: Any) -> Any:
         for index, low, high in expression.limits:
             found = _summed(found, index, low, high)
         return found
+    if isinstance(expression, sp.Add):
+        return sp.Add(*(coefficient(term, unit) for term in expression.args if _occurs(term, unit)))
     if isinstance(expression, sp.Mul):
         holding = [factor for factor in expression.args if _occurs(factor, unit)]
         if len(holding) == 1:
@@ -55,10 +57,12 @@ def coefficient(expression: Any, unit: Any) -> Any:
 
 
 def _summed(term: Any, index: Any, low: Any, high: Any) -> Any:
-    """Carry out a sum in which one factor says which index counts."""
+    """Carry out a sum in which one factor of each term says which index counts."""
+    if isinstance(term, sp.Add):
+        return sp.Add(*(_summed(part, index, low, high) for part in term.args))
     for factor in sp.Mul.make_args(term):
         if isinstance(factor, SAME) and factor.args[0].has(index):
-            (at,) = sp.solve(factor.args[0] - factor.args[1], index)
+            (at,) = sp.roots(sp.Poly(factor.args[0] - factor.args[1], index))
             rest = sp.Mul(*(other for other in sp.Mul.make_args(term) if other is not factor))
             return rest.xreplace({index: at}) * WITHIN(low, at, high)
     raise ValueError(f"sum: nothing in {term} fixes {index}")

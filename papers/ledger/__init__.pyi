@@ -38,6 +38,7 @@ from .records import Claim as Claim
 from .records import Consequence as Consequence
 from .records import Correction as Correction
 from .records import Counterexample as Counterexample
+from .records import EndlessError as EndlessError
 from .records import Formula as Formula
 from .records import LedgerError as LedgerError
 from .records import Paper as Paper

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
-from math import comb
+from math import comb, factorial
 from typing import Any
 
 import sympy as sp
@@ -74,8 +74,8 @@ def _value(e: Any, numbers: dict[Any, Any], functions: Mapping[str, Callable[...
         return Fraction(value) if isinstance(value, int) else value
     if isinstance(e, sp.Indexed):
         return functions[str(e.base)](*(_value(i, numbers, functions) for i in e.indices))
-    if isinstance(e, sp.Sum):
-        return _sum(e.function, list(e.limits), numbers, functions)
+    if isinstance(e, sp.Sum | sp.Product):
+        return _sum(e, list(e.limits), numbers, functions)
     arguments = [_value(a, numbers, functions) for a in e.args]
     if isinstance(e, AppliedUndef):
         return functions[e.func.__name__](*arguments)
@@ -98,17 +98,25 @@ def _combined(e: Any, arguments: list[Any]) -> Any:
     if isinstance(e, sp.binomial):
         n, r = (int(a) for a in arguments)
         return Fraction(comb(n, r)) if 0 <= r <= n else Fraction(0)
+    if isinstance(e, sp.factorial):
+        if arguments[0] < 0 or arguments[0] != int(arguments[0]):
+            raise UndefinedError(f"{e} is not defined")
+        return Fraction(factorial(int(arguments[0])))
+    if isinstance(e, sp.Abs):
+        return abs(arguments[0])
     raise TypeError(f"{e.func.__name__} has no exact value")
 
 
-def _sum(term: Any, limits: list[Any], numbers: dict[Any, Any], functions: Mapping[str, Callable[..., Any]]) -> Any:
+def _sum(e: Any, limits: list[Any], numbers: dict[Any, Any], functions: Mapping[str, Callable[..., Any]]) -> Any:
     # SymPy lists the innermost limit first.
     *inner, (index, lower, upper) = limits
     low, high = (int(_value(x, numbers, functions)) for x in (lower, upper))
-    total: Any = Fraction(0)
+    is_sum = isinstance(e, sp.Sum)
+    total: Any = Fraction(0 if is_sum else 1)
     for n in range(low, high + 1):
         at = {**numbers, index: Fraction(n)}
-        total = total + (_sum(term, inner, at, functions) if inner else _value(term, at, functions))
+        term = _sum(e, inner, at, functions) if inner else _value(e.function, at, functions)
+        total = total + term if is_sum else total * term
     return total
 
 

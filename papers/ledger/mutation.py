@@ -18,7 +18,7 @@ import sympy as sp
 from sympy.core.function import AppliedUndef
 
 from semispline.papers.ledger.number_lists import near
-from semispline.papers.ledger.records import Case, Check, CheckFailedError, Formula, Part, decided_cases
+from semispline.papers.ledger.records import Case, Check, CheckFailedError, EndlessError, Formula, Part, decided_cases
 from semispline.solver.errors import InputError
 
 
@@ -56,7 +56,7 @@ class MutationResult:
         The other survivors, with the written reason: those that say the same as the formula, and those that nothing
         printed can tell from it.
     undefined : int
-        Mutants that were noticed since they divide by zero.
+        Mutants that were noticed since they divide by zero, or never end.
     """
 
     kinds: Mapping[str, int] = field(default_factory=dict)
@@ -191,7 +191,7 @@ def _tried(check: Check, formula: Formula, original: list[Case] | None) -> Mutat
                 original = list(decided_cases(check, formula))
             if not _differs(original, decided_cases(check, changed)):
                 survivors.append(mutant)
-        except ZeroDivisionError:
+        except (ZeroDivisionError, EndlessError):
             undefined += 1
         except (CheckFailedError, InputError):
             # No answer is no difference that the check has noticed.

@@ -26,6 +26,10 @@ class CheckFailedError(LedgerError):
     """A check gave no answer, or an answer that its record does not account for."""
 
 
+class EndlessError(CheckFailedError):
+    """What a check runs was stopped since it did not end: no answer, but one that a change may well cause."""
+
+
 class Verdict(StrEnum):
     """What is known of a claim."""
 
@@ -163,6 +167,8 @@ class Check:
         counterexample of its own where a check has this.
     export : callable, optional
         Formula or None -> the same cases in the same order, as statements that a second system can repeat.
+    believed : str
+        What no system is asked: a sentence of induction, a theorem.
     """
 
     cases: Callable[[Formula | None], Iterable[Case]]
@@ -172,6 +178,7 @@ class Check:
     probe: Callable[[Formula], Any] | None = None
     search: Callable[[Formula], Counterexample | None] | None = None
     export: Callable[[Formula | None], Iterable[Any]] | None = None
+    believed: str = ""
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ from pathlib import Path
 
 from semispline.papers.latex import echo_page
 from semispline.papers.primer.printed import blocks, code, names
-from semispline.papers.pseudocode import UnreadableCodeError
+from semispline.papers.pseudocode import CodeError
 
 PAGE = Path(__file__).parent / "echoes.md"
 _HEAD = """\
@@ -35,7 +35,7 @@ def page(previous: str) -> str:
 def _rules(identifier: str) -> str:
     try:
         rules = code(identifier).rules
-    except UnreadableCodeError as error:
+    except CodeError as error:
         return f"No code: {error}"
     return "\n".join(f"- line {line}: {rule}" for line, rule in rules) or "Translated without any rule but the grammar."
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -22,7 +22,7 @@ from semispline.papers.latex import (
     terms,
 )
 from semispline.papers.ledger import Print
-from semispline.papers.pseudocode import Outcome, Program, load, run
+from semispline.papers.pseudocode import Outcome, Program, read_code, run_code
 
 _FOLDER = Path(__file__).parent
 
@@ -129,40 +129,49 @@ def _before(identifier: str) -> Formula | None:
         return None
 
 
-# What no rule translates, and what stands for it.
+# What no rule reads, and what stands for it.
 _REPLACED = {"bsplines.9": {"copy of control points": "copy(points)"}}
 
 
 @cache
 def code(identifier: str) -> Program:
-    """Return a printed piece of pseudo-code, translated.
+    """Return a printed piece of pseudo-code, read.
 
     Raises
     ------
-    UnreadableCodeError
+    CodeError
         It is no code: a list of words.
 
     Examples
     --------
-    >>> list(code("curvature.3").functions)
+    >>> [function.name for function in code("curvature.3").statements]
     ['kappa']
     """
-    return load(blocks()[identifier].text, _REPLACED.get(identifier))
+    return read_code(blocks()[identifier].text, replaced(identifier))
 
 
-def run_code(
-    identifier: str, call: str = "", arguments: Sequence[Any] = (), given: Mapping[str, Any] | None = None
-) -> Outcome:
-    """Run a printed piece of pseudo-code, or one of its functions.
+def replaced(identifier: str) -> dict[str, str]:
+    """Return the printed words of a piece of pseudo-code that no rule reads, and what stands for them.
+
+    Examples
+    --------
+    >>> replaced("bsplines.9")
+    {'copy of control points': 'copy(points)'}
+    """
+    return _REPLACED.get(identifier, {})
+
+
+def run(identifier: str, call: str = "", given: Mapping[str, Any] | None = None) -> Outcome:
+    """Run a printed piece of pseudo-code, and what calls it.
 
     Raises
     ------
-    FaultError
+    CodeFaultError
         It does not come to its end; the message names the printed line.
 
     Examples
     --------
-    >>> run_code("intersections.1", "lli8", [0, 0, 2, 2, 1, 1, 2, 2]).value
+    >>> run("intersections.1", "lli8(0, 0, 2, 2, 1, 1, 2, 2)").value
     False
     """
-    return run(code(identifier), call, arguments, given)
+    return run_code(blocks()[identifier].text, call, given, replace=replaced(identifier))

@@ -1,4 +1,4 @@
-"""Pseudo-code, run as printed: translated by rules, exact, with limits. Knows no paper."""
+"""Pseudo-code as it is printed: read by rules, and run exactly by an interpreter of its own. Knows no claim."""
 
 import lazy_loader as _lazy
 

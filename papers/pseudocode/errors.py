@@ -5,17 +5,29 @@ from __future__ import annotations
 from semispline.solver.errors import ComputationError, InputError
 
 
-class UnreadableCodeError(InputError):
-    """A line that no rule translates."""
+class CodeError(InputError):
+    """Code that cannot be read by the rules; the message names the printed line, what was found and expected."""
 
 
-class FaultError(ComputationError):
-    """Printed code that does not run to its end: a name without a value, an index outside, a condition undecided."""
+class CodeFaultError(ComputationError):
+    """A program that did what it must not.
 
-    def __init__(self, reason: str, line: int = 0) -> None:
-        self.reason, self.line = reason, line
-        super().__init__(f"line {line}: {reason}" if line else reason)
+    Attributes
+    ----------
+    reason : str
+        What was found, and expected.
+    place : str
+        The printed line, or the line of the call; empty until that is known.
+    """
+
+    def __init__(self, reason: str, place: str = "") -> None:
+        self.reason, self.place = reason, place
+        super().__init__(f"{place}: {reason}" if place else reason)
 
 
-class LimitError(FaultError):
-    """Code that took more steps, calls in each other, or digits than it may."""
+class CodeLimitError(CodeFaultError):
+    """A program that was stopped at a limit of steps, depth or size: that it never ends is not known."""
+
+
+class OpenConditionError(CodeFaultError):
+    """A condition that letters leave open: the program runs with numbers only."""

@@ -22,6 +22,7 @@ from .exporting import not_zero as not_zero
 from .exporting import number as number
 from .exporting import positive as positive
 from .exporting import rank as rank
+from .exporting import series as series
 from .files import require_folder as require_folder
 from .files import write_certificates as write_certificates
 from .rechecking import Recheck as Recheck

@@ -8,8 +8,10 @@ from typing import Any
 
 from semispline.papers.recheck.arithmetic import instance, satisfied, value
 from semispline.papers.recheck.by_intervals import enclosed
+from semispline.papers.recheck.by_series import series_of
 from semispline.papers.recheck.rooted import equal_with_roots
 from semispline.papers.recheck.statements import (
+    Coefficient,
     Contained,
     Identity,
     Knots,
@@ -203,6 +205,12 @@ def _number(statement: Number, _: dict[str, Fraction]) -> bool:
     return found.high < low or found.low > high
 
 
+def _coefficient(statement: Coefficient, at: dict[str, Fraction]) -> bool:
+    count = statement.power + 1
+    one, other = (series_of(side, statement.variable, count, at)[-1] for side in (statement.left, statement.right))
+    return (one == other) == statement.equal
+
+
 def _numbers(rows: Sequence[Sequence[str]]) -> _Rows:
     return [[Fraction(entry) for entry in row] for row in rows]
 
@@ -238,4 +246,5 @@ _BY_FORM: dict[str, Callable[[Any, dict[str, Fraction]], bool]] = {
     "knots": _knots,
     "matrices": _matrices,
     "number": _number,
+    "coefficient": _coefficient,
 }

@@ -92,7 +92,9 @@ def _of_checks(claim: Claim) -> Draft:
     def of(parts: Iterable[Part]) -> list[Statement]:
         return [case for part in parts if part.check.export for case in part.check.export(part.formula)]
 
-    return Draft([of(reading.parts) for reading in claim.readings], of(claim.correction_parts))
+    parts = (*claim.parts, *claim.correction_parts)
+    believed = tuple(dict.fromkeys(part.check.believed for part in parts if part.check.believed))
+    return Draft([of(reading.parts) for reading in claim.readings], of(claim.correction_parts), believed)
 
 
 def _changed(claims: Iterable[Claim]) -> Iterator[Statement]:

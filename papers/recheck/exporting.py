@@ -13,8 +13,10 @@ import sympy as sp
 from sympy.polys.domains import QQ
 from sympy.polys.matrices import DomainMatrix
 
-from semispline.papers.recheck.arithmetic import divisors, instance, names, satisfied, value
+from semispline.papers.recheck.arithmetic import TextError, divisors, instance, names, satisfied, value
+from semispline.papers.recheck.by_series import series_of
 from semispline.papers.recheck.statements import (
+    Coefficient,
     Contained,
     Identity,
     Knots,
@@ -25,7 +27,7 @@ from semispline.papers.recheck.statements import (
     Rank,
     Term,
 )
-from semispline.papers.recheck.texts import NotExpressibleError, Spelled, lets, number_text, text
+from semispline.papers.recheck.texts import NotExpressibleError, Spelled, function_text, lets, number_text, text
 
 Where = Mapping[Any, Any] | Sequence[tuple[str, str]]
 
@@ -107,16 +109,19 @@ def positive(
     positive: Sequence[Any] = (),
     nonnegative: Sequence[Any] = (),
     over: Sequence[Term] = (),
+    under: Sequence[Term] = (Term(coefficient="1"),),
     where: Where = (),
     strict: bool = True,
+    among: Mapping[Any, Any] | None = None,
     **flags: Any,
 ) -> Positive:
     """Return the statement that an expression is positive, or not negative, for letters with these signs.
 
-    Without `over`, numerator and denominator have no negative coefficient.
+    Without `over`, numerator and denominator have no negative coefficient. `among` is an instance, where the signs
+    hold for few numbers.
     """
-    pairs = _needed(_pairs(where), [text(expression)])
-    under: tuple[Term, ...] = (Term(coefficient="1"),)
+    used = {name for term in (*over, *under) for name, _ in term.powers}
+    pairs = _needed(_pairs(where), [text(expression), *sorted(used)])
     if not over:
         numerator, denominator = sp.fraction(sp.cancel(_in_sympy(text(expression), pairs)))
         parts = [_terms(numerator), _terms(denominator)]
@@ -132,12 +137,16 @@ def positive(
     def fits(at: Mapping[str, Fraction]) -> bool:
         return all(at[name] > 0 for name in known if name in at)
 
-    at = _instance(label, variables, pairs, nonzero, fits)
+    at = (
+        _instance(label, variables, pairs, nonzero, fits)
+        if among is None
+        else tuple((text(letter), str(Fraction(number))) for letter, number in among.items())
+    )
     return Positive(
         label=label,
         left=text(expression),
         over=tuple(over),
-        under=under,
+        under=tuple(under),
         positive=signs[0],
         nonnegative=signs[1],
         strict=strict,
@@ -296,6 +305,40 @@ def number(label: str, expression: Any, low: Any, high: Any, *, inside: bool = T
         The number has letters, or functions that are not known.
     """
     return Number(label=label, left=number_text(expression), low=text(low), high=text(high), inside=inside, **flags)
+
+
+def series(
+    label: str, left: Any, right: Any, variable: Any, power: int, *, equal: bool = True, **flags: Any
+) -> Coefficient:
+    """Return the statement that a power of a variable has the same factor in two power series at 0, or another one.
+
+    Raises
+    ------
+    NotExpressibleError
+        A side has no such series with rational coefficients.
+    """
+    sides = [function_text(side) for side in (left, right)]
+    others = sorted(set().union(*(names(side) for side in sides)) - {text(variable)})
+
+    def fits(at: Mapping[str, Fraction]) -> bool:
+        try:
+            one, other = (series_of(side, text(variable), power + 1, at)[-1] for side in sides)
+        except TextError as error:
+            raise NotExpressibleError(f"{label}: {error}") from None
+        return equal or one != other
+
+    at = _instance(label, others, (), (), fits)
+    return Coefficient(
+        label=label,
+        left=sides[0],
+        right=sides[1],
+        variable=text(variable),
+        power=power,
+        equal=equal,
+        variables=tuple(others),
+        at=at,
+        **flags,
+    )
 
 
 def knots(label: str, numbers: Iterable[Any], fact: str, *, holds: bool = True, **more: Any) -> Knots:

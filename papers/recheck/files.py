@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
-from semispline.papers.recheck.gp import CHECKER, check_lines
+from semispline.papers.recheck.gp import CHECKER, CONTROLS, check_lines
 from semispline.papers.recheck.statements import (
     Certificate,
     Export,
@@ -18,8 +18,6 @@ from semispline.papers.recheck.statements import (
     from_record,
 )
 from semispline.solver.errors import InputError
-
-CONTROLS = "controls"
 
 
 def require_folder(folder: str | Path) -> None:

@@ -11,6 +11,7 @@ from typing import Any
 
 from semispline.papers.recheck.arithmetic import divisors
 from semispline.papers.recheck.statements import (
+    Coefficient,
     Contained,
     Identity,
     Knots,
@@ -24,6 +25,7 @@ from semispline.papers.recheck.statements import (
     Term,
 )
 
+CONTROLS = "controls"
 CHECKER = r"""\\ What PARI is asked. same: both sides are the same rational function.
 same(a, b) = (a - b) == 0;
 \\ A polynomial in r, where r^q stands for A: numerators are compared, one root after another, the last one first.
@@ -123,6 +125,14 @@ def _number(statement: Number) -> str:
     return f"{'between' if statement.inside else 'outside'}({statement.left}, {statement.low}, {statement.high})"
 
 
+def _coefficient(statement: Coefficient) -> str:
+    x, order = statement.variable, statement.power + 1
+    both = statement.left, statement.right
+    sides = [f"polcoef({side} + O('{x}^{order}), {statement.power}, '{x})" for side in both]
+    compared = f"simplify({sides[0]} - {sides[1]}) == 0"
+    return f"my({x} = '{x} + O('{x}^{order})); {compared if statement.equal else f'!({compared})'}"
+
+
 def _positive(statement: Positive) -> str:
     terms = (*statement.over, *statement.under)
     signs = " && ".join(f"{term.coefficient} > 0" for term in terms)
@@ -188,6 +198,7 @@ _BY_FORM: dict[str, Callable[[Any], str]] = {
     "knots": _knots,
     "matrices": _matrices,
     "number": _number,
+    "coefficient": _coefficient,
 }
 
 

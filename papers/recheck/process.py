@@ -8,8 +8,8 @@ from pathlib import Path
 from typing import Any
 
 from semispline.papers.recheck.by_fractions import agrees
-from semispline.papers.recheck.files import CONTROLS, read_certificates
-from semispline.papers.recheck.gp import statement_id
+from semispline.papers.recheck.files import read_certificates
+from semispline.papers.recheck.gp import CONTROLS, statement_id
 from semispline.papers.recheck.statements import Statement
 from semispline.papers.recheck.verdicts import verdict_of
 

@@ -32,7 +32,7 @@ class Rooted:
         return Rooted(over, _product(self.under, other.under))
 
     def __radd__(self, other: Any) -> Rooted:
-        return self + other
+        return self.__add__(other)
 
     def __neg__(self) -> Rooted:
         return Rooted({powers: -c for powers, c in self.over.items()}, self.under)
@@ -41,14 +41,14 @@ class Rooted:
         return self + (-_rooted(other, self))
 
     def __rsub__(self, other: Any) -> Rooted:
-        return -self + other
+        return (-self).__add__(other)
 
     def __mul__(self, other: Any) -> Rooted:
         other = _rooted(other, self)
         return Rooted(_product(self.over, other.over), _product(self.under, other.under))
 
     def __rmul__(self, other: Any) -> Rooted:
-        return self * other
+        return self.__mul__(other)
 
     def __truediv__(self, other: Any) -> Rooted:
         other = _rooted(other, self)

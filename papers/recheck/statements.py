@@ -2,7 +2,7 @@
 
 Expressions are texts of names, whole numbers, + - * / ^ and brackets, as they stand before any simplification. Names
 in `where` stand for their expression in all that follows. No SymPy here: the process that rechecks imports this.
-Only in a `Number` there are functions, and only in `Matrices` names of matrices.
+Only in a `Number` or a `Coefficient` there are functions, and only in `Matrices` names of matrices.
 """
 
 from __future__ import annotations
@@ -300,9 +300,37 @@ class Number(Statement):
         return self.inside == self.wanted
 
 
-FORMS: dict[str, type[Statement]] = {
-    kind.form: kind for kind in (Identity, Positive, Rank, Contained, Minimum, Knots, Matrices, Number)
-}
+@dataclass(frozen=True, kw_only=True)
+class Coefficient(Statement):
+    """A power of a variable has the same factor in the power series of both sides, or another one.
+
+    Attributes
+    ----------
+    left, right : str
+        Expressions with the functions of `arithmetic.FUNCTIONS`, which have power series at 0.
+    variable : str
+    power : int
+    equal : bool
+    wanted : bool
+        Whether the case is true if the factors are equal (else if they differ).
+    """
+
+    left: str
+    right: str
+    variable: str
+    power: int
+    equal: bool = True
+    wanted: bool = True
+    form: ClassVar[str] = "coefficient"
+
+    @property
+    def true(self) -> bool:
+        """Whether the factors are as wanted."""
+        return self.equal == self.wanted
+
+
+_KINDS = (Identity, Positive, Rank, Contained, Minimum, Knots, Matrices, Number, Coefficient)
+FORMS: dict[str, type[Statement]] = {kind.form: kind for kind in _KINDS}
 
 
 @dataclass(frozen=True)
@@ -356,12 +384,15 @@ class Export:
         Changed formulas, one of each kind of change at the least, which must be refused.
     not_expressible : mapping
         Decided record -> why nothing of it is here.
+    theorems : mapping
+        What is believed, or a record -> theorems of the sources in `derivations/coq` that say so.
     """
 
     paper: str
     certificates: tuple[Certificate, ...]
     controls: tuple[Statement, ...] = ()
     not_expressible: Mapping[str, str] = field(default_factory=dict)
+    theorems: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
 
 def as_record(statement: Statement) -> dict[str, Any]:

@@ -158,12 +158,33 @@ def number_text(number: Any) -> str:
     >>> number_text(sp.CRootOf(sp.Symbol("t") ** 3 - 2, 0))
     'real_root(x_^3 - 2, 1)'
     """
+    if number.free_symbols:
+        raise NotExpressibleError(f"number: found the letters {number.free_symbols}, expected none")
     return str(_number_written(number))
+
+
+def function_text(expression: Any) -> str:
+    """Return a SymPy expression with letters as text, with the functions of `arithmetic.FUNCTIONS`.
+
+    Raises
+    ------
+    NotExpressibleError
+        It has another function.
+
+    Examples
+    --------
+    >>> a, x = sp.symbols("a x")
+    >>> function_text(sp.sin(a * x) / sp.sqrt(1 + x))
+    'sin(a*x)/sqrt(x + 1)'
+    """
+    return str(_number_written(expression))
 
 
 def _number_written(e: Any) -> Text:  # noqa: PLR0911  # one for each kind of node
     if e.is_Rational:
         return _number(Fraction(int(e.p), int(e.q)))
+    if e.is_Symbol:
+        return Text(name_of(_letter(e)))
     if e in (sp.pi, sp.E):
         return Text("Pi") if e is sp.pi else Text("exp(1)")
     if e.is_Add:
@@ -173,9 +194,9 @@ def _number_written(e: Any) -> Text:  # noqa: PLR0911  # one for each kind of no
     if e.is_Pow and e.exp.is_Integer:
         return _number_written(e.base) ** int(e.exp)
     if e.is_Pow and e.base is sp.E:
-        return Text(f"exp({number_text(e.exp)})")
+        return Text(f"exp({function_text(e.exp)})")
     if e.is_Pow and e.exp.is_Rational:
-        base, degree = number_text(e.base), int(e.exp.q)
+        base, degree = function_text(e.base), int(e.exp.q)
         root = Text(f"sqrt({base})" if degree == 2 else f"sqrtn({base}, {degree})")
         return root ** int(e.exp.p)
     if isinstance(e, sp.CRootOf) and e.is_real:
@@ -185,7 +206,7 @@ def _number_written(e: Any) -> Text:  # noqa: PLR0911  # one for each kind of no
     name = _FUNCTION_NAMES.get(type(e))
     if name is None:
         raise NotExpressibleError(f"number: found {e}, expected one without letters, of elementary functions")
-    return Text(f"{name}({number_text(e.args[0])})")
+    return Text(f"{name}({function_text(e.args[0])})")
 
 
 _ROOT = sp.Symbol("x_")

@@ -36,7 +36,7 @@ def page(results: Results) -> str:
     found = results.study.findings(results.comparisons)
     used = {name for example in results.study.examples for name in example.pictures}
     rest = [drawing.name for drawing in results.study.drawings if drawing.name not in used]
-    sections = (
+    every = (
         ("found", "What was found", _summary(results.ledger, found)),
         ("tables", "The paper's table", "".join(map(table_html, results.study.tables(results.comparisons)))),
         ("examples", "Examples and rivals", _examples(results)),
@@ -46,7 +46,7 @@ def page(results: Results) -> str:
         ("how", "How this was made", _made(results)),
     )
     # A paper without a study has claims and nothing else.
-    sections = tuple(section for section in sections if section[2])
+    sections = tuple(section for section in every if section[2])
     examples = ", every example run again, every rival measured" if results.study.examples else ""
     links = "".join(f"<a href='#{name}'>{escape(heading)}</a>" for name, heading, _ in sections)
     body = "".join(f"<section id='{name}'><h2>{escape(h)}</h2>{content}</section>" for name, h, content in sections)

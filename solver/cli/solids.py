@@ -270,9 +270,10 @@ def _print(found: SolidBlend) -> None:
     )
     about = f"{report.volume_expected:.4g}, give or take" if report.volume_expected else "at most"
     typer.echo(f"volume {had:.9g} -> {has:.9g}, by {has - had:.4g} of {about} {report.volume_limit:.4g}")
-    before = max((edge.was or 0.0 for edge in report.border), default=0.0)
+    were = [edge.was for edge in report.border if edge.was is not None]
+    before = f"{max(were):.2g} -> " if were else ""
     typer.echo(
-        f"largest tolerance at the blend {before:.2g} -> {report.largest_tolerance:.2g}, read back "
+        f"largest tolerance at the blend {before}{report.largest_tolerance:.2g}, read back "
         f"{found.read_back.largest_tolerance:.2g}; largest gap {max(edge.gap for edge in report.border):.2g}; of all "
         f"edges {report.tolerance[0]:.2g} -> {report.tolerance[1]:.2g}, read back {found.read_back.tolerance[1]:.2g}"
     )

@@ -79,14 +79,12 @@ def _borders(both: Both, millimetres: float | None) -> Iterator[tuple[int, Borde
             most = (TOLERANCE if found.is_plane else _OFF_FACE) * both.size
         if found.gap > most:
             raise NotSoundError(
-                f"the edge {found.name} of the new face lies {found.gap:.3g} off face {found.beyond}, expected at most "
-                f"{most:.3g}",
+                f"the edge {found.name} of the new face lies {found.gap:.3g} off face {both.first[1] + found.beyond}, "
+                f"expected at most {most:.3g}",
                 found.at,
             )
-        yield (
-            k,
-            replace(found, allowed=max(both.border_before, was or 0.0, TOLERANCE * both.size, _OF_GAP * found.gap)),
-        )
+        allowed = max(both.border_before, was or 0.0, TOLERANCE * both.size, _OF_GAP * found.gap)
+        yield k, replace(found, allowed=allowed, beyond=both.first[1] + found.beyond)
 
 
 def _check_vertices(both: Both, limits: dict[int, float], wider: float, floor: float) -> None:
@@ -128,8 +126,8 @@ def check_creases(both: Both, report: GateReport) -> GateReport:
         allowed = max(cad_measures(both.size)["angle_degrees"], before)
         if not crease <= allowed:
             raise NotSoundError(
-                f"the new face meets face {beyond} at a crease of {crease:.2g} degrees over {both.news.names[k]}, "
-                f"where the old one went on smoothly, expected at most {allowed:.2g}",
+                f"the new face meets face {both.first[1] + beyond} at a crease of {crease:.2g} degrees over "
+                f"{both.news.names[k]}, where the old one went on smoothly, expected at most {allowed:.2g}",
                 triple(at),
             )
     return replace(report, crease_degrees=worst)
@@ -142,7 +140,7 @@ def _crease(edge: Any, faces: list[Any]) -> tuple[float, FloatArray]:
     normals = [np.cross(jet[:, 1], jet[:, 2]) for jet in jets]
     if len(normals) != 2:
         return 180.0, jets[0][0, 0]
-    sine = np.linalg.norm(np.cross(*normals), axis=1)
+    sine = np.linalg.norm(np.cross(normals[0], normals[1]), axis=1)
     # Which way faces look is no matter here.
     angle = np.degrees(np.arctan2(sine, np.abs((normals[0] * normals[1]).sum(axis=1))))
     worst = int(angle.argmax())

@@ -86,8 +86,8 @@ class EdgeTable:
     tolerance: list[float]
 
     @classmethod
-    def of(cls, shape: Any) -> EdgeTable:
-        """Return the table of a shape."""
+    def of(cls, shape: Any, first: int = 0) -> EdgeTable:
+        """Return the table of a shape, of which the first face is called by a number."""
         from OCP.BRep import BRep_Tool
         from OCP.collections import IndexedMap_TopoDS_Shape_TopTools_ShapeMapHasher
         from OCP.TopAbs import TopAbs_Orientation
@@ -106,7 +106,7 @@ class EdgeTable:
                 at = ids.Add(edge) - 1
                 if at == len(edges):
                     edges.append(forward(edge))
-                    names.append(f"{number}:e{k}")
+                    names.append(f"{first + number}:e{k}")
                     faces.append([])
                     uses.append([])
                 faces[at].append(number)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from semispline.solver.topology.gate_edges import Border
 
@@ -48,6 +48,13 @@ class Change:
     expected: float = 0.0
     kept: Mapping[int, int] | None = None
     like: tuple[int, ...] = ()
+
+    def kept_of(self, before: int, after: int) -> dict[int, int]:
+        """Return the number after of each face that was not taken out, by that before, of so many faces."""
+        if self.kept is not None:
+            return dict(self.kept)
+        rest = [n for n in range(after) if n not in self.new]
+        return dict(zip((n for n in range(before) if n not in self.old), rest, strict=True))
 
 
 @dataclass(frozen=True)
@@ -94,6 +101,16 @@ class GateReport:
     turn_degrees: float | None = None
     open_edges: tuple[str, ...] = ()
     was_invalid: bool = False
+
+    def numbered_from(self, first: int) -> GateReport:
+        """Return the report with edges and faces as a file calls them where they begin at another number."""
+
+        def edge(name: str) -> str:
+            face, _, own = name.partition(":")
+            return f"{first + int(face)}:{own}"
+
+        border = tuple(replace(x, name=edge(x.name), beyond=first + x.beyond) for x in self.border)
+        return replace(self, border=border, open_edges=tuple(map(edge, self.open_edges)))
 
     @property
     def is_sound(self) -> bool:

@@ -27,7 +27,7 @@ class NotSoundError(Exception):
 
 @dataclass(frozen=True, eq=False)
 class Both:
-    """A shape before and after, with the tables of their edges and the size."""
+    """A shape before and after, with the tables of their edges, the size, and what their first faces are called."""
 
     before: Any
     after: Any
@@ -35,6 +35,7 @@ class Both:
     olds: EdgeTable
     news: EdgeTable
     size: float
+    first: tuple[int, int] = (0, 0)
 
     @cached_property
     def known(self) -> list[int | None]:
@@ -71,7 +72,4 @@ class Both:
     @cached_property
     def kept(self) -> dict[int, int]:
         """The number after of each face that was not taken out, by that before."""
-        if self.change.kept is not None:
-            return dict(self.change.kept)
-        rest = [n for n in range(len(self.faces[1])) if n not in self.change.new]
-        return dict(zip((n for n in range(len(self.faces[0])) if n not in self.change.old), rest, strict=True))
+        return self.change.kept_of(len(self.faces[0]), len(self.faces[1]))

@@ -52,7 +52,7 @@ class SolidBlend:
     read_back : GateReport
         The same of what was written and read again.
     touched : tuple of int
-        Faces whose borders were changed.
+        Faces whose borders were changed, likewise.
     notes : tuple of str
         What else is to be said.
     content : bytes

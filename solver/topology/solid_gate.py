@@ -30,7 +30,13 @@ _SAME_AREA = 1e-9
 
 
 def gate(
-    before: Any, after: Any, change: Change, *, millimetres: float | None = None, read_back: bool = False
+    before: Any,
+    after: Any,
+    change: Change,
+    *,
+    millimetres: float | None = None,
+    read_back: bool = False,
+    first: tuple[int, int] = (0, 0),
 ) -> GateReport:
     """Return what was measured of a changed shape, and the first thing that is wrong with it.
 
@@ -43,11 +49,14 @@ def gate(
         The unit of length, where it is known.
     read_back : bool
         The shape comes from a file that was written: its reader measured tolerances anew.
+    first : (int, int)
+        What the first face is called in a file, before and after.
     """
     report = GateReport(None)
     try:
         report = _counts(before, after, change, report)
-        both = Both(before, after, change, EdgeTable.of(before), EdgeTable.of(after), extent(before))
+        tables = EdgeTable.of(before, first[0]), EdgeTable.of(after, first[1])
+        both = Both(before, after, change, *tables, extent(before), first)
         for part in (_uses, _validity, _volumes):
             report = part(both, report)
         report = check_tolerances(both, report, millimetres, read_back=read_back)
@@ -102,7 +111,7 @@ def _validity(both: Both, report: GateReport) -> GateReport:
     bad = {both.kept.get(n) for n, face in enumerate(both.faces[0]) if not earlier.IsValid(face)}
     for number, face in enumerate(both.faces[1]):
         if number not in bad and not check.IsValid(face):
-            raise NotSoundError(f"Open CASCADE's check fails on face {number}", triple(middle_of(face)))
+            raise NotSoundError(f"Open CASCADE's check fails on face {both.first[1] + number}", triple(middle_of(face)))
     if earlier.IsValid():
         raise NotSoundError("Open CASCADE's check fails on the whole")
     return replace(report, was_invalid=True)
@@ -142,7 +151,7 @@ def _unchanged(both: Both, report: GateReport, *, read_back: bool) -> GateReport
             loose = loose_area(before) + loose_area(after)
             allowed, far = allowed + loose, far + loose / max(area, loose) * extent(before)
         if change > allowed or moved > far:
-            raise NotSoundError(f"face {old} was not to be changed, and is not what it was", triple(at))
+            raise NotSoundError(f"face {both.first[0] + old} was not to be changed, and is not what it was", triple(at))
     return report
 
 
@@ -170,7 +179,7 @@ def _interferences(both: Both, report: GateReport) -> GateReport:
         kept = [old for old, new in both.kept.items() if new in near]
         were = crossings([olds[n] for n in (*kept, *both.change.old)])
         if len(found) > len(were):
-            numbers = [n for n, face in enumerate(news) if any(x.IsSame(face) for x, _ in found[0])]
+            numbers = [both.first[1] + n for n, face in enumerate(news) if any(x.IsSame(face) for x, _ in found[0])]
             said = " and ".join(str(n) for n in numbers)
             raise NotSoundError(f"faces {said} cross" if said else "edges or faces cross", found[0][0][1])
     return report

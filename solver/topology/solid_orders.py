@@ -109,9 +109,9 @@ class Outcome:
     content : bytes or None
         The file; None where the gate stopped it.
     touched : tuple of int
-        Faces whose borders were changed, by their numbers in the part.
+        Faces whose borders were changed, by their numbers in the file; none where nothing was written.
     new : tuple of int
-        The new faces, by their numbers in the file; where nothing was written by those in the part.
+        The new faces, likewise.
     times : int
         How often the changed part stands in the file.
     notes : tuple of str

@@ -107,7 +107,7 @@ CLAIMS = (
                 where=_sides,
                 each=_BOTH,
                 complete=True,
-                method="A and B by de Casteljau's triangle, C and the ratio as abc.2 and abc.3 decide them, n the degree",
+                method="A and B by de Casteljau's triangle, C and the ratio as abc.2 and abc.3 decide them, degree n",
             ),
             *equations("abc.4"),
         ),

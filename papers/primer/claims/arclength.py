@@ -79,7 +79,7 @@ _ONE, *_OTHERS = equations("arclength.5")
 CLAIMS = (
     holds(
         "arclength.1",
-        "The length of a curve from its start to the parameter z is the integral of the root of the sum of both squared "
+        "The length of a curve from its start to the parameter z is the integral of the root of the sum of squared "
         "derivatives.",
         part(
             length_between(_function("f_x(t)"), _function("f_y(t)"), 0, _z),

@@ -12,7 +12,6 @@ from semispline.papers.ledger.records import (
     Case,
     Cause,
     Check,
-    CheckFailedError,
     Claim,
     Consequence,
     Correction,
@@ -322,8 +321,9 @@ def test_a_residual_that_echoes_the_formula_kills_no_mutant():
         yield Case("all x", True, residual=formula.relation.rhs)
 
     part = Part(Check(cases, Strength.GENERAL, "nothing"), Formula(sp.Eq(y, 2 * x), (x, y)))
-    with pytest.raises(CheckFailedError, match="residual"):
-        try_mutants(part)
+    found = try_mutants(part)
+    assert found.tried > 0
+    assert len(found.survivors) == found.tried
 
 
 def test_a_probe_does_not_stand_for_the_check():

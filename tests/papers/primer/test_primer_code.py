@@ -9,14 +9,18 @@ from math import comb
 import pytest
 import sympy as sp
 
-from semispline.papers.primer.printed import run_code
-from semispline.papers.pseudocode.errors import FaultError
-from semispline.papers.pseudocode.values import Vector
+from semispline.papers.primer.printed import run
+from semispline.papers.pseudocode import CodeFaultError
+
+
+def point(*entries):
+    return dict(zip("xyz", entries, strict=False))
+
 
 THIRD = Fraction(1, 3)
-POINTS = [Vector((0, 0)), Vector((1, 2)), Vector((3, 1)), Vector((4, 4))]
+POINTS = [point(0, 0), point(1, 2), point(3, 1), point(4, 4)]
 # By hand: (0, 0) 8/27 + (1, 2) 12/27 + (3, 1) 6/27 + (4, 4) 1/27.
-AT_THIRD = Vector((Fraction(34, 27), Fraction(34, 27)))
+AT_THIRD = point(Fraction(34, 27), Fraction(34, 27))
 
 
 def binomial(n, k):
@@ -28,13 +32,18 @@ def curve(x, y):
 
 
 def result(identifier, call="", arguments=(), **given):
-    return run_code(identifier, call, arguments, given).value
+    return outcome_of(identifier, call, arguments, **given).value
+
+
+def outcome_of(identifier, call, arguments, **given):
+    names = [f"argument{n}" for n in range(len(arguments))]
+    return run(identifier, f"{call}({', '.join(names)})", dict(zip(names, arguments, strict=True)) | given)
 
 
 @pytest.mark.parametrize("identifier", ["decasteljau.1", "decasteljau.2", "splitting.1"])
 def test_de_casteljau_draws_one_point(identifier):
     drawn = []
-    outcome = run_code(identifier, "drawCurve", [POINTS, THIRD], {"draw": drawn.append})
+    outcome = outcome_of(identifier, "drawCurve", [POINTS, THIRD], draw=drawn.append)
     assert drawn == [AT_THIRD]
     if identifier == "splitting.1":
         left, right = outcome.variables["left"], outcome.variables["right"]
@@ -56,16 +65,17 @@ def test_sums_and_their_shortcuts():
 
 
 def test_lines_meet():
-    assert result("intersections.1", "lli8", [0, 0, 2, 2, 0, 2, 2, 0]) == Vector((1, 1))
+    assert result("intersections.1", "lli8", [0, 0, 2, 2, 0, 2, 2, 0]) == point(1, 1)
     assert result("intersections.1", "lli8", [0, 0, 2, 2, 1, 1, 2, 2]) is False
-    crossing = [{"p1": Vector((0, 0)), "p2": Vector((2, 2))}, {"p1": Vector((0, 2)), "p2": Vector((2, 0))}]
-    assert result("intersections.1", "lli", crossing) == Vector((1, 1))
+    crossing = [{"p1": point(0, 0), "p2": point(2, 2)}, {"p1": point(0, 2), "p2": point(2, 0)}]
+    assert result("intersections.1", "lli", crossing) == point(1, 1)
 
 
 def test_flattening():
     parabola = curve(lambda t: t, lambda t: t * t)
     flat = result("flattening.1", "flattenCurve", [parabola, 2])
-    assert flat == [0, 0, [Fraction(1, 2), Fraction(1, 4)], [1, 1]]
+    # A list of numbers: printed brackets are missing that would make each two of them a point.
+    assert flat == [0, 0, Fraction(1, 2), Fraction(1, 4), 1, 1]
     drawn = []
     result(
         "flattening.2",
@@ -86,13 +96,13 @@ def test_roots_of_a_cubic():
 
 
 def test_the_section_of_a_knot_vector():
-    outcome = run_code("bsplines.8", given={"domain": [3, 5], "knots": list(range(9)), "t": Fraction(9, 2)})
+    outcome = run("bsplines.8", given={"domain": [3, 5], "knots": list(range(9)), "t": Fraction(9, 2)})
     assert outcome.variables == {"s": 4}
 
 
 def test_de_boor_reads_below_its_list():
     given = {"s": 3, "order": 4, "t": Fraction(7, 2), "knots": list(range(9)), "points": [0, 1, 2, 3, 4]}
-    assert run_code("bsplines.9", given=given).variables["v"][3] == Fraction(3, 2)
+    assert run("bsplines.9", given=given).variables["v"][3] == Fraction(3, 2)
 
 
 def test_a_curvature_in_symbols():
@@ -102,11 +112,11 @@ def test_a_curvature_in_symbols():
 
 
 def test_a_name_without_a_value_is_named_with_its_line():
-    frame = {"o": Vector((0, 0, 0)), "t": Vector((1, 0, 0)), "r": Vector((0, 0, 1)), "n": Vector((0, 1, 0))}
+    frame = {"o": point(0, 0, 0), "t": point(1, 0, 0), "r": point(0, 0, 1), "n": point(0, 1, 0)}
     given = {
         "getFrenetFrame": lambda s: frame,
-        "getPoint": lambda s: Vector((s, 0, 0)),
+        "getPoint": lambda s: point(s, 0, 0),
         "getDerivative": lambda s: None,
     }
-    with pytest.raises(FaultError, match=r"^line 13: t has no value$"):
+    with pytest.raises(CodeFaultError, match=r"^line 13: found t, which has no value$"):
         result("pointvectors3d.2", "generateRMFrames", [2], **given)

@@ -12,7 +12,7 @@ from semispline.papers.latex.page import COMPARED, NOT_COMPARED, echo_page
 from semispline.papers.latex.trees import Named, walk
 from semispline.papers.primer import echoes
 from semispline.papers.primer.printed import blocks, code, formula, names, steps
-from semispline.papers.pseudocode import UnreadableCodeError
+from semispline.papers.pseudocode import CodeError
 
 MATH = [block.id for block in blocks().values() if block.kind == "math"]
 # Transcribed by hand, each with the class of what stands in the way.
@@ -123,13 +123,13 @@ def test_a_name_that_a_formula_gives_is_put_in_from_its_line_on():
     assert "s" not in {s.name for s in last.right.function.free_symbols}
 
 
-def test_all_code_but_a_list_of_words_is_translated():
+def test_all_code_but_a_list_of_words_is_read():
     texts = [block.id for block in blocks().values() if block.kind == "text"]
     refused = []
     for identifier in texts:
         try:
             code(identifier)
-        except UnreadableCodeError:
+        except CodeError:
             refused.append(identifier)
     assert (len(texts), refused) == (18, ["pointvectors3d.1"])
 

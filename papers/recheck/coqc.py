@@ -1,0 +1,175 @@
+"""The kernel of Coq on the files of an export: what it accepts, and on which axioms that rests."""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import subprocess
+from collections.abc import Iterator, Mapping
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from semispline.papers.ledger import CheckFailedError
+from semispline.papers.recheck.coq_folder import (
+    LIBRARY,
+    CoqFile,
+    CoqFolder,
+    imports,
+    needed_sources,
+    write_coq,
+)
+from semispline.solver.errors import OptionError
+
+# A file takes up to a minute; one that takes this long will not end.
+_SECONDS = 900
+# What Coq's own real numbers rest on.
+REALS = frozenset(
+    {
+        "ClassicalDedekindReals.sig_forall_dec",
+        "ClassicalDedekindReals.sig_not_dec",
+        "FunctionalExtensionality.functional_extensionality_dep",
+    }
+)
+
+
+@dataclass(frozen=True)
+class Kernel:
+    """What the kernel said.
+
+    Attributes
+    ----------
+    version : str
+    refused : tuple of str
+        Statements that it refused.
+    problems : tuple of str
+        Axioms that are not allowed.
+    axioms : frozenset of str
+        Those of the library that the cited theorems rest on.
+    """
+
+    version: str
+    refused: tuple[str, ...] = ()
+    problems: tuple[str, ...] = ()
+    axioms: frozenset[str] = frozenset()
+
+
+@dataclass(frozen=True)
+class _Settled:
+    """A file as it was accepted, what was taken out of it, and what `Print Assumptions` said."""
+
+    file: CoqFile
+    refused: tuple[str, ...]
+    output: str
+
+
+def require_coqc() -> str:
+    """Return the path of coqc.
+
+    Raises
+    ------
+    OptionError
+        It is not installed.
+    """
+    found = shutil.which("coqc")
+    if found is None:
+        raise OptionError("--recheck coq: found no coqc, expected Coq installed, such as Debian's package coq")
+    return found
+
+
+def kernel_of(folder: CoqFolder, place: str | Path) -> Kernel:
+    """Compile the files of an export in a folder, and return what the kernel accepts.
+
+    A lemma that is refused is taken out, until the rest of its file is accepted.
+
+    Raises
+    ------
+    CheckFailedError
+        A hand-written source is refused, a file takes too long, or is refused at no lemma.
+    """
+    place = Path(place)
+    write_coq(folder, place)
+    sources = needed_sources(folder)
+    with ThreadPoolExecutor(min(os.cpu_count() or 1, 4)) as pool:
+        for level in _levels(sources):
+            for name, done in zip(level, pool.map(lambda n: _run(place, n), level), strict=True):
+                if done.returncode:
+                    raise CheckFailedError(f"recheck: derivations/coq/{name}.v is refused: {_error(done)}")
+        settled = list(pool.map(lambda file: _settled(place, file), folder.files))
+    problems: list[str] = []
+    axioms: set[str] = set()
+    for one in settled:
+        found = _assumptions(one)
+        allowed = REALS if one.file.cited else frozenset[str]()
+        problems += [f"{one.file.name}.v: found the axiom {name}, expected none" for name in sorted(found - allowed)]
+        axioms |= found
+    refused = tuple(name for one in settled for name in one.refused)
+    return Kernel(coq_version(), refused, tuple(problems), frozenset(axioms))
+
+
+def coq_version() -> str:
+    """Return the version of Coq."""
+    done = subprocess.run([require_coqc(), "--print-version"], capture_output=True, text=True, check=True)
+    return done.stdout.split()[0]
+
+
+def _levels(sources: Mapping[str, str]) -> Iterator[list[str]]:
+    """Yield modules that import only those of levels before."""
+    done: set[str] = set()
+    while len(done) < len(sources):
+        level = [name for name in sources if name not in done and done.issuperset(imports(sources[name]))]
+        if not level:
+            raise CheckFailedError("recheck: found Coq sources that import each other in a circle")
+        yield level
+        done.update(level)
+
+
+def _run(place: Path, name: str) -> subprocess.CompletedProcess[str]:
+    command = [require_coqc(), "-q", "-Q", ".", LIBRARY, f"{name}.v"]
+    try:
+        return subprocess.run(
+            command, cwd=place, capture_output=True, text=True, timeout=_SECONDS, check=False, stdin=subprocess.DEVNULL
+        )
+    except subprocess.TimeoutExpired:
+        raise CheckFailedError(f"recheck: {name}.v took longer than {_SECONDS} s, expected an answer") from None
+
+
+def _settled(place: Path, file: CoqFile) -> _Settled:
+    """Compile a file until what is left of it is accepted."""
+    refused: list[str] = []
+    while True:
+        (place / f"{file.name}.v").write_text(file.text, encoding="utf-8")
+        done = _run(place, file.name)
+        if not done.returncode:
+            return _Settled(file, tuple(refused), done.stdout)
+        line = re.search(r"line (\d+), characters", done.stderr)
+        wrong = file.block_at(int(line[1])) if line else None
+        if wrong is None:
+            raise CheckFailedError(f"recheck: {file.name}.v is refused: {_error(done)}")
+        refused += wrong.ids
+        file = replace(file, blocks=tuple(block for block in file.blocks if block is not wrong))
+
+
+def _error(done: subprocess.CompletedProcess[str]) -> str:
+    """Return where and why Coq stopped, in one line."""
+    return " ".join(done.stderr.split())[:400] or f"status {done.returncode}"
+
+
+def _assumptions(one: _Settled) -> set[str]:
+    """Return the axioms that a file's lemmas rest on.
+
+    Raises
+    ------
+    CheckFailedError
+        `Print Assumptions` did not answer.
+    """
+    if not one.file.asked:
+        return set()
+    if one.output.strip() == "Closed under the global context":
+        return set()
+    head, _, listed = one.output.partition("Axioms:\n")
+    found = set(re.findall(r"^(\S+)\s*:", listed, re.MULTILINE))
+    if head.strip() or not found:
+        raise CheckFailedError(f"recheck: found no answer to Print Assumptions in {one.file.name}.v, expected one")
+    return found
