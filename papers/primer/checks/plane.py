@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cache
 from typing import Any
 
 import sympy as sp
@@ -116,3 +117,57 @@ def any_points(count: int) -> list[tuple[Any, Any]]:
     [(x0, y0), (x1, y1)]
     """
     return [(sp.Symbol(f"x{i}", real=True), sp.Symbol(f"y{i}", real=True)) for i in range(count)]
+
+
+@cache
+def along_hat(degree: int, t: Any) -> dict[str, Any]:
+    """Return A, B and C of any curve, coordinate by coordinate, the share of the start in C, and the ratio.
+
+    Share and ratio are the same for all control points (abc.1 to abc.3), and so are taken from one choice of them.
+    """
+    plain = hat({2: [(0, 0), (1, 2), (2, 0)], 3: [(0, 0), (1, 2), (3, 1), (4, 0)]}[degree], t)
+    share, ratio = sp.cancel(plain.share), sp.cancel(plain.ratio)
+    found = hat(any_points(degree + 1), t)
+    foot = share * found.start[0] + (1 - share) * found.end[0]
+    return {"A": found.tip[0], "B": found.point[0], "C": foot, "share": share, "ratio": ratio}
+
+
+@dataclass(frozen=True)
+class Arc:
+    """An arc of the unit circle from (1, 0) to an angle.
+
+    Attributes
+    ----------
+    start, end, middle : pairs
+    corner : pair
+        Where the tangents at both ends meet.
+    along_start, along_end : sympy.Expr
+        How far from start and end that is, in the direction of rising angles.
+    """
+
+    start: Any
+    end: Any
+    middle: Any
+    corner: Any
+    along_start: Any
+    along_end: Any
+
+
+def arc(angle: Any) -> Arc:
+    """Return the arc; its middle is on the bisector, and the tangents are at right angles to the radii.
+
+    Examples
+    --------
+    >>> found = arc(sp.pi / 2)
+    >>> found.corner, found.along_end
+    ((1, 1), -1)
+    """
+    start, end = (sp.Integer(1), sp.Integer(0)), (sp.cos(angle), sp.sin(angle))
+    # (1, a) . end = 1, since the tangent at the end is where the product with the end is 1.
+    a = (1 - end[0]) / end[1]
+    # (end + b (-sin, cos)) . start = 1.
+    b = -(1 - end[0]) / end[1]
+    half = angle / 2
+    # |start + end| is twice the cosine of half of the angle.
+    middle = tuple((s + e) / (2 * sp.cos(half)) for s, e in zip(start, end, strict=True))
+    return Arc(start, end, middle, (sp.Integer(1), a), a, b)

@@ -10,15 +10,13 @@ import sympy as sp
 from semispline.papers.checks import identity
 from semispline.papers.ledger import formula, part, parts
 from semispline.papers.primer.checks.following import of_changed, of_squares
-from semispline.papers.primer.checks.plane import Hat, any_points, hat
+from semispline.papers.primer.checks.plane import Hat, along_hat, any_points, hat
 from semispline.papers.primer.printed import letter
 from semispline.papers.primer.writing import equations, holds
 
 _t = letter("abc.2", "t")
 _n = sp.Symbol("n", integer=True)
 _HATS = {degree: hat(any_points(degree + 1), _t) for degree in (2, 3)}
-# The same for one choice of points: what does not depend on them can be seen there.
-_PLAIN = {2: hat([(0, 0), (1, 2), (2, 0)], _t), 3: hat([(0, 0), (1, 2), (3, 1), (4, 0)], _t)}
 _BOTH = {_n: (2, 3)}
 _CROSSING = "the line from A through B crosses that from start to end, any control points, n the degree"
 
@@ -44,7 +42,7 @@ def _in_foot(instance: Mapping[Any, Any]) -> Mapping[Any, Any]:
 
 def _distances(instance: Mapping[Any, Any]) -> Mapping[Any, Any]:
     degree = int(instance[_n])
-    constant = _PLAIN[degree].ratio
+    constant = along_hat(degree, _t)["ratio"]
     return {
         sp.Function("distance(A,B)", real=True): _distance_from(_HATS[degree]),
         _function("ratio(t)"): constant,
@@ -53,13 +51,8 @@ def _distances(instance: Mapping[Any, Any]) -> Mapping[Any, Any]:
 
 
 def _sides(instance: Mapping[Any, Any]) -> Mapping[Any, Any]:
-    degree = int(instance[_n])
-    found, plain = _HATS[degree], _PLAIN[degree]
-    share = sp.cancel(plain.share)
-    foot = share * found.start[0] + (1 - share) * found.end[0]
-    values = {"A": found.tip[0], "B": found.point[0], "C": foot}
-    value = {letter("abc.4", name): side for name, side in values.items()}
-    return {**value, _function("ratio(t)"): sp.cancel(plain.ratio)}
+    values = along_hat(int(instance[_n]), _t)
+    return {letter("abc.4", name): values[name] for name in "ABC"} | {_function("ratio(t)"): values["ratio"]}
 
 
 def _squares(relation: Any) -> Any:
@@ -67,7 +60,7 @@ def _squares(relation: Any) -> Any:
 
 
 def _ratio(degree: int, name: str) -> Any:
-    where = {_function(f"ratio(t)_{{{name}}}"): sp.cancel(_PLAIN[degree].ratio)}
+    where = {_function(f"ratio(t)_{{{name}}}"): along_hat(degree, _t)["ratio"]}
     return of_squares(identity(where=where), {_t: sp.Rational(1, 2)})
 
 
