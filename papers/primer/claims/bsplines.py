@@ -101,7 +101,8 @@ def _over_numbers(instance: Mapping[Any, Any]) -> Mapping[Any, Any]:
 _WEIGHTS = identity(
     where=_over_numbers,
     each=[{_degree: 3, _k: k, _i: 3, _n: 7} for k in (1, 2, 3)],
-    method="the weight with which a polar form goes on to one more t, seven control points, degree 3, levels 1 to 3, knots "
+    method="the weight with which a polar form goes on to one more t, seven control points, degree 3, levels 1 "
+    "to 3, knots "
     "0, 1, 2 ..",
 )
 _BOTTOM = {_k: [{_degree: 2, _k: 0}], _i: [{_degree: 2, _i: i} for i in range(3)]}
@@ -109,7 +110,8 @@ _ENDS = {
     letter_: identity(
         where=_over_numbers,
         each=instances,
-        method="the bottom of the triangle: polar form at knots, which is a control point; any points, degree 2, knots 0, "
+        method="the bottom of the triangle: polar form at knots, which is a control point; any points, degree "
+        "2, knots 0, "
         "1, 2 ..",
     )
     for letter_, instances in _BOTTOM.items()
@@ -162,7 +164,8 @@ def _shrunk() -> Consequence:
             ways.append(level[0])
         apart.append(dist(*ways))
     return Consequence(
-        "points (0, 0), (50, 100), (100, 100) and (150, 0), degree 3, knots 0 to 7: largest distance at the same parameter",
+        "points (0, 0), (50, 100), (100, 100) and (150, 0), degree 3, knots 0 to 7: largest distance at the "
+        "same parameter",
         {"distance": max(apart)},
     )
 
@@ -170,7 +173,8 @@ def _shrunk() -> Consequence:
 CLAIMS = (
     fails(
         "bsplines.1",
-        "With n control points, numbered from 0, a point of the curve is the sum from 0 to n of each times its function.",
+        "With n control points, numbered from 0, a point of the curve is the sum from 0 to n of each times its "
+        "function.",
         *parts(_POINTS, *equations("bsplines.1")),
         correction=corrected(
             "the sum ends with n - 1: there is no control point n", part(_POINTS, _of(_POINT(_t), _sum_to(_n - 1)))
@@ -180,14 +184,16 @@ CLAIMS = (
         "bsplines.2",
         "A function of order k is made of two of order k - 1.",
         *parts(_FUNCTIONS, *equations("bsplines.2")),
-        remark="Where knots coincide, as they do further on in the text, a quotient 0/0 counts as 0; the text does not say "
+        remark="Where knots coincide, as they do further on in the text, a quotient 0/0 counts as 0; the text "
+        "does not say "
         "so.",
     ),
     definition(
         "bsplines.3",
         "A function of order 1 is 1 from its knot up to the next one and 0 elsewhere.",
         "the functions of order 1",
-        "At the last knot of all they are all 0; with the end knots that the text calls open-uniform the curve has no end "
+        "At the last knot of all they are all 0; with the end knots that the text calls open-uniform the curve "
+        "has no end "
         "point by this definition.",
     ),
     holds(
@@ -211,7 +217,8 @@ CLAIMS = (
         part(_ENDS[_i], equations("bsplines.6")[1]),
         correction=corrected("at level 0 stand the control points", part(_ENDS[_i], _of(_d(_i, 0, _t), _P[_i]))),
         consequence=_shrunk,
-        remark="The text takes half of it back below the triangle (0 or 1, times the control point); what comes of it then "
+        remark="The text takes half of it back below the triangle (0 or 1, times the control point); what comes "
+        "of it then "
         "is one point times its function, and not the sum of four. The code of bsplines.9 has it right.",
     ),
     fails(
