@@ -114,7 +114,7 @@ def _where(identifier: str, powers: str) -> Any:
 _SQUARE = letter("curvefitting.16", "P").shape
 _GRADIENT = sp.MatrixSymbol("G", *_SQUARE)
 _NOTHING = sp.MatrixSymbol("O", *letter("curvefitting.18", "C").shape)
-_LEAST_SQUARES = {
+_LEAST_SQUARES: dict[str, Any] = {
     "each": _SIZES,
     "method": "sums over 2 to 4 points, 2 or 3 weights, by de Casteljau's triangle, first parameter 0, last 1",
 }
