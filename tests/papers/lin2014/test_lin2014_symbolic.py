@@ -52,7 +52,6 @@ BY_INSTANCES = {
     "sec-3.fewer-better": ["least energy (11) of strips", "over the printed pairs"],
     "sec-3.minimum-over-rows": ["one counterexample is enough"],
     "sec-1.fairness": ["counted in the printed pairs", "one counterexample is enough"],
-    "eq-12": ["checked on plates"],
     "sec-4.unconstrained": ["checked on plates"],
     "sec-A.special-choice": ["one counterexample is enough"],
 }
