@@ -239,9 +239,10 @@ class Counterexample:
 
     def __str__(self) -> str:
         where = ", ".join(f"{name} = {value}" for name, value in self.values)
-        also = f"; in the paper's own setting {self.own}" if self.own else ""
+        # A reader knows the paper's own setting best.
+        own = f"in the paper's own setting {self.own}; the smallest of all: " if self.own else ""
         more = f"; {self.also}" if self.also else ""
-        return f"{where}: printed {self.printed}, true {self.true}{also}{more}"
+        return f"{own}{where}: printed {self.printed}, true {self.true}{more}"
 
 
 @dataclass(frozen=True)
