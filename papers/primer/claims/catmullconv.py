@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from math import dist
 from typing import Any
 
@@ -100,7 +101,7 @@ def _curves_apart(printed: list[Any], right: list[Any]) -> float:
 def _point(points: list[float], t: float) -> float:
     """Return a point of a curve in floating point."""
     while len(points) > 1:
-        points = [a + t * (b - a) for a, b in zip(points, points[1:], strict=False)]
+        points = [a + t * (b - a) for a, b in itertools.pairwise(points)]
     return points[0]
 
 
@@ -155,7 +156,8 @@ CLAIMS = (
         *parts(_with_tangents(1 / (2 * _tau)), *_STEP_3),
         correction=corrected("they have one over the tension in them", *_tension_in(_STEP_3[1].relation)),
         consequence=_of_tension,
-        remark="Both are the same at tension 1 alone. All matrices up to catmullconv.11 have the tension where one over "
+        remark="Both are the same at tension 1 alone. All matrices up to catmullconv.11 have the tension where one "
+        "over "
         "it belongs; catmullconv.12 and catmullconv.13 have it right.",
     ),
     holds(
@@ -225,7 +227,8 @@ CLAIMS = (
         "A and the points multiplied.",
         *parts(identity(), *equations("catmullconv.12", None, *_SET)),
         correction=corrected(
-            "the points on the right are right; on the left A needs its entry 6, and one over the tension for the tension",
+            "the points on the right are right; on the left A needs its entry 6, and one over the tension for the "
+            "tension",
             part(
                 identity(),
                 _of(de_casteljau(list(_BOTH * column(*_P)), _t), equations("catmullconv.12")[0].relation.rhs),
@@ -235,7 +238,8 @@ CLAIMS = (
     ),
     holds(
         "catmullconv.13",
-        "The control points of the segment between the second and the third of four points of a Catmull-Rom spline with "
+        "The control points of the segment between the second and the third of four points of a Catmull-Rom spline "
+        "with "
         "a tension.",
         part(
             identity(where={_POINTS: column(*_bezier(_WITH_TENSION))}),

@@ -39,7 +39,8 @@ def _meanings() -> dict[Any, Any]:
 _FIT = refuted_at(
     identity(
         where=_meanings(),
-        method="the tangents at both ends of the arc, their crossing, the middle of the curve by de Casteljau's triangle, "
+        method="the tangents at both ends of the arc, their crossing, the middle of the curve by de Casteljau's "
+        "triangle, "
         "the middle of the arc on the bisector, for any angle, against the print in normal form",
     ),
     {_phi: 1},

@@ -162,7 +162,8 @@ CLAIMS = (
             *equations("curvefitting.3"),
         ),
         correction=corrected(
-            "with the weights in the matrix a column of ones is missing behind it: without, the product is a row of three",
+            "with the weights in the matrix a column of ones is missing behind it: without, the product is a row of "
+            "three",
             part(
                 _QUADRATIC,
                 formula(
@@ -255,14 +256,16 @@ CLAIMS = (
     ),
     fails(
         "curvefitting.15",
-        "For n points, and so a curve of order n - 1, the matrix of powers has a row for each point, from 1 to the n-th "
+        "For n points, and so a curve of order n - 1, the matrix of powers has a row for each point, from 1 to the "
+        "n-th "
         "power of its parameter.",
         part(
             identity(where={_last: _s ** (_count - 1)}, method="the last power against the order of the curve"),
             formula(sp.Eq(_last, _s**_count, evaluate=False)),
         ),
         correction=corrected(
-            "the last power is n - 1: as printed the matrix has n + 1 columns, and M, of n rows, does not fit behind it",
+            "the last power is n - 1: as printed the matrix has n + 1 columns, and M, of n rows, does not fit behind "
+            "it",
             part(
                 identity(where={_last: _s ** (_count - 1)}), formula(sp.Eq(_last, _s ** (_count - 1), evaluate=False))
             ),
@@ -279,7 +282,8 @@ CLAIMS = (
     ),
     fails(
         "curvefitting.17",
-        "The derivative of the error by the weights, which is to be 0, is -2 times the transposed matrix of powers times "
+        "The derivative of the error by the weights, which is to be 0, is -2 times the transposed matrix of powers "
+        "times "
         "what is left at the points.",
         part(
             identity(where=_where("curvefitting.17", "𝕋"), **_LEAST_SQUARES),
@@ -306,7 +310,8 @@ CLAIMS = (
             ),
             *equations("curvefitting.18"),
         ),
-        remark="The inverse exists where there are at least as many different parameters as weights; with curvefitting.10 "
+        remark="The inverse exists where there are at least as many different parameters as weights; with "
+        "curvefitting.10 "
         "two points in the same place in succession have the same one.",
     ),
 )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Mapping
 from math import dist
 from typing import Any
@@ -42,10 +43,13 @@ def _pulled() -> Consequence:
     curve, t, pull = [(0, 0), (20, 100), (110, 90), (150, 0)], 0.5, (10, 30)
     lines = list(zip(*curve, strict=True))
     printed, right = [], []
-    goal = [float(de_casteljau([sp.Integer(c) for c in line], sp.Rational(1, 2))) + p for line, p in zip(lines, pull)]
+    goal = [
+        float(de_casteljau([sp.Integer(c) for c in line], sp.Rational(1, 2))) + p
+        for line, p in zip(lines, pull, strict=True)
+    ]
     for line, p in zip(lines, pull, strict=True):
-        level = [a + t * (b - a) for a, b in zip(line, line[1:])]
-        e1, e2 = (a + t * (b - a) + p for a, b in zip(level, level[1:]))
+        level = [a + t * (b - a) for a, b in itertools.pairwise(line)]
+        e1, e2 = (a + t * (b - a) + p for a, b in itertools.pairwise(level))
         # The ratio of a cubic curve in the middle is 3.
         b = e1 + t * (e2 - e1)
         tip = b + (b - (line[0] + line[-1]) / 2) / 3
