@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
+from itertools import pairwise
 from math import dist
 from typing import Any
 
@@ -15,6 +15,7 @@ from semispline.papers.ledger import (
     Consequence,
     Counterexample,
     Formula,
+    Part,
     UndefinedError,
     corrected,
     formula,
@@ -100,7 +101,7 @@ def _lines() -> Iterator[Part]:
 # The derivative of the example: control points by differences of the numbers, and the knots without first and last.
 _DERIVED = [
     [_DEGREE * (b[k] - a[k]) / (_KNOTS[j + _DEGREE + 1] - _KNOTS[j + 1]) for k in (0, 1)]
-    for j, (a, b) in enumerate(itertools.pairwise(_EXAMPLE))
+    for j, (a, b) in enumerate(pairwise(_EXAMPLE))
 ]
 _NAMES = ("degree", "points", "x_0", "y_0", "knots", "first", "last")
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import itertools
+from itertools import pairwise
 from math import dist
 from typing import Any
 
@@ -101,7 +101,7 @@ def _curves_apart(printed: list[Any], right: list[Any]) -> float:
 def _point(points: list[float], t: float) -> float:
     """Return a point of a curve in floating point."""
     while len(points) > 1:
-        points = [a + t * (b - a) for a, b in itertools.pairwise(points)]
+        points = [a + t * (b - a) for a, b in pairwise(points)]
     return points[0]
 
 
