@@ -182,7 +182,7 @@ _KNOT_VECTORS = (
 
 def _sections() -> list[tuple[int, tuple[int, ...], Fraction, int]]:
     """Return degree, knots, a parameter and the number of its section: at both ends, and in the middle of each."""
-    found = []
+    found: list[tuple[int, tuple[int, ...], Fraction, int]] = []
     for degree, knots in _KNOT_VECTORS:
         first, last = degree, len(knots) - 1 - degree
         inner = [s for s in range(first, last) if knots[s] < knots[s + 1]]

@@ -154,7 +154,9 @@ CLAIMS = (
         "With a tension, the derivatives are half these steps over the tension; so the last two rows of T, but for the "
         "factor 1/2, have the tension in them.",
         *parts(_with_tangents(1 / (2 * _tau)), *_STEP_3),
-        correction=corrected("they have one over the tension in them", *_tension_in(_STEP_3[1].relation)),
+        correction=corrected(
+            "these two rows of T have one over the tension in them", *_tension_in(_STEP_3[1].relation)
+        ),
         consequence=_of_tension,
         remark="Both are the same at tension 1 alone. All matrices up to catmullconv.11 have the tension where one "
         "over "

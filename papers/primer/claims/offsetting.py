@@ -74,7 +74,7 @@ CLAIMS = (
         "offsetting.4",
         "The length of a curve between two parameters is the integral of the root of both squared derivatives.",
         part(
-            length_between(*_f, _a, _b),
+            length_between(_f[0], _f[1], _a, _b),
             formula(sp.Eq(_length, _integral(_f, 1, _a, _b), evaluate=False)),
         ),
     ),
