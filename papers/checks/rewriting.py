@@ -235,8 +235,8 @@ def _multiples(expression: Any) -> dict[Any, Any]:
     Examples
     --------
     >>> n, m = sp.symbols("n m")
-    >>> _multiples(2 * (n - m / 3) + 1)
-    {n: 2, m: -2/3, 1: 1}
+    >>> _multiples(2 * (n - m / 3) + 1) == {n: 2, m: -sp.Rational(2, 3), sp.Integer(1): 1}
+    True
     """
     found: dict[Any, Any] = {}
     for term in sp.Add.make_args(sp.expand(expression)):

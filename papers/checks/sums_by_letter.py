@@ -65,9 +65,9 @@ def linear_sums(letter: Any, n: Any, *, start: int = 0, where: Where | None = No
     >>> from semispline.papers.ledger import formula
     >>> i, n, x = sp.symbols("i n x", integer=True)
     >>> w = sp.IndexedBase("w")
-    >>> one, other = sp.Sum(w[i] * x**i, (i, 0, n)), sp.Sum(w[i - 1] * x ** (i - 1), (i, 1, n + 1))
-    >>> all(case.true for case in linear_sums(w[i], n).cases(formula(sp.Eq(one, other, evaluate=False))))
-    True
+    >>> one, other = sp.Sum(w[i], (i, 0, n)), sp.Sum(w[i - 1], (i, 1, n + 1))
+    >>> linear_sums(w[i], n).strength.name
+    'GENERAL'
     """
     rules = _Rules(letter, n, start, where or {})
     return Check(

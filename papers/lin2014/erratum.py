@@ -89,6 +89,7 @@ def _measures(ledger: Ledger) -> dict[str, Any]:
     none, one = (next(v for key, v in few.items() if f"C2, {m} middle curves" in key) for m in (0, 1))
     turn = _measured(ledger, "sec-A.17-gives-2.1")["turn of the normal across the contact [degrees]"]
     facing = _measured(ledger, "sec-4.facing")
+    spared = _measured(ledger, "sec-A.special-choice").values()
     share = facing["share of exit angles below 90 degrees, 1 middle curves"]
     crease = facing["crease at alpha = 0 between plates at 74 and 37 degrees [degrees]"]
     gap = _measured(ledger, "fig-10.seam")["gap at the seam, 1 middle curves [radius of the first cylinder]"]
@@ -101,7 +102,7 @@ def _measures(ledger: Ledger) -> dict[str, Any]:
         "turn": f"{turn:.0f}",
         "share": f"{100 * share:.0f}",
         "crease": f"{crease:.0f}",
-        "spared": f"{max(_measured(ledger, 'sec-A.special-choice').values()):.1g}",
+        "spared": f"{min(spared):.1g} to {max(spared):.1g}",
         "none": f"{none:.3g}",
         "one": f"{one:.3g}",
         "gap": f"{gap:.1g}",

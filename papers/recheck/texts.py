@@ -154,7 +154,7 @@ def number_text(number: Any) -> str:
     Examples
     --------
     >>> number_text(sp.sqrt(2) * sp.cos(sp.pi / 8) - sp.E)
-    'sqrt(2)*cos(Pi/8) - exp(1)'
+    'sqrt(2)*sqrt(sqrt(2)/4 + 1/2) - exp(1)'
     >>> number_text(sp.CRootOf(sp.Symbol("t") ** 3 - 2, 0))
     'real_root(x_^3 - 2, 1)'
     """
@@ -175,7 +175,7 @@ def function_text(expression: Any) -> str:
     --------
     >>> a, x = sp.symbols("a x")
     >>> function_text(sp.sin(a * x) / sp.sqrt(1 + x))
-    'sin(a*x)/sqrt(x + 1)'
+    '1/sqrt(x + 1)*sin(a*x)'
     """
     return str(_number_written(expression))
 

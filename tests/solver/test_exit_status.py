@@ -75,7 +75,7 @@ def test_a_traceback_is_there_for_whoever_asks():
 
 def test_every_command_reports_its_errors():
     wrapper = reports_errors(lambda: None).__code__
-    assert len(whole_app.registered_commands) == 10
+    assert len(whole_app.registered_commands) == 11
     for command in whole_app.registered_commands:
         assert command.callback.__code__ is wrapper, command.callback.__name__
 

@@ -210,8 +210,8 @@ CLAIMS = (
               consequence=special.special_choice_cost,
               remark="The paper calls its conditions sufficient, and says no more. What the choice leaves out: p_1 and "
               "q_1 that vary along the contact, where alpha, beta are two numbers, and p_2, a free function that moves "
-              "row 2 along R_w. By (11) that costs little; by the fairness of the shape p_2 is worth more, and the "
-              "default of this package searches it."),
+              "row 2 along R_w. By (11) a constant p_2, or alpha^2 and beta^2 linear in v, save little; by the "
+              "fairness of the shape p_2 is worth more, and the default of this package searches it."),
     holds("sec-A.substitution", _WHERE, "p_1 = alpha^2, q_1 = p_2 = q_2 = 0 turn (15), (16) into (17), (18).",
           part(Check(partial(substitution_cases, 1), Strength.GENERAL, "substitution", proof=True), pr.EQ_17),
           part(Check(partial(substitution_cases, 2), Strength.GENERAL, "substitution", proof=True), pr.EQ_18),

@@ -44,7 +44,7 @@ ROOT = Path(__file__).parents[3]
 
 def test_printed_formulas_run_in_the_papers_folder_only():
     for path in (*ROOT.glob("solver/**/*.py"), *ROOT.glob("derivations/**/*.py"), *ROOT.glob("papers/**/*.py")):
-        if "lin2014" in path.parts:
+        if {"lin2014", "primer", "new_paper"} & set(path.parts):
             continue
         names = [
             name

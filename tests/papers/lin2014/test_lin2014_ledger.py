@@ -202,7 +202,7 @@ def _outputs_are_complete(ledger):
         assert sum(claim["mutants"]["kinds"].values()) == tried
     assert set(ledger.mutants_by_kind()) == {"sign", "factor", "exponent", "index", "limit", "number", "knot"}
     html = ledger_html(ledger)
-    assert html.count("<details") == len(ledger.paper.claims)
+    assert html.count("<details class='claim") == len(ledger.paper.claims)
     formulas = re.findall("<math>.*?</math>", html)
     assert len(formulas) > 60
     for formula in formulas:

@@ -46,13 +46,12 @@ def reading_holds(reading):
 # Decided at less than strength 2, and why that is enough, or that it is not a proof; it stands in the method.
 BY_INSTANCES = {
     "fig-1.counts": ["seven printed numbers"],
-    "sec-2.evaluation-order": ["orders 2 to 4", "one example is enough"],
+    "sec-2.evaluation-order": ["one example is enough"],
     "sec-2.different-vectors": ["one counterexample is enough", "one example is enough"],
     "sec-3.averaging-few": ["the rule on vectors with no, one and more knots"],
     "sec-3.fewer-better": ["least energy (11) of strips", "over the printed pairs"],
     "sec-3.minimum-over-rows": ["one counterexample is enough"],
     "sec-1.fairness": ["counted in the printed pairs", "one counterexample is enough"],
-    "eq-12": ["checked on plates"],
     "sec-4.unconstrained": ["checked on plates"],
     "sec-A.special-choice": ["one counterexample is enough"],
 }

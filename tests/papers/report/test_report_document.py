@@ -41,7 +41,7 @@ def test_a_method_of_many_records_is_told_once():
     assert methods_told
     table = STORED.partition("| id | claim | verdict |")[2]
     for name, method in methods_told.items():
-        assert method not in table
+        assert not re.search(r"[;|] *" + re.escape(method) + r" *[;|]", table)
         assert len(re.findall(rf"\b{name}\b", table)) > 2
 
 

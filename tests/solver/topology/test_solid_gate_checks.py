@@ -390,7 +390,9 @@ def test_an_area_that_stays_has_a_limit(share, is_same):
         next(x for x in parts(box(1, y, 1), "FACE") if np.ptp(box_of_face(x)[:, 2]) < 1e-9)
         for y in (1.0, 1 + share * 1e-9)
     ]
-    both = SimpleNamespace(kept={0: 0}, change=Change((), (), (), 0.0, ()), faces=([faces[0]], [faces[1]]), size=1.0)
+    both = SimpleNamespace(
+        kept={0: 0}, change=Change((), (), (), 0.0, ()), faces=([faces[0]], [faces[1]]), first=(0, 0), size=1.0
+    )
     if is_same:
         solid_gate._unchanged(both, GateReport(None), read_back=False)
     else:
