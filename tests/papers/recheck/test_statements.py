@@ -33,7 +33,7 @@ MATRIX = [[2, 1, 0], [1, 2, 1], [0, 1, 2]]
 C, S = sp.symbols("c s")
 RIGHT = {
     # Divided by a letter that PARI takes for a lesser one than c, and is 0 at c = 1.
-    "roots": identity("a", (1 - C) / S, S / (1 + C), roots=[(S, 1 - C**2, 2)]),
+    "roots": identity("a", "(1 - c)/s", "(c - 1)/s*c + s", roots=[(S, 1 - C**2, 2)]),
     "identity": identity("a", (X**2 - 1) / (X - 1), X + 1),
     "where": identity("a", "y^2", "x^2 + 2*x + 1", where=(("y", "x + 1"),)),
     "different": different("a", X**2, X, conditions=("x > 1",)),
