@@ -15,6 +15,7 @@ from sympy.polys.matrices import DomainMatrix
 
 from semispline.papers.recheck.arithmetic import TextError, divisors, instance, names, satisfied, value
 from semispline.papers.recheck.by_series import series_of
+from semispline.papers.recheck.rooted import defined_with_roots
 from semispline.papers.recheck.statements import (
     Coefficient,
     Contained,
@@ -73,6 +74,8 @@ def identity(
     conditions = tuple(conditions)
 
     def fits(at: Mapping[str, Fraction]) -> bool:
+        if known and not defined_with_roots(*sides, known, at):
+            return False
         return all(satisfied(c, at) for c in conditions) and (equal or value(sides[0], at) != value(sides[1], at))
 
     at = _instance(label, variables, pairs, nonzero, fits)

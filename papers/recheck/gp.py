@@ -29,13 +29,25 @@ CONTROLS = "controls"
 CHECKER = r"""\\ What PARI is asked. same: both sides are the same rational function.
 same(a, b) = (a - b) == 0;
 \\ A polynomial in r, where r^q stands for A: numerators are compared, one root after another, the last one first.
+\\ A quotient of two letters is to PARI a polynomial in the one over the other: `numerator` alone leaves it there.
+under(n) = {
+  my(d = 1);
+  if(type(n) == "t_RFRAC", return(under(numerator(n))));
+  if(type(n) != "t_POL", return(1));
+  foreach(Vec(n), c, d = lcm(d, if(type(c) == "t_RFRAC", denominator(c) * under(numerator(c)), under(c))));
+  d };
+cleared(n) = {
+  my(d);
+  n = numerator(n); d = under(n);
+  while(d != 1, n = numerator(n * d); d = under(n));
+  n };
 put_in(n, r, A, q) = {
   my(d = poldegree(n, r));
-  if(d < q, n, numerator(sum(k = 0, d, polcoef(n, k, r) * r^(k % q) * A^(k \ q)))) };
+  if(d < q, n, cleared(sum(k = 0, d, polcoef(n, k, r) * r^(k % q) * A^(k \ q)))) };
 rooted(n, roots) = {
   forstep(i = #roots, 1, -1, n = put_in(n, roots[i][1], roots[i][2], roots[i][3]));
   n == 0 };
-same_over(a, b, roots) = rooted(numerator(a - b), roots);
+same_over(a, b, roots) = rooted(cleared(a - b), roots);
 \\ A number is computed with a hundred digits; half of them count.
 default(realprecision, 100);
 real_root(p, k) = polrootsreal(p)[k];

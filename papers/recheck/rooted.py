@@ -96,16 +96,41 @@ def equal_with_roots(left: str, right: str, roots: Sequence[tuple[str, str, int]
     >>> equal_with_roots("(r + 1)*(r - 1)", "x - 1", [("r", "x", 2)], {"x": Fraction(2)})
     True
     """
+    sides = _values(left, right, roots, at)
+    every = _every(roots, at)
+    if any(not _reduced(side.under, roots, every) for side in sides):
+        return False
+    return not _reduced((sides[0] - sides[1]).over, roots, every)
+
+
+def defined_with_roots(
+    left: str, right: str, roots: Sequence[tuple[str, str, int]], at: Mapping[str, Fraction]
+) -> bool:
+    """Tell whether nothing in two texts is divided by zero at an instance, the roots being what they are there.
+
+    Examples
+    --------
+    >>> [defined_with_roots("1/r", "r/x", [("r", "1 - x", 2)], {"x": Fraction(n)}) for n in (1, 2)]
+    [False, True]
+    """
+    every = _every(roots, at)
+    return all(_reduced(side.under, roots, every) for side in _values(left, right, roots, at))
+
+
+def _every(roots: Sequence[tuple[str, str, int]], at: Mapping[str, Fraction]) -> dict[str, Any]:
+    """Return the numbers of an instance, and the roots as themselves."""
     names = [name for name, _, _ in roots]
     unit = {(0,) * len(names): Fraction(1)}
     every: dict[str, Any] = {name: number for name, number in at.items() if name not in names}
     for i, name in enumerate(names):
         every[name] = Rooted({tuple(int(i == j) for j in range(len(names))): Fraction(1)}, unit)
+    return every
+
+
+def _values(left: str, right: str, roots: Sequence[tuple[str, str, int]], at: Mapping[str, Fraction]) -> list[Any]:
+    every = _every(roots, at)
     # A number among roots, so that all that is computed is one of them.
-    sides = [_rooted(0, every[names[0]]) + value(side, every) for side in (left, right)]
-    if any(not _reduced(side.under, roots, every) for side in sides):
-        return False
-    return not _reduced((sides[0] - sides[1]).over, roots, every)
+    return [_rooted(0, every[roots[0][0]]) + value(side, every) for side in (left, right)]
 
 
 def _reduced(terms: Terms, roots: Sequence[tuple[str, str, int]], at: Mapping[str, Any]) -> Terms:

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
+from fractions import Fraction
 from math import dist
 from typing import Any
 
 import sympy as sp
 
-from semispline.papers.checks import identity
+from semispline.papers.checks import code, identity
 from semispline.papers.ledger import Consequence, Formula, corrected, formula, mutants, part, parts
 from semispline.papers.primer.checks.knots import function, knot, point
+from semispline.papers.primer.checks.running import code_of
 from semispline.papers.primer.printed import letter
 from semispline.papers.primer.writing import definition, equations, fails, holds
 
@@ -101,8 +103,8 @@ def _over_numbers(instance: Mapping[Any, Any]) -> Mapping[Any, Any]:
 _WEIGHTS = identity(
     where=_over_numbers,
     each=[{_degree: 3, _k: k, _i: 3, _n: 7} for k in (1, 2, 3)],
-    method="the weight with which a polar form goes on to one more t, seven control points, degree 3, levels 1 "
-    "to 3, knots "
+    method="the weight with which a polar form goes on to one more t, seven control points, degree 3, levels 1 to 3, "
+    "knots "
     "0, 1, 2 ..",
 )
 _BOTTOM = {_k: [{_degree: 2, _k: 0}], _i: [{_degree: 2, _i: i} for i in range(3)]}
@@ -110,8 +112,8 @@ _ENDS = {
     letter_: identity(
         where=_over_numbers,
         each=instances,
-        method="the bottom of the triangle: polar form at knots, which is a control point; any points, degree "
-        "2, knots 0, "
+        method="the bottom of the triangle: polar form at knots, which is a control point; any points, degree 2, "
+        "knots 0, "
         "1, 2 ..",
     )
     for letter_, instances in _BOTTOM.items()
@@ -164,10 +166,65 @@ def _shrunk() -> Consequence:
             ways.append(level[0])
         apart.append(dist(*ways))
     return Consequence(
-        "points (0, 0), (50, 100), (100, 100) and (150, 0), degree 3, knots 0 to 7: largest distance at the "
-        "same parameter",
+        "points (0, 0), (50, 100), (100, 100) and (150, 0), degree 3, knots 0 to 7: largest distance at the same "
+        "parameter",
         {"distance": max(apart)},
     )
+
+
+_place, _section, _value, _s = sp.symbols("place section value s", integer=True)
+_KNOT_VECTORS = (
+    (3, (0, 1, 2, 3, 4, 5, 6, 7, 8)),
+    (2, (0, 0, 0, 1, 3, 4, 4, 4)),
+    (3, (0, 0, 0, 0, 2, 2, 5, 5, 5, 5)),
+)
+
+
+def _sections() -> list[tuple[int, tuple[int, ...], Fraction, int]]:
+    """Return degree, knots, a parameter and the number of its section: at both ends, and in the middle of each."""
+    found: list[tuple[int, tuple[int, ...], Fraction, int]] = []
+    for degree, knots in _KNOT_VECTORS:
+        first, last = degree, len(knots) - 1 - degree
+        inner = [s for s in range(first, last) if knots[s] < knots[s + 1]]
+        found += [(degree, knots, Fraction(knots[first]), first), (degree, knots, Fraction(knots[last]), last - 1)]
+        found += [(degree, knots, Fraction(knots[s] + knots[s + 1], 2), s) for s in inner]
+    return found
+
+
+_SECTIONS = _sections()
+
+
+def _section_given(instance: Mapping[Any, Any]) -> Mapping[str, Any]:
+    degree, knots, t, _ = _SECTIONS[int(instance[_place])]
+    return {"domain": [degree, len(knots) - 1 - degree], "knots": list(knots), "t": t}
+
+
+def _section_found(instance: Mapping[Any, Any]) -> Mapping[Any, Any]:
+    return {_section: sp.Integer(_SECTIONS[int(instance[_place])][3])}
+
+
+_NEVER_REACHED = {
+    "Eq(section, code(s, line 1, column 20: <= for <))": "a parameter of the domain has its section before the loop "
+    "ends"
+}
+
+
+_LAST_LEVEL = {
+    "Eq(value, code(v[s], line 2, column 18: < for <=))": "at the level L = order the inner loop has nothing to do"
+}
+
+
+def _triangle_given(instance: Mapping[Any, Any]) -> Mapping[str, Any]:
+    degree, s = int(instance[_degree]), int(instance[_s])
+    knots = [knot(j) for j in range(s + degree + 2)]
+    # Points that the section does not need are other letters.
+    points = [point(degree, i) if i >= s - degree else sp.Symbol(f"far{i}") for i in range(s + 1)]
+    return {"s": s, "order": degree + 1, "knots": knots, "points": points, "t": _t}
+
+
+def _triangle_found(instance: Mapping[Any, Any]) -> Mapping[Any, Any]:
+    degree = int(instance[_degree])
+    return {_value: point(degree, 0, degree, _t)}
 
 
 CLAIMS = (
@@ -184,16 +241,16 @@ CLAIMS = (
         "bsplines.2",
         "A function of order k is made of two of order k - 1.",
         *parts(_FUNCTIONS, *equations("bsplines.2")),
-        remark="Where knots coincide, as they do further on in the text, a quotient 0/0 counts as 0; the text "
-        "does not say "
+        remark="Where knots coincide, as they do further on in the text, a quotient 0/0 counts as 0; the text does "
+        "not say "
         "so.",
     ),
     definition(
         "bsplines.3",
         "A function of order 1 is 1 from its knot up to the next one and 0 elsewhere.",
         "the functions of order 1",
-        "At the last knot of all they are all 0; with the end knots that the text calls open-uniform the curve "
-        "has no end "
+        "At the last knot of all they are all 0; with the end knots that the text calls open-uniform the curve has "
+        "no end "
         "point by this definition.",
     ),
     holds(
@@ -217,8 +274,8 @@ CLAIMS = (
         part(_ENDS[_i], equations("bsplines.6")[1]),
         correction=corrected("at level 0 stand the control points", part(_ENDS[_i], _of(_d(_i, 0, _t), _P[_i]))),
         consequence=_shrunk,
-        remark="The text takes half of it back below the triangle (0 or 1, times the control point); what comes "
-        "of it then "
+        remark="The text takes half of it back below the triangle (0 or 1, times the control point); what comes of "
+        "it then "
         "is one point times its function, and not the sum of four. The code of bsplines.9 has it right.",
     ),
     fails(
@@ -230,5 +287,36 @@ CLAIMS = (
             part(_PICTURE, _whichever(_of(_d(3, 3, _t), _picture([_P[j] for j in range(4)])))),
         ),
         consequence=_shrunk,
+    ),
+    holds(
+        "bsplines.8",
+        "The number of the section that a parameter lies in.",
+        part(
+            code(
+                each={_place: range(len(_SECTIONS))},
+                given=_section_given,
+                where=_section_found,
+                method="the printed code, run at both ends of the domain and within each section, for three knot "
+                "vectors",
+            ),
+            formula(sp.Eq(_section, code_of("bsplines.8", "s"), evaluate=False), equivalent=_NEVER_REACHED),
+        ),
+        remark="At a knot inside of the domain it is the section before it, on which the curve has the same point "
+        "there.",
+    ),
+    holds(
+        "bsplines.9",
+        "The point of a curve: the triangle, level by level, in a copy of the control points.",
+        part(
+            code(
+                each=[{_degree: degree, _s: s} for degree in (1, 2, 3) for s in (degree, degree + 1)],
+                given=_triangle_given,
+                where=_triangle_found,
+                method="the printed code, run for any polynomial, knots and parameter, degrees 1 to 3, against the "
+                "polar form",
+            ),
+            formula(sp.Eq(_value, code_of("bsplines.9", "v[s]"), evaluate=False), equivalent=_LAST_LEVEL),
+        ),
+        remark="The level after the last one, L = order, does nothing.",
     ),
 )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import itertools
+from itertools import pairwise
 from math import dist
 from typing import Any
 
@@ -101,7 +101,7 @@ def _curves_apart(printed: list[Any], right: list[Any]) -> float:
 def _point(points: list[float], t: float) -> float:
     """Return a point of a curve in floating point."""
     while len(points) > 1:
-        points = [a + t * (b - a) for a, b in itertools.pairwise(points)]
+        points = [a + t * (b - a) for a, b in pairwise(points)]
     return points[0]
 
 
@@ -154,10 +154,12 @@ CLAIMS = (
         "With a tension, the derivatives are half these steps over the tension; so the last two rows of T, but for the "
         "factor 1/2, have the tension in them.",
         *parts(_with_tangents(1 / (2 * _tau)), *_STEP_3),
-        correction=corrected("they have one over the tension in them", *_tension_in(_STEP_3[1].relation)),
+        correction=corrected(
+            "these two rows of T have one over the tension in them", *_tension_in(_STEP_3[1].relation)
+        ),
         consequence=_of_tension,
-        remark="Both are the same at tension 1 alone. All matrices up to catmullconv.11 have the tension where "
-        "one over "
+        remark="Both are the same at tension 1 alone. All matrices up to catmullconv.11 have the tension where one "
+        "over "
         "it belongs; catmullconv.12 and catmullconv.13 have it right.",
     ),
     holds(
@@ -227,8 +229,8 @@ CLAIMS = (
         "A and the points multiplied.",
         *parts(identity(), *equations("catmullconv.12", None, *_SET)),
         correction=corrected(
-            "the points on the right are right; on the left A needs its entry 6, and one over the tension for "
-            "the tension",
+            "the points on the right are right; on the left A needs its entry 6, and one over the tension for the "
+            "tension",
             part(
                 identity(),
                 _of(de_casteljau(list(_BOTH * column(*_P)), _t), equations("catmullconv.12")[0].relation.rhs),
@@ -238,8 +240,8 @@ CLAIMS = (
     ),
     holds(
         "catmullconv.13",
-        "The control points of the segment between the second and the third of four points of a Catmull-Rom "
-        "spline with "
+        "The control points of the segment between the second and the third of four points of a Catmull-Rom spline "
+        "with "
         "a tension.",
         part(
             identity(where={_POINTS: column(*_bezier(_WITH_TENSION))}),

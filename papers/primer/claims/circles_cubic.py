@@ -63,8 +63,8 @@ _MEANINGS = _meanings()
 _FIT = refuted_at(
     identity(
         where=_MEANINGS,
-        method="control points along the tangents so far that the middle of the curve, by de Casteljau's "
-        "triangle, is that "
+        method="control points along the tangents so far that the middle of the curve, by de Casteljau's triangle, "
+        "is that "
         "of the arc; for any angle, against the print in normal form",
     ),
     {_phi: 1},
@@ -86,8 +86,8 @@ _whole, _d1, _d2 = sp.symbols("AC d_1 d_2", positive=True)
 _ratio_at_half = sp.Symbol("ratio", positive=True)
 _WAY = identity(
     where={_d1: _d2 / _RATIO, _whole: _d2 + _d2 / _RATIO, _ratio_at_half: _RATIO},
-    method="the ratio of any cubic curve at 1/2, by de Casteljau's triangle, as abc.3 has it: from foot to "
-    "curve over from "
+    method="the ratio of any cubic curve at 1/2, by de Casteljau's triangle, as abc.3 has it: from foot to curve "
+    "over from "
     "curve to tip",
 )
 # circles_cubic.8 and circles_cubic.10, transcribed by hand.

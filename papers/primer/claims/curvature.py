@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import sympy as sp
 
-from semispline.papers.checks import identity
+from semispline.papers.checks import code, identity
 from semispline.papers.ledger import Consequence, corrected, formula, part, parts
 from semispline.papers.primer.checks.following import probed_at
 from semispline.papers.primer.checks.plane import curvature, curvature_radius, quarter_circle
+from semispline.papers.primer.checks.running import code_of
 from semispline.papers.primer.printed import letter
 from semispline.papers.primer.writing import equations, fails, holds
 
@@ -38,6 +40,23 @@ _BENDING = probed_at(
 )
 
 
+_CALL = "kappa(t, B)"
+
+
+def _coordinates(first: int, **more: Any) -> Mapping[str, Any]:
+    """Return a derivative as an object of the code, from the place of its coordinates among the four."""
+    x, y = _JET[first], _JET[first + 1]
+    return {"getX": lambda _: x, "getY": lambda _: y, **more}
+
+
+_CODE = code(
+    given={"B": {"getDerivative": lambda: _coordinates(0, getDerivative=lambda: _coordinates(2))}},
+    where=_MEANINGS,
+    method="the printed code, run exactly for any first and second derivatives, against how fast the unit tangent "
+    "turns",
+)
+
+
 def _right(kappa: Any, jet: tuple[Any, ...]) -> Any:
     x1, y1, x2, y2 = jet
     return sp.Eq(kappa, (x1 * y2 - x2 * y1) / (x1**2 + y1**2) ** sp.Rational(3, 2), evaluate=False)
@@ -52,6 +71,17 @@ def _of_circle() -> Consequence:
         "the cubic curve that stands for a quarter circle of radius 100, radius of curvature at its start",
         {"radius": (x1**2 + y1**2) ** (2 / 3) / turning},
         {"radius": (x1**2 + y1**2) ** (3 / 2) / turning},
+    )
+
+
+def _of_code() -> Consequence:
+    """Measure what the code gives for the same curve, and what it would give put right."""
+    (x, y), t = quarter_circle(100)
+    x1, y1, x2, y2 = (float(e.diff(t, k).subs(t, 0.5)) for k in (1, 2) for e in (x, y))
+    return Consequence(
+        "the cubic curve that stands for a quarter circle of radius 100, one over what the code gives in its middle",
+        {"radius": (x1**2 + y1**2) ** (2 / 3) / (x1 * y2 + y1 * x1)},
+        {"radius": (x1**2 + y1**2) ** (3 / 2) / (x1 * y2 - y1 * x2)},
     )
 
 
@@ -88,6 +118,25 @@ CLAIMS = (
             ),
         ),
         consequence=_of_circle,
+    ),
+    fails(
+        "curvature.3",
+        "Code for the curvature of a curve at a parameter.",
+        part(_CODE, formula(sp.Eq(_KAPPA(_t), code_of("curvature.3", _CALL), evaluate=False))),
+        correction=corrected(
+            "the second product is dy ddx, and it is taken off; the exponent is 3/2",
+            part(
+                _CODE,
+                formula(
+                    sp.Eq(
+                        _KAPPA(_t),
+                        code_of("curvature.3", _CALL, {"+ dy * dx": "- dy * ddx", "2/3": "3/2"}),
+                        evaluate=False,
+                    )
+                ),
+            ),
+        ),
+        consequence=_of_code,
     ),
     holds(
         "curvature.4",

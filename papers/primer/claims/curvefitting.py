@@ -11,7 +11,7 @@ import sympy as sp
 
 from semispline.derivations.bezier import de_casteljau
 from semispline.papers.checks import identity
-from semispline.papers.ledger import Consequence, corrected, formula, part, parts
+from semispline.papers.ledger import Check, Consequence, corrected, formula, part, parts
 from semispline.papers.primer.checks.curves import basis, column, row
 from semispline.papers.primer.checks.following import entry_by_entry, of_changed
 from semispline.papers.primer.printed import letter, steps
@@ -114,10 +114,15 @@ def _where(identifier: str, powers: str) -> Any:
 _SQUARE = letter("curvefitting.16", "P").shape
 _GRADIENT = sp.MatrixSymbol("G", *_SQUARE)
 _NOTHING = sp.MatrixSymbol("O", *letter("curvefitting.18", "C").shape)
-_LEAST_SQUARES: dict[str, Any] = {
-    "each": _SIZES,
-    "method": "sums over 2 to 4 points, 2 or 3 weights, by de Casteljau's triangle, first parameter 0, last 1",
-}
+
+
+def _least_squares(identifier: str, powers: str) -> Check:
+    """Return the check of a display in which a letter stands for the matrix of powers."""
+    return identity(
+        where=_where(identifier, powers),
+        each=_SIZES,
+        method="sums over 2 to 4 points, 2 or 3 weights, by de Casteljau's triangle, first parameter 0, last 1",
+    )
 
 
 def _as_sum_of_squares(relation: Any) -> Any:
@@ -162,8 +167,8 @@ CLAIMS = (
             *equations("curvefitting.3"),
         ),
         correction=corrected(
-            "with the weights in the matrix a column of ones is missing behind it: without, the product is a "
-            "row of three",
+            "with the weights in the matrix a column of ones is missing behind it: without, the product is a row of "
+            "three",
             part(
                 _QUADRATIC,
                 formula(
@@ -236,7 +241,7 @@ CLAIMS = (
         "The error is the square of the points less the product of powers, matrix and weights.",
         *parts(
             of_changed(
-                identity(where=_where("curvefitting.13", "T"), **_LEAST_SQUARES),
+                _least_squares("curvefitting.13", "T"),
                 _as_sum_of_squares,
                 "the square of a column as the sum of the squares in it, T with a row for each point",
             ),
@@ -249,23 +254,23 @@ CLAIMS = (
         "curvefitting.14",
         "The same, the square as a product of the transposed with itself.",
         *parts(
-            identity(where=_where("curvefitting.14", "T"), **_LEAST_SQUARES),
+            _least_squares("curvefitting.14", "T"),
             *equations("curvefitting.14"),
         ),
         remark="With T for the matrix that has a row for each point, as the text goes on to say.",
     ),
     fails(
         "curvefitting.15",
-        "For n points, and so a curve of order n - 1, the matrix of powers has a row for each point, from 1 to "
-        "the n-th "
+        "For n points, and so a curve of order n - 1, the matrix of powers has a row for each point, from 1 to the "
+        "n-th "
         "power of its parameter.",
         part(
             identity(where={_last: _s ** (_count - 1)}, method="the last power against the order of the curve"),
             formula(sp.Eq(_last, _s**_count, evaluate=False)),
         ),
         correction=corrected(
-            "the last power is n - 1: as printed the matrix has n + 1 columns, and M, of n rows, does not fit "
-            "behind it",
+            "the last power is n - 1: as printed the matrix has n + 1 columns, and M, of n rows, does not fit behind "
+            "it",
             part(
                 identity(where={_last: _s ** (_count - 1)}), formula(sp.Eq(_last, _s ** (_count - 1), evaluate=False))
             ),
@@ -275,24 +280,24 @@ CLAIMS = (
         "curvefitting.16",
         "The error with the matrix of powers at the parameters.",
         *parts(
-            identity(where=_where("curvefitting.16", "𝕋"), **_LEAST_SQUARES),
+            _least_squares("curvefitting.16", "𝕋"),
             *equations("curvefitting.16"),
         ),
         remark="With n columns in that matrix, and not n + 1 as in curvefitting.15.",
     ),
     fails(
         "curvefitting.17",
-        "The derivative of the error by the weights, which is to be 0, is -2 times the transposed matrix of "
-        "powers times "
+        "The derivative of the error by the weights, which is to be 0, is -2 times the transposed matrix of powers "
+        "times "
         "what is left at the points.",
         part(
-            identity(where=_where("curvefitting.17", "𝕋"), **_LEAST_SQUARES),
+            _least_squares("curvefitting.17", "𝕋"),
             _gradient(steps("curvefitting.17")[1].right),
         ),
         correction=corrected(
             "the transposed of M is missing in front of it",
             part(
-                identity(where=_where("curvefitting.17", "𝕋"), **_LEAST_SQUARES),
+                _least_squares("curvefitting.17", "𝕋"),
                 _gradient(-2 * _M.T * _T.T * (_P - _T * _M * _C)),
             ),
         ),
@@ -304,7 +309,7 @@ CLAIMS = (
         "transposed matrix of powers times the points.",
         *parts(
             of_changed(
-                identity(where=_where("curvefitting.18", "𝕋"), **_LEAST_SQUARES),
+                _least_squares("curvefitting.18", "𝕋"),
                 _at_weights,
                 "the gradient of curvefitting.17, corrected, at the weights that are printed",
             ),

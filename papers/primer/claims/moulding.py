@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Mapping
+from itertools import pairwise
 from math import dist
 from typing import Any
 
@@ -48,8 +48,8 @@ def _pulled() -> Consequence:
         for line, p in zip(lines, pull, strict=True)
     ]
     for line, p in zip(lines, pull, strict=True):
-        level = [a + t * (b - a) for a, b in itertools.pairwise(line)]
-        e1, e2 = (a + t * (b - a) + p for a, b in itertools.pairwise(level))
+        level = [a + t * (b - a) for a, b in pairwise(line)]
+        e1, e2 = (a + t * (b - a) + p for a, b in pairwise(level))
         # The ratio of a cubic curve in the middle is 3.
         b = e1 + t * (e2 - e1)
         tip = b + (b - (line[0] + line[-1]) / 2) / 3

@@ -84,8 +84,8 @@ CLAIMS = (
         "derivatives.",
         part(_QUADRATIC, formula(sp.Eq(_speed, _integral(_B, 2, 0, 1), evaluate=False), _t >= 0, _t <= 1)),
         correction=corrected(
-            "the length of a vector is the root of its squared coordinates, without any integral: what is "
-            "printed is the "
+            "the length of a vector is the root of its squared coordinates, without any integral: what is printed is "
+            "the "
             "length of the curve that the derivative runs through",
             part(
                 _QUADRATIC,
