@@ -255,4 +255,5 @@ _INDEX = sp.Dummy("index")
 
 
 def _arguments(function: Callable[..., Any]) -> int:
+    """Return how many arguments a recurrence takes."""
     return len(inspect.signature(function).parameters)

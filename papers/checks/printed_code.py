@@ -91,6 +91,12 @@ class Code(sp.Basic):
         return dict(zip(words[::2], words[1::2], strict=True))
 
     @property
+    def printed(self) -> str:
+        """For a reader: the lines, and what is run in the place of words that are no code."""
+        notes = [f"{old}: run as {new}" for old, new in self.replaced.items()]
+        return "\n".join([self.text.strip("\n"), *notes])
+
+    @property
     def source(self) -> str:
         """What is run."""
         text = self.text

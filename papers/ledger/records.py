@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from enum import IntEnum, StrEnum
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeAlias
 
 import sympy as sp
 
@@ -338,6 +338,19 @@ class Claim:
 
 
 @dataclass(frozen=True)
+class Places:
+    """Where the arguments of a function stand: as indices below and above, and between brackets; texts as they are."""
+
+    lower: tuple[Any, ...] = ()
+    upper: tuple[Any, ...] = ()
+    arguments: tuple[Any, ...] = ()
+
+
+# Name of a function -> where its arguments stand; None for the usual brackets.
+Notation: TypeAlias = Mapping[str, Callable[[tuple[Any, ...]], Places | None]]
+
+
+@dataclass(frozen=True)
 class Paper:
     """A loaded paper.
 
@@ -352,6 +365,8 @@ class Paper:
         In the order in which a report tells them; none where the paper's records name none.
     folder : Path
         Where its files are.
+    notation : mapping
+        Name of a function -> where its arguments stand in print.
     """
 
     name: str
@@ -360,6 +375,7 @@ class Paper:
     claims: tuple[Claim, ...]
     causes: tuple[Cause, ...] = ()
     folder: Path = Path()
+    notation: Notation = field(default_factory=dict)
 
     def claim(self, identifier: str) -> Claim:
         """Return the record with this id."""

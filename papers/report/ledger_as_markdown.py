@@ -8,8 +8,8 @@ from typing import Any
 
 from sympy import Equality
 
-from semispline.papers.ledger import Claim, Decision, Formula, Ledger, ReadingDecision, Verdict
-from semispline.papers.report.formulas import latex
+from semispline.papers.ledger import Claim, Decision, Formula, Ledger, Notation, ReadingDecision, Verdict
+from semispline.papers.report.formulas import latex, printed_lines
 from semispline.papers.report.ledger_words import (
     checked_text,
     consequence_text,
@@ -133,48 +133,50 @@ def _erratum(ledger: Ledger) -> Iterator[str]:
     yield from ("## Erratum", "")
     for claim, decision in _pairs(ledger, Verdict.FAILS):
         yield from (f"### {claim.id} ({claim.where})", "")
-        for heading, text in _failure_lines(claim, decision):
+        for heading, text in _failure_lines(claim, decision, ledger.paper.notation):
             yield f"- **{heading}** {text}"
+        for lines in dict.fromkeys(lines for f in claim.formulas for lines in printed_lines(f.relation)):
+            yield from ("", "```text", lines, "```")
         yield ""
 
 
-def _failure_lines(claim: Claim, decision: Decision) -> Iterator[tuple[str, str]]:
+def _failure_lines(claim: Claim, decision: Decision, notation: Notation) -> Iterator[tuple[str, str]]:
     """Yield what is printed, what is wrong, where it shows first, what is true, and what it does if measured."""
-    yield "Printed:", f"{claim.statement} {_formulas(claim.formulas)}".rstrip()
+    yield "Printed:", f"{claim.statement} {_formulas(claim.formulas, notation)}".rstrip()
     minus = (
         "printed minus true" if all(isinstance(f.relation, Equality) for f in claim.formulas) else "left minus right"
     )
     several = len(decision.readings) > 1
-    wrong = "; ".join(_residual_text(reading, minus, several) for reading in decision.readings)
+    wrong = "; ".join(_residual_text(reading, minus, several, notation) for reading in decision.readings)
     yield "Wrong:", f"{wrong}. {claim.remark}".rstrip()
     yield "Smallest counterexample:", decision.counterexample + "."
-    yield "Correct:", _correction(claim, decision)
+    yield "Correct:", _correction(claim, decision, notation)
     if decision.consequence:
         yield "What it does:", consequence_text(decision.consequence)
 
 
-def _correction(claim: Claim, decision: Decision) -> str:
+def _correction(claim: Claim, decision: Decision, notation: Notation) -> str:
     """Return what is true instead, without the formulas that stay as they are printed, and how it was shown."""
     printed = {formula.relation for formula in claim.formulas}
     changed = tuple(formula for formula in claim.corrected_formulas if formula.relation not in printed)
     shown = decision.correction
     proof = f" ({kind_text(shown)}, {checked_text(shown)}.)" if shown else ""
-    return f"{correction_text(claim)} {_formulas(changed or claim.corrected_formulas)}{proof}"
+    return f"{correction_text(claim)} {_formulas(changed or claim.corrected_formulas, notation)}{proof}"
 
 
-def _formulas(formulas: tuple[Formula, ...]) -> str:
-    return "; ".join(dict.fromkeys(_code(formula.relation) for formula in formulas))
+def _formulas(formulas: tuple[Formula, ...], notation: Notation) -> str:
+    return "; ".join(dict.fromkeys(_code(formula.relation, notation) for formula in formulas))
 
 
-def _residual_text(reading: ReadingDecision, minus: str, labelled: bool) -> str:
+def _residual_text(reading: ReadingDecision, minus: str, labelled: bool, notation: Notation) -> str:
     label = f"read with {reading.label}: " if labelled else ""
     if reading.residual is None:
         return f"{label}violated by {reading.false_case} (compared: {reading.method})"
-    return f"{label}{minus} leaves {_code(reading.residual)} ({reading.false_case})"
+    return f"{label}{minus} leaves {_code(reading.residual, notation)} ({reading.false_case})"
 
 
-def _code(relation: Any) -> str:
-    return f"$`{latex(relation)}`$"
+def _code(relation: Any, notation: Notation) -> str:
+    return f"$`{latex(relation, notation)}`$"
 
 
 def _section(ledger: Ledger, verdict: Verdict, heading: str, lines: Any, *, remarked: bool = False) -> Iterator[str]:
@@ -185,13 +187,13 @@ def _section(ledger: Ledger, verdict: Verdict, heading: str, lines: Any, *, rema
     yield from (f"## {heading}", "")
     for claim, decision in pairs:
         yield f"- **{claim.id}** ({claim.where}): {claim.statement}"
-        yield from (f"  - {line}" for line in lines(claim, decision))
+        yield from (f"  - {line}" for line in lines(claim, decision, ledger.paper.notation))
         if claim.remark:
             yield f"  - {claim.remark}"
     yield ""
 
 
-def _conditional_lines(claim: Claim, decision: Decision) -> Iterable[str]:
+def _conditional_lines(claim: Claim, decision: Decision, notation: Notation) -> Iterable[str]:
     for reading in decision.readings:
         yield f"Holds if {reading.condition}: true for {reading.true_case}, false for {reading.false_case}."
     if decision.counterexample:
@@ -199,28 +201,28 @@ def _conditional_lines(claim: Claim, decision: Decision) -> Iterable[str]:
     if decision.consequence:
         yield f"What it does: {consequence_text(decision.consequence)}"
     if claim.correction:
-        yield f"In general: {claim.correction.statement} {_formulas(claim.corrected_formulas)}".rstrip()
+        yield f"In general: {claim.correction.statement} {_formulas(claim.corrected_formulas, notation)}".rstrip()
 
 
-def _ambiguous_lines(claim: Claim, decision: Decision) -> Iterable[str]:
+def _ambiguous_lines(claim: Claim, decision: Decision, notation: Notation) -> Iterable[str]:
     for reading in decision.readings:
         verdict = f"holds if {reading.condition}" if reading.verdict is Verdict.HOLDS_IF else str(reading.verdict)
-        extra = f"; leaves {_code(reading.residual)}" if reading.residual not in (None, 0) else ""
+        extra = f"; leaves {_code(reading.residual, notation)}" if reading.residual not in (None, 0) else ""
         wrong = f" false: {reading.false_case}{extra}" if reading.false_case else ""
         yield f"Read as {reading.label}: **{verdict}**.{wrong} ({kind_text(reading)}, {checked_text(reading)})"
     if decision.counterexample:
         yield f"Smallest counterexample: {decision.counterexample}."
     if claim.correction:
-        yield f"Correct: {_correction(claim, decision)}"
+        yield f"Correct: {_correction(claim, decision, notation)}"
     if decision.consequence:
         yield f"What it does: {consequence_text(decision.consequence)}"
 
 
-def _proof_lines(_claim: Claim, decision: Decision) -> Iterable[str]:
+def _proof_lines(_claim: Claim, decision: Decision, _notation: Notation) -> Iterable[str]:
     for reading in decision.readings:
         label = f"Read as {reading.label}: " if reading.label else ""
         yield f"{label}{kind_text(reading)}, {checked_text(reading)}."
 
 
-def _reason_lines(claim: Claim, _decision: Decision) -> Iterable[str]:
+def _reason_lines(claim: Claim, _decision: Decision, _notation: Notation) -> Iterable[str]:
     return (claim.reason,)

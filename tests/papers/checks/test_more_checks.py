@@ -17,7 +17,7 @@ from semispline.papers.recheck.by_fractions import agrees
 i, n = sp.symbols("i n", integer=True, positive=True)
 x, y, t = sp.symbols("x y t")
 P, B, w = sp.Function("P"), sp.Function("B"), sp.IndexedBase("w")
-LEGENDRE = {P: lambda m, s: sp.legendre(m, s)}
+LEGENDRE = {P: sp.legendre}
 RECURRENCE = {P: lambda m, s: ((2 * m - 1) * s * P(m - 1, s) - (m - 1) * P(m - 2, s)) / m}
 BERNSTEIN = {B: lambda j, d, s: sp.binomial(d, j) * s**j * (1 - s) ** (d - j)}
 
