@@ -96,7 +96,7 @@ class Code(sp.Basic):
     def printed(self) -> Print:
         """For a report: the lines, and what is run in the place of words that are no code."""
         instead = "; ".join(f"{old}: run as {new}" for old, new in self.replaced.items())
-        return Print(self.text.strip("\n"), by_hand=instead)
+        return Print(self.text, by_hand=instead)
 
     def changes(self) -> Iterator[tuple[str, Code]]:
         """Yield code with one sign or number changed."""
