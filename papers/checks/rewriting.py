@@ -131,7 +131,7 @@ class Rewriting:
             self.roots.append(Root(letter, radicand, degree))
         return self._letters[key]
 
-    def _power(self, base: Any, exponent: Any) -> Any:
+    def _power(self, base: Any, exponent: Any) -> Any:  # noqa: PLR0911  # one for each kind of power
         if exponent.is_Integer:
             return self.rational(base) ** exponent
         if exponent.is_Rational:

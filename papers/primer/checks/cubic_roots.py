@@ -57,12 +57,10 @@ def _product(factor: Any, *zeros: Any) -> Any:
 
 HALF, QUARTER = _Q(1, 2), _Q(1, 4)
 KNOWN = (
-    _three(_Q(1, 8), HALF, 1),
-    _three(_Q(-1, 8), HALF, -3),
-    _three(_Q(1, 4), HALF, 2),
-    _three(_Q(-1, 2), _Q(1, 5), 1),
+    # First what is quick: most changes of code show there.
     _one(HALF, _Q(1, 8), QUARTER, 1),
     _one(-HALF, _Q(-1, 8), HALF, -2),
+    _one(HALF, _Q(-1, 8), 0, 1),
     _one(1, _Q(1, 3), HALF, 5),
     # Two of three zeros are the same: the single one first.
     Known(_product(2, QUARTER, _Q(3, 4), _Q(3, 4)), (QUARTER, _Q(3, 4))),
@@ -76,6 +74,10 @@ KNOWN = (
     Known(3 * _t - 1, (_Q(1, 3),)),
     Known(2 * _t + 1, ()),
     Known(sp.Integer(5), ()),
+    _three(_Q(1, 8), HALF, 1),
+    _three(_Q(-1, 8), HALF, -3),
+    _three(_Q(1, 4), HALF, 2),
+    _three(_Q(-1, 2), _Q(1, 5), 1),
     Known(_t**2 - _t + 1, (), real=False),
 )
 

@@ -9,7 +9,7 @@ from typing import Any
 import sympy as sp
 
 from semispline.papers.checks import Code
-from semispline.papers.ledger import Case, Check, CheckFailedError, Formula, mutants
+from semispline.papers.ledger import Case, Check, CheckFailedError, Formula
 from semispline.papers.primer.printed import blocks, replaced
 
 
@@ -58,8 +58,7 @@ def decided_elsewhere(printed: Formula, where: str, mark: str = ", line ") -> Fo
     mark : str
         What the texts of those changes contain; as it stands, all of the code.
     """
-    same = [mutant.text for mutant in mutants(printed) if mark in mutant.text]
-    return replace(printed, equivalent=dict.fromkeys(same, f"decided by {where}"))
+    return replace(printed, equivalent_if=lambda mutant: f"decided by {where}" if mark in mutant.text else "")
 
 
 def open_is_false(check: Check) -> Check:

@@ -69,7 +69,6 @@ CLAIMS = (
             "the loop goes on while k <= n", part(_RUN, _is_sum("control.3", instead={"k<n": "k<=n"}))
         ),
         consequence=_pulled_to_zero,
-        cause="last-term",
     ),
     holds(
         "control.4",

@@ -48,9 +48,7 @@ _CROSSED = "line 5, column 8: 1 for 0"
 def _compared(expected: Any, call: str) -> Formula:
     """Return that the code gives something; which of its changes do not show there is left to the other lines."""
     found = formula(sp.Eq(expected, code_of("intersections.1", call), evaluate=False))
-    return decided_elsewhere(
-        found, "the other lines that the code is run for", *([_CROSSED] if call == _CALL else [])
-    )
+    return decided_elsewhere(found, "the other lines that the code is run for", *([_CROSSED] if call == _CALL else []))
 
 
 CLAIMS = (

@@ -87,6 +87,5 @@ CLAIMS = (
         remark="t has no value. With the derivative at t1 as it is, whose length is not that of the tangent before, "
         "the second reflection does not bring one to the other. With decimals such as 0.1, which a computer rounds, "
         "the sum of the steps may stay below 1, and the code goes one frame too far.",
-        cause="frames",
     ),
 )

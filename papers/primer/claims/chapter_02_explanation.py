@@ -108,7 +108,6 @@ CLAIMS = (
         correction=corrected(
             "the loop goes on while k <= n", part(_RUN, _is_sum("explanation.10", instead={"k<n": "k<=n"}))
         ),
-        cause="last-term",
     ),
     holds(
         "explanation.11",
@@ -121,9 +120,7 @@ CLAIMS = (
             ),
         ),
     ),
-    holds(
-        "explanation.12", "Code for that sum, with the table of binomials.", part(_RUN, _is_sum("explanation.12"))
-    ),
+    holds("explanation.12", "Code for that sum, with the table of binomials.", part(_RUN, _is_sum("explanation.12"))),
     holds(
         "explanation.13",
         "Code for the orders 2 and 3 alone, without a loop.",

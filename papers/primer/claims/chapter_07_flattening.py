@@ -2,18 +2,27 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import sympy as sp
 
 from semispline.papers.checks import code
 from semispline.papers.ledger import Formula, formula, part, reading
-from semispline.papers.primer.checks.running import code_of, decided_elsewhere, weights_of
+from semispline.papers.primer.checks.running import by_powers, code_of, decided_elsewhere, weights_of
 from semispline.papers.primer.writing import ambiguous, holds
 
 _m, _i = sp.symbols("m i", integer=True, positive=True)
 _X, _Y = (sp.Function(name, real=True) for name in "XY")
-_CURVE = {"curve": {"getXValue": _X, "getYValue": _Y}}
+
+
+def _coordinate(name: str) -> Callable[[Any], Any]:
+    """Return a coordinate of any cubic curve."""
+    return lambda s: by_powers(weights_of(4, name), sp.sympify(s))
+
+
+_COORDINATES = {_X: _coordinate("x"), _Y: _coordinate("y")}
+_CURVE = {"curve": {"getXValue": _COORDINATES[_X], "getYValue": _COORDINATES[_Y]}}
 _FROM, _AT = "curve.getXValue(0), curve.getYValue(0)", "curve.getXValue(t), curve.getYValue(t)"
 _IN_PAIRS = {f"[{_FROM}]": f"[[{_FROM}]]", f"push[{_AT}]": f"push([{_AT}])"}
 # How many entries there are, then one of them, and its two numbers.
@@ -21,11 +30,16 @@ _CALL = "row = flattenCurve(curve, m)\n[row.length, row[i][0], row[i][1]]"
 _FLAT_CALL = "flattenCurve(curve, m).length"
 _EACH = [{_m: m, _i: i} for m in (1, 2, 3, 5) for i in range(m + 1)]
 _RUN = code(
-    each=_EACH, given=_CURVE, method="the printed code, run for any curve and 1, 2, 3 and 5 segments: entry by entry"
+    each=_EACH,
+    given=_CURVE,
+    where=_COORDINATES,
+    method="the printed code, run for any cubic curve and 1, 2, 3 and 5 segments: entry by entry",
 )
 
 
-_IN_ROW = code(each={_m: (1, 2, 3, 5)}, given=_CURVE, method="the printed code, run for any curve: how many entries")
+_IN_ROW = code(
+    each={_m: (1, 2, 3, 5)}, given=_CURVE, method="the printed code, run for any cubic curve: how many entries"
+)
 
 
 def _counted() -> Formula:

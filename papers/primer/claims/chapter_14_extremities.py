@@ -81,6 +81,26 @@ def _sums_found(instance: Mapping[Any, Any]) -> Mapping[Any, Any]:
     return {letter: sums[str(letter)] for letter in _SUMS}
 
 
+_LINES = {
+    "line 7, column 7: <= for <": "the cube root of 0 is 0 both ways",
+    "line 60, column 13: <= for <": "the cube root of 0 is 0 both ways",
+    "line 60, column 15: 1 for 0": "the cube root of -x is that of x with the other sign",
+    **dict.fromkeys(
+        (
+            "line 49, column 15: <= for <",
+            "line 49, column 17: 2 for 1",
+            "line 49, column 21: + for -",
+            "line 49, column 22: 2 for 1",
+            "line 49, column 27: >= for >",
+            "line 49, column 28: 2 for 1",
+            "line 49, column 32: 2 for 1",
+        ),
+        "where there are three roots t is between -1 and 1; the conditions only guard against rounding",
+    ),
+}
+_SAME = {
+    f"Eq((count, s1, s2, s3), code([found.length, one, two, three], {place}))": why for place, why in _LINES.items()
+}
 _FINDS_ROOTS = real_zeros_meet(
     code(
         each={_m: range(len(KNOWN))},
@@ -134,11 +154,11 @@ CLAIMS = (
         "it is not quadratic without real zeros",
         part(
             _FINDS_ROOTS,
-            formula(sp.Eq(sp.Tuple(*_SUMS), code_of("extremities.7", _CALL), evaluate=False)),
+            formula(sp.Eq(sp.Tuple(*_SUMS), code_of("extremities.7", _CALL), evaluate=False), equivalent=_SAME),
         ),
         remark="The quadratic branch takes the root of a negative number; where that is a value which no comparison "
-        "accepts, as in some languages, nothing is returned, and that is right. A zero of order three, and a double one "
-        "of a quadratic polynomial, is returned twice.",
+        "accepts, as in some languages, nothing is returned, and that is right. A zero of order three, and a double "
+        "one of a quadratic polynomial, is returned twice.",
     ),
     holds(
         "extremities.8",
