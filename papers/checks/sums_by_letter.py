@@ -87,8 +87,8 @@ class _Rules:
     def __init__(self, letter: Any, n: Any, start: int, where: Where) -> None:
         if not isinstance(letter, sp.Indexed) or len(letter.indices) != 1:
             raise UnsuitableError(f"linear_sums: found {letter}, expected an indexed letter such as w[i]")
-        # An index of its own, which no sum binds.
-        self.index = sp.Symbol(f"{letter.indices[0]}", integer=True)
+        # An index of its own, which no sum binds, whatever the letter of theirs is.
+        self.letter, self.index = letter, sp.Dummy(f"{letter.indices[0]}", integer=True)
         self.unit = letter.base[self.index]
         self.n, self.where = n, where
         self.small = identity(where=where, each={n: range(start, start + _SMALL)})
@@ -133,7 +133,7 @@ class _Rules:
         def between(low: tuple[int, bool], high: tuple[int, bool]) -> bool:
             return not low[1] and high[1]
 
-        yield self._at(sides, self.index, between, f"{self.unit}, every {self.index} that all sums have")
+        yield self._at(sides, self.index, between, f"{self.letter}, every {self.letter.indices[0]} that all sums have")
         for at in range(min(first), bottom + 1):
             yield self._at(sides, sp.Integer(at), lambda low, high, at=at: _has(low, high, at))
         for at in range(top, max(last) + 1):
@@ -166,7 +166,7 @@ class _Rules:
                 else:
                     factors.append(factor)
             if low is None:
-                raise UnsuitableError(f"{side}: found {self.unit} outside of a sum, expected it inside")
+                raise UnsuitableError(f"{side}: found {self.letter} outside of a sum, expected it inside")
             pieces.append(_Piece(sp.Mul(*factors), low, high))
         return pieces
 

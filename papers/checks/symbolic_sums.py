@@ -23,7 +23,7 @@ def coefficient(expression: Any, unit: Any) -> Any:
     expression : Expr
         Sums and products; linear in the letter of `unit`. Terms without that letter count for nothing.
     unit : Indexed or applied function
-        One control point (or curve), with symbols of its own as indices.
+        One control point (or curve), with symbols of its own as indices, which no sum binds.
 
     Raises
     ------
@@ -38,6 +38,9 @@ def coefficient(expression: Any, unit: Any) -> Any:
     f(a)*within(0, a, n)
     """
     if isinstance(expression, sp.Sum):
+        bound = {limit[0] for limit in expression.limits} & set(_indices(unit))
+        if bound:
+            raise ValueError(f"sum: found {bound.pop()} as the index of a sum and of {unit}, expected another letter")
         found = coefficient(expression.function, unit)
         # SymPy lists the innermost limit first.
         for index, low, high in expression.limits:

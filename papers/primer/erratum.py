@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from semispline.papers.ledger import Claim, Decision, Ledger, Verdict
+from semispline.papers.ledger import Claim, Consequence, Decision, Ledger, Verdict
 from semispline.papers.report import Erratum
 
 
@@ -29,11 +29,9 @@ def _lines(ledger: Ledger, version: str) -> Iterator[str]:
     changed = [d.id for d in ledger.decisions if d.verdict is not d.recorded]
     if changed:
         yield from ("", f"**Not as recorded in this run: {', '.join(changed)}.**")
-    told: dict[str, str] = {}
     for number, (cause, decisions) in enumerate(ledger.causes(), start=1):
         yield from ("", f"**{number}. {cause.title}.** {cause.text}", "")
-        for decision in decisions:
-            yield f"- **{decision.id}** {_failure(*pairs[decision.id], told)}"
+        yield from _failures([pairs[decision.id] for decision in decisions])
     yield from ("", "**Right only under a condition, or in one reading**", "")
     conditions: dict[str, list[str]] = {}
     for decision in ledger.decisions:
@@ -43,19 +41,25 @@ def _lines(ledger: Ledger, version: str) -> Iterator[str]:
         yield f"- **{', '.join(identifiers)}** {condition}"
 
 
-def _failure(claim: Claim, decision: Decision, told: dict[str, str]) -> str:
-    """Return what is right, and what was measured unless it was told of another record: text -> its id."""
-    assert claim.correction is not None
-    right = _sentence(claim.correction.statement)
-    found = decision.consequence
+def _failures(pairs: list[tuple[Claim, Decision]]) -> Iterator[str]:
+    """Yield a line for each measured consequence, with all that is put right by it, and one for each other failure."""
+    lines: dict[str, list[tuple[str, str]]] = {}
+    for claim, decision in pairs:
+        assert claim.correction is not None
+        measured = _consequence(decision.consequence)
+        lines.setdefault(measured or claim.id, []).append((claim.id, _sentence(claim.correction.statement)))
+    for measured, told in lines.items():
+        identifiers = ", ".join(identifier for identifier, _ in told)
+        right = " ".join(dict.fromkeys(sentence for _, sentence in told))
+        yield f"- **{identifiers}** {right}{measured if measured.startswith(' ') else ''}"
+
+
+def _consequence(found: Consequence | None) -> str:
+    """Return what was measured; empty where nothing was."""
     if found is None:
-        return right
+        return ""
     numbers = ", ".join(_measured(name, value, found.corrected) for name, value in found.measured.items())
-    measured = f"({found.text}): {numbers}."
-    if measured in told:
-        return f"{right} *Measured* as for {told[measured]}."
-    told[measured] = claim.id
-    return f"{right} *Measured* {measured}"
+    return f" *Measured* ({found.text}): {numbers}."
 
 
 def _measured(name: str, value: float, corrected: Mapping[str, float]) -> str:

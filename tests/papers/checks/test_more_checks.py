@@ -121,6 +121,17 @@ def test_a_sum_that_runs_one_term_too_far_is_seen_at_that_letter():
     assert [case.label for case in cases if not case.true] == ["w[n + 1]"]
 
 
+def test_the_letter_of_an_index_may_be_that_of_the_sums():
+    j, m = sp.symbols("j m", integer=True)
+    check = linear_sums(w[j], m)
+    one = sp.Sum(x**j * w[j], (j, 0, m))
+    assert all(outcome(check, equation(one, sp.Sum(x ** (j - 1) * w[j - 1], (j, 1, m + 1)))))
+    wrong = list(check.cases(equation(one, sp.Sum(x**j * w[j - 1], (j, 1, m + 1)))))
+    assert [case.true for case in wrong] == [False] * 5
+    labels = [case.label for case in check.cases(equation(one, one))]
+    assert "w[j], every j that all sums have" in labels
+
+
 def test_sums_of_another_kind_are_refused():
     for left, right in ((total(w[i] ** 2), total(w[i] ** 2)), (total(w[i], 1, 2 * n), total(w[i], 1, 2 * n))):
         with pytest.raises(UnsuitableError):

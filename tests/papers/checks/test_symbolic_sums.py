@@ -16,3 +16,5 @@ def test_what_multiplies_a_control_point():
     for wrong in (f(i), P[i] ** 2, P[i] * P[j]):
         with pytest.raises(ValueError, match="expected sums and products linear"):
             coefficient(wrong, P[a])
+    with pytest.raises(ValueError, match="found i as the index of a sum"):
+        coefficient(sp.Sum(P[i] * f(i), (i, 0, n)), P[i])
