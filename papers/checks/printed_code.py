@@ -71,6 +71,10 @@ class Code(sp.Basic):
         words = [sp.core.symbol.Str(str(word)) for word in (text, call, note, *(w for pair in pairs for w in pair))]
         return super().__new__(cls, *words)
 
+    def __getnewargs__(self) -> tuple[Any, ...]:
+        """What it is made from, for a process that gets it from another one."""
+        return self.text, self.call, self.replaced, self.note
+
     @property
     def text(self) -> str:
         """As printed."""

@@ -34,6 +34,8 @@ CLAIMS = (
         reading("rounded to four places", part(digits("rounded"), pr.PI)),
         reading("cut off after four places", part(digits("cut"), pr.PI)),
     ),
+    # A formula that was read from LaTeX is shown as it is printed, and as it was read.
+    holds("eq-3", "Section 1", "The first n odd numbers add up to n^2.", part(SUMS, pr.ODD), printed=pr.ODD_PRINT),
     # Begin a new one as a draft, which needs no verdict: import `draft` as well, and write
-    # draft("eq-3", "Section 2", "What is claimed.", part(identity(), pr.YOURS)),
+    # draft("eq-4", "Section 2", "What is claimed.", part(identity(), pr.YOURS)),
 )

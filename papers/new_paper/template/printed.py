@@ -7,7 +7,8 @@ both sides of an equation as they are.
 from sympy import Eq, Sum, pi, symbols
 
 from semispline.papers.checks import Digits
-from semispline.papers.ledger import formula
+from semispline.papers.latex import echo, read_formula, read_names, relations
+from semispline.papers.ledger import Print, formula
 
 # One symbol for each letter of the paper, with what the paper says of it.
 i, n = symbols("i n", integer=True, positive=True)
@@ -21,3 +22,13 @@ CUBES_RIGHT = formula(Eq(Sum(i**3, (i, 1, n)), n**2 * (n + 1) ** 2 / 4, evaluate
 
 # A number, with the digits that are printed.
 PI = formula(Eq(pi, Digits("3.1415"), evaluate=False))
+
+# (3) A formula as LaTeX: it is read against a table of what each name is, and refused where it has two readings. These
+# letters are those above, since they are of the same kind.
+NAMES = read_names("i, n : integer >= 1")
+ODD_LATEX = r"\sum_{i=1}^{n} (2i - 1) = n^2"
+ODD_READ = read_formula(ODD_LATEX, NAMES.of("eq-3"), "printed.py: ODD_LATEX")
+(STEP,) = relations(ODD_READ)
+ODD = formula(Eq(STEP.left, STEP.right, evaluate=False))
+# What a report shows: the LaTeX, and beside it what was read.
+ODD_PRINT = Print(ODD_LATEX, echo(ODD_READ.statements, ODD_READ.names))

@@ -1,5 +1,7 @@
 """Printed code against formulas: as it stands, whatever it does, and with each sign and number mistaken in turn."""
 
+import pickle
+
 import pytest
 import sympy as sp
 
@@ -117,3 +119,9 @@ def test_words_that_are_no_code_are_replaced_openly():
 def test_a_formula_without_code_is_refused():
     with pytest.raises(UnsuitableError, match="found no code"):
         list(code().cases(formula(sp.Eq(x, t))))
+
+
+def test_code_travels_between_processes():
+    made = Code("f(n):\n  return clone n", "f(n)", {"clone n": "n"}, "line 2")
+    again = pickle.loads(pickle.dumps(made))
+    assert (again, again.replaced, again.note) == (made, {"clone n": "n"}, "line 2")

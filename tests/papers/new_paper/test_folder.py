@@ -21,10 +21,11 @@ def test_a_new_paper_holds_fails_and_is_ambiguous(tmp_path):
     assert {path.name for path in folder.iterdir()} == {"__init__.py", "printed.py", "claims.py"}
     ledger = verify(str(folder), workers=1)
     assert ledger.paper.title == 'On "sums" \\ and more (doi 10.1000/182)'
-    assert [str(d.verdict) for d in ledger.decisions] == ["holds", "fails", "ambiguous"]
+    assert [str(d.verdict) for d in ledger.decisions] == ["holds", "fails", "ambiguous", "holds"]
     assert ledger.ok
     assert ledger.decisions[1].counterexample == "n = 1: printed 1/2, true 1"
     assert all(decision.mutation.tried for decision in ledger.decisions)
+    assert ledger.paper.claims[3].printed.echo == r"\sum_{i = 1}^{n} \left( 2 \cdot i - 1 \right) = n^{2}"
 
 
 def test_a_new_paper_without_a_title_is_the_sample(tmp_path):
@@ -40,7 +41,7 @@ def test_every_verdict_of_a_new_paper_is_repeated_by_pari(tmp_path):
     result = run("verify", tmp_path / "a", "--recheck", "pari", "--json", tmp_path / "l.json")
     assert result.exit_code == 0, result.output
     counts = json.loads((tmp_path / "l.json").read_text())["counts"]
-    assert counts["rechecked"] == 3
+    assert counts["rechecked"] == 4
     assert counts["identities_agreed"] == counts["identities_exported"] > 10
 
 

@@ -28,6 +28,9 @@ def test_the_code_of_the_page_runs(names):
     assert examine(claim).amounts_to is Verdict.HOLDS
     powers = names["DECIDES"].cases(names["POWER"])
     assert [case.true for case in powers] == [True] * 6
+    odd = names["draft"]("eq-3", "Section 1", "so", names["part"](names["SUMS"], names["ODD"]))
+    assert examine(odd).amounts_to is Verdict.HOLDS
+    assert names["SHOWN"].echo.endswith("= n^{2}")
     assert list(names["ROOT"].equivalent) == ["Eq(y, -x)"]
 
 
