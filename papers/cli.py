@@ -9,6 +9,7 @@ import os
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from copy import copy
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -66,10 +67,11 @@ def verify_command(
         typer.Option(metavar="FILE", help="Write two pages for a reader of the paper, their picture beside them."),
     ] = None,
     recheck: Annotated[
-        str | None, typer.Option(metavar="SYSTEM", help="Have a second system, pari, repeat what verdicts rest on.")
+        list[str] | None,
+        typer.Option(metavar="SYSTEM", help="Have pari, or the kernel of coq, repeat what verdicts rest on; twice for both."),
     ] = None,
     certificates: Annotated[
-        str | None, typer.Option(metavar="DIR", help="Write what verdicts rest on, for PARI alone: gp -q check.gp.")
+        str | None, typer.Option(metavar="DIR", help="Write what verdicts rest on, for PARI and for Coq alone.")
     ] = None,
 ) -> None:
     """Decide every claim of a paper anew; exit status 1 if a verdict is not the recorded one, 3 if one is missing."""
@@ -82,12 +84,12 @@ def verify_command(
     check_outputs(outputs, paper_files(paper))
     if erratum is not None:
         require_erratum(paper)
-    if recheck is not None:
-        require_system(recheck)
+    for system in recheck or ():
+        require_system(system)
     if certificates is not None:
         require_folder(certificates)
     ledger = decided(paper)
-    second = _second_system(ledger, recheck, certificates) if recheck or certificates else None
+    second = _second_systems(ledger, recheck or [], certificates) if recheck or certificates else None
     if json_file == "-":
         typer.echo(to_text(ledger_record(ledger, second)), nl=False)
     elif json_file is not None:
@@ -108,25 +110,33 @@ def verify_command(
     _end_as(ledger, agrees=second is None or second.agrees)
 
 
-def _second_system(ledger: Ledger, system: str | None, folder: str | None) -> Recheck:
+def _second_systems(ledger: Ledger, systems: list[str], folder: str | None) -> Recheck:
     """Export what the verdicts of a ledger rest on, write it where asked, and have it repeated where asked."""
-    from semispline.papers.recheck import Recheck, exported, rechecked, write_certificates
+    from semispline.papers.recheck import Recheck, exported, kernel_checked, rechecked, write_certificates
 
     export = exported(ledger.paper)
     if folder is not None:
         write_certificates(folder, export)
-    return rechecked(export, folder) if system is not None else Recheck(export)
+    found = rechecked(export, folder) if "pari" in systems else Recheck(export)
+    return replace(found, kernel=kernel_checked(export, folder)) if "coq" in systems else found
 
 
 def recheck_text(second: Recheck) -> str:
-    """Return in one line what was exported and what the second system agrees on."""
+    """Return what was exported, and what second systems agree on, one line for each."""
     counts = second.counts()
     done = (
         f", {counts['identities_agreed']} agreed; {counts['rechecked']} records rechecked as a whole"
         if second.refused is not None
         else ""
     )
-    return f"{counts['identities_exported']} identities exported{done}; {counts['not_expressible']} not expressible"
+    lines = [f"{counts['identities_exported']} identities exported{done}; {counts['not_expressible']} not expressible"]
+    if second.kernel is not None:
+        lines.append(
+            f"Coq {second.kernel.kernel.version}: {counts['kernel_identities']} identities, {counts['kernel_statements']} "
+            f"statements accepted; {counts['kernel_checked']} records checked as a whole, "
+            f"{counts['kernel_inexpressible']} not expressible"
+        )
+    return "\n".join(lines)
 
 
 @app.command("reproduce")

@@ -9,8 +9,9 @@ from functools import cache
 from importlib.resources import files
 from pathlib import Path
 
-from semispline.papers.recheck.coq_lemmas import NotForCoqError, lemma
+from semispline.papers.recheck.coq_lemmas import lemma
 from semispline.papers.recheck.gp import CONTROLS, statement_id
+from semispline.papers.recheck.roots import NotForCoqError
 from semispline.papers.recheck.statements import Export, Statement
 
 LIBRARY = "Semispline"
@@ -48,12 +49,15 @@ class CoqFile:
     blocks : tuple of Block
     cited : tuple of str
         Theorems of hand-written sources.
+    over_reals : bool
+        Whether the axioms of the library's real numbers are allowed.
     """
 
     name: str
     needed: tuple[str, ...]
     blocks: tuple[Block, ...] = ()
     cited: tuple[str, ...] = ()
+    over_reals: bool = False
 
     @property
     def asked(self) -> tuple[str, ...]:
@@ -69,7 +73,8 @@ class CoqFile:
 
     @property
     def _head(self) -> str:
-        return f"From {LIBRARY} Require Import {' '.join(self.needed)}.\nOpen Scope Q_scope.\n\n"
+        scope = "" if self.over_reals else "Open Scope Q_scope.\n"
+        return f"From {LIBRARY} Require Import {' '.join(self.needed)}.\n{scope}\n"
 
     def block_at(self, line: int) -> Block | None:
         """Return the block that a line stands in."""
@@ -154,7 +159,7 @@ def coq_folder(export: Export) -> CoqFolder:
         else:
             title = f"(* {_comment(identifier)}{_flags(case)} *)\n"
             blocks[text] = Block((identifier,), name, f"{title}Lemma {name} : {text}\n\n")
-    return CoqFolder((*_grouped(blocks.values()), *_citing(export)), without)
+    return CoqFolder((*_grouped(blocks.values()), *_theories(export), *_citing(export)), without)
 
 
 def _grouped(blocks: Iterable[Block]) -> Iterator[CoqFile]:
@@ -171,11 +176,18 @@ def _grouped(blocks: Iterable[Block]) -> Iterator[CoqFile]:
             size += len(block.text)
 
 
+def _theories(export: Export) -> Iterator[CoqFile]:
+    """Yield a file for each theorem that is generated as a whole."""
+    for theory in export.theories:
+        block = Block((theory.title,), theory.name, f"(* {_comment(theory.title)} *)\n{theory.text}\n")
+        yield CoqFile(theory.name.capitalize(), theory.needed, (block,), over_reals=theory.over_reals)
+
+
 def _citing(export: Export) -> Iterator[CoqFile]:
     """Yield the file that asks what the cited theorems rest on."""
     cited = tuple(dict.fromkeys(name for names in export.theorems.values() for name in names))
     if cited:
-        yield CoqFile(CITED, tuple(dict.fromkeys(name.partition(".")[0] for name in cited)), (), cited)
+        yield CoqFile(CITED, tuple(dict.fromkeys(name.partition(".")[0] for name in cited)), (), cited, over_reals=True)
 
 
 def write_coq(folder: CoqFolder, place: Path) -> list[Path]:

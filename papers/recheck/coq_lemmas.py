@@ -11,10 +11,9 @@ from collections.abc import Callable, Iterable, Sequence
 from fractions import Fraction
 from typing import Any
 
-import numpy as np
-
 from semispline.papers.recheck.arithmetic import instance, value
 from semispline.papers.recheck.gp import term_text
+from semispline.papers.recheck.roots import NotForCoqError, Rows, whole_root
 from semispline.papers.recheck.statements import (
     Contained,
     Identity,
@@ -25,15 +24,7 @@ from semispline.papers.recheck.statements import (
     Statement,
     Term,
 )
-from semispline.solver.errors import InputError
 
-Rows = Sequence[Sequence[Fraction]]
-# How many bits a square root of a matrix may have.
-_BITS = range(8, 129, 8)
-
-
-class NotForCoqError(InputError):
-    """A statement for which no proof could be written."""
 
 
 def lemma(statement: Statement) -> str:
@@ -160,37 +151,10 @@ def _contained(statement: Contained) -> tuple[str, str]:
 
 def _minimum(statement: Minimum) -> tuple[str, str]:
     entries = _numbers(statement.matrix)
-    scale, factor = _whole_factor(statement.label, entries)
+    scale, factor = whole_root(entries)
     whole = "[" + ";\n ".join("[" + "; ".join(f"({x})%Z" for x in row) + "]" for row in factor) + "]"
     stated = f"positive_definite {len(entries)} {numbers(entries)}"
     return stated, f"apply (definite_by _ {scale} _ {whole}). by_numbers."
-
-
-def _whole_factor(label: str, entries: Rows) -> tuple[int, list[list[int]]]:
-    """Return s and F with s A = F F^T + E, whose diagonal outweighs the rest of each row of E."""
-    a = np.array([[float(x) for x in row] for row in entries])
-    diagonal = np.diag(a)
-    if np.any(diagonal <= 0):
-        raise NotForCoqError(f"{label}: found a diagonal entry that is not positive")
-    scaled = a / np.sqrt(np.outer(diagonal, diagonal))
-    margin = float(np.linalg.eigvalsh(scaled)[0]) / 2
-    if margin <= 0:
-        raise NotForCoqError(f"{label}: found a least eigenvalue of {2 * margin}, expected a positive one")
-    lower = np.linalg.cholesky(a - margin * np.diag(diagonal))
-    for bits in _BITS:
-        factor = [[round(Fraction(float(x)) * 2**bits) for x in row[: i + 1]] for i, row in enumerate(lower)]
-        if _outweighs(entries, 4**bits, factor):
-            return 4**bits, factor
-    raise NotForCoqError(f"{label}: found no square root of whole numbers that is near enough")
-
-
-def _outweighs(entries: Rows, scale: int, factor: Sequence[Sequence[int]]) -> bool:
-    for i, row in enumerate(entries):
-        rest = [abs(scale * x - sum(map(int.__mul__, factor[i], factor[j]))) for j, x in enumerate(row)]
-        own = scale * row[i] - sum(x * x for x in factor[i])
-        if own <= sum(rest) - rest[i]:
-            return False
-    return True
 
 
 def _knots(statement: Knots) -> tuple[str, str]:

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 from semispline.papers.ledger import Claim, LedgerError, Paper
-from semispline.papers.recheck.statements import Certificate, Export, Reading, Statement
+from semispline.papers.recheck.statements import Certificate, Export, Reading, Statement, Theory
 
 
 @dataclass(frozen=True)
@@ -47,8 +47,13 @@ def export_of(
     drafts: Drafts,
     not_expressible: Mapping[str, str],
     controls: Callable[[], Iterable[Statement]] = tuple,
+    theorems: Mapping[str, tuple[str, ...]] | None = None,
+    theories: Callable[[], Iterable[Theory]] = tuple,
 ) -> Export:
     """Return the export of a paper; a decided record with neither a draft nor a reason has `UNWRITTEN` for one.
+
+    `theorems` says which theorems of `derivations/coq` stand for a sentence that is believed, or prove a record;
+    `theories` are theorems that are generated as a whole.
 
     Raises
     ------
@@ -63,7 +68,9 @@ def export_of(
             f"certificate {both[0]}: found statements and a reason why there are none, expected one of them"
         )
     reasons = {c.id: not_expressible.get(c.id, UNWRITTEN) for c in decided if c.id not in drafts}
-    return Export(paper.name, tuple(certificates), tuple(controls()), reasons)
+    return Export(
+        paper.name, tuple(certificates), tuple(controls()), reasons, dict(theorems or {}), tuple(theories())
+    )
 
 
 def _certificate(claim: Claim, draft: Draft) -> Certificate:

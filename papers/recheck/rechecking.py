@@ -14,12 +14,14 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 from semispline.papers.ledger import CheckFailedError, Paper, paper_names
+from semispline.papers.recheck.coqc import require_coqc
 from semispline.papers.recheck.draft import is_decided
 from semispline.papers.recheck.files import write_certificates
+from semispline.papers.recheck.kernel import KernelCheck
 from semispline.papers.recheck.statements import Export, Identity
 from semispline.solver.errors import OptionError
 
-SYSTEMS = ("pari",)
+SYSTEMS = ("pari", "coq")
 _SECONDS = 600
 
 
@@ -34,16 +36,19 @@ class Recheck:
         Record -> statements with which it disagrees; None where it was not asked.
     verdicts : mapping
         Record -> the verdict that was made anew from its cases.
+    kernel : KernelCheck or None
+        What the kernel of Coq said; None where it was not asked.
     """
 
     export: Export
     refused: Mapping[str, tuple[str, ...]] | None = None
     verdicts: Mapping[str, str | None] | None = None
+    kernel: KernelCheck | None = None
 
     @property
     def agrees(self) -> bool:
         """Whether nothing was refused, and every verdict is the recorded one."""
-        return not self.refused and not self.changed
+        return not self.refused and not self.changed and not (self.kernel and self.kernel.problems)
 
     @property
     def changed(self) -> tuple[str, ...]:
@@ -63,6 +68,7 @@ class Recheck:
         recorded = {c.id: c.verdict for c in self.export.certificates}
         return (
             *refused,
+            *(self.kernel.problems if self.kernel else ()),
             *(f"recheck: {i}: the cases amount to {verdicts[i]}, recorded {recorded[i]}" for i in self.changed),
         )
 
@@ -106,6 +112,7 @@ class Recheck:
             "rechecked": sum(self.is_whole(c.id) for c in self.export.certificates),
             "not_expressible": len(self.export.not_expressible)
             + sum(bool(c.left_out) for c in self.export.certificates),
+            **(self.kernel.counts() if self.kernel else {}),
         }
 
     def reasons(self) -> dict[str, str]:
@@ -124,6 +131,7 @@ class Recheck:
             "whole": self.is_whole(identifier),
             "not_expressible": reason,
             "believed": list(found.believed) if found else [],
+            **({"kernel": self.kernel.record(identifier)} if self.kernel else {}),
         }
 
 
@@ -147,6 +155,9 @@ def require_system(system: str) -> None:
     """
     if system not in SYSTEMS:
         raise OptionError(f"--recheck: found {system!r}, expected one of {', '.join(SYSTEMS)}")
+    if system == "coq":
+        require_coqc()
+        return
     if importlib.util.find_spec("cypari") is None:
         raise OptionError("--recheck pari: found no cypari, expected it installed: pip install 'semispline[recheck]'")
 

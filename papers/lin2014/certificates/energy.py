@@ -39,7 +39,9 @@ from semispline.papers.recheck import (
 )
 
 NO_ENERGY = "the integral of a square vanishes only where the function does; basis functions are independent"
+LEAST = "the least energy of a strip is at the solution of its normal equation"
 CURVATURES = "principal curvatures are the eigenvalues of [P_uu, P_uv; P_uv, P_vv] where lengths and angles are kept"
+UNROLLED = "the sums are unrolled for three pairs of counts; more terms are alike"
 FUBINI = "the integral of a function of u times one of v is a product of integrals"
 
 
@@ -257,7 +259,7 @@ def normal_equation(order: int) -> Callable[[Claim], Draft]:
                 left, right = (interpret(side, Meaning(numbers, functions)) for side in relation.args)
                 label = f"{free} free and {known} known control points, row {r}: half the slope of the energy"
                 cases.append(identity(label, slope, left - right))
-        believed = (INDUCTION, NO_ENERGY, "the sums are unrolled for three pairs of counts; more terms are alike")
+        believed = (INDUCTION, NO_ENERGY, UNROLLED)
         return Draft([[*cases, *one_minimum(order)]], believed=believed)
 
     return draft
@@ -452,7 +454,7 @@ def fewer_rows(claim: Claim) -> Draft:
             where=(("x", "-g/h"),),
         )
     )
-    return Draft([cases], correction, ("the least energy of a strip is at the solution of its normal equation",))
+    return Draft([cases], correction, (LEAST,))
 
 
 def _squares(expression: Any) -> list[Term]:

@@ -13,9 +13,11 @@ from semispline.papers.lin2014.certificates import (
     counts,
     energy,
     figures,
+    least_energy,
     many_rows,
     others,
     surfaces,
+    theorems,
     written_anew,
 )
 from semispline.papers.recheck import Export, export_of
@@ -37,6 +39,6 @@ MODULES = (
 
 
 def export(paper: Paper) -> Export:
-    """Return the certificates of all decided records, and reasons for those that have none."""
+    """Return the certificates of all decided records, reasons for those that have none, and theorems they cite."""
     drafts = {identifier: draft for module in MODULES for identifier, draft in module.DRAFTS.items()}
-    return export_of(paper, drafts, others.NOT_EXPRESSIBLE, controls.controls)
+    return export_of(paper, drafts, others.NOT_EXPRESSIBLE, controls.controls, theorems.THEOREMS, least_energy.theories)

@@ -10,7 +10,7 @@ import sympy as sp
 
 from semispline.derivations.splines import end_derivatives
 from semispline.papers.ledger import Claim, Formula, clamped, given
-from semispline.papers.lin2014.certificates.energy import NO_ENERGY, fewer_rows, one_minimum
+from semispline.papers.lin2014.certificates.energy import LEAST, NO_ENERGY, fewer_rows, one_minimum
 from semispline.papers.lin2014.certificates.surfaces import INDUCTION, SPACES, spaces
 from semispline.papers.lin2014.checks import energy
 from semispline.papers.lin2014.checks import facing_bases as facing
@@ -35,7 +35,6 @@ CUBICS = (
     "H'' (f - H)'' is zero, by parts, since H'''' is"
 )
 LAYER = "middle rows give nothing in a direction that is orthogonal to all splines over the averaged knots"
-LEAST = "the least energy of a strip is at the solution of its normal equation"
 
 # A clamped cubic with spans of length 1; those of length h have h times the integrals of functions over spans.
 _UNIT = [Fraction(max(i - 3, 0)) for i in range(11)]

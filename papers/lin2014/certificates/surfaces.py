@@ -41,6 +41,7 @@ INDUCTION = (
     "the recurrence carries what is stated of one order to the next one, and functions of order 1 are 1 on one span"
 )
 SPACES = "splines that agree at more points of each span than a polynomial of their order has coefficients are the same"
+SLOPE = "((t + g)/g)^p has the slope p/g where t is 0"
 U, V = Text("u"), Text("v")
 _AT = ((Fraction(2, 7), Fraction(3, 7)), (Fraction(4, 5), Fraction(1, 9)))
 
@@ -462,7 +463,7 @@ def continuity_control(_: Claim) -> Draft:
                 where=[*lets.pairs, *other.pairs],
             )
         )
-    return Draft([cases], believed=(INDUCTION, "((t + g)/g)^p has the slope p/g where t is 0"))
+    return Draft([cases], believed=(INDUCTION, SLOPE))
 
 
 def row_differences(_: Claim) -> Draft:

@@ -1,0 +1,105 @@
+"""Theorems of `derivations/coq` that stand for what certificates believe, and that prove records from the definition."""
+
+from __future__ import annotations
+
+from semispline.papers.lin2014.certificates import (
+    appendix,
+    bezier,
+    contact,
+    counts,
+    energy,
+    many_rows,
+    others,
+    surfaces,
+    written_anew,
+)
+
+_DIVISION = (
+    "Division.de_casteljau",
+    "Division.formula_of_Q",
+    "Division.equation_6_bottom",
+    "Division.equation_6_top",
+    "Division.equation_5_abscissa",
+)
+# What is believed, by its sentence.
+SENTENCES = {
+    contact.INDUCTION: (
+        "EndDerivatives.start_derivative_is",
+        "EndDerivatives.end_derivatives",
+        "EndDerivatives.first_derivative",
+        "EndDerivatives.second_derivative",
+        "Mirror.end_derivative_iff",
+    ),
+    surfaces.INDUCTION: (
+        "BSplines.local_support",
+        "BSplines.non_negative",
+        "BSplines.partition_of_unity",
+        "Derivatives.cox_derivative",
+        "Derivatives.spline_derivative",
+        "Insertion.insertion",
+        "Smoothness.smooth_at_a_knot",
+        "Smoothness.no_smoother",
+    ),
+    surfaces.UNROLLED: ("Surfaces.de_boor", "Surfaces.equation_3", "Surfaces.classical"),
+    surfaces.SPACES: ("Polynomials.same_on_span",),
+    surfaces.SLOPE: ("Energy.slope_of_power",),
+    counts.STEPS: ("BSplines.own_knots", "BSplines.local_support", "BSplines.positive_inside"),
+    counts.DEGREE: ("Division.degree_of_Q",),
+    bezier.UNROLLED: _DIVISION,
+    bezier.BINOMIALS: ("Division.bern_step", "Division.bern_product"),
+    energy.NO_ENERGY: ("Energy.zero_energy", "Independence.independent"),
+    energy.FUBINI: ("Energy.product_of_integrals",),
+    energy.CURVATURES: ("Geometry.principal_curvatures", "Geometry.principal_curvatures_exist"),
+    energy.UNROLLED: ("Energy.half_slope",),
+    energy.LEAST: ("Energy.least_energy",),
+    many_rows.CUBICS: ("Energy.cubic_is_least",),
+    appendix.PLANES: ("Geometry.one_tangent_plane",),
+    appendix.FORMS: ("Geometry.curvatures_agree",),
+    others.POWERS: ("Energy.powers_taken_away",),
+    others.NO_SINE: ("Polynomials.no_rational_solution",),
+    others.CIRCLE: ("Polynomials.none_on_a_circle",),
+    others.LIMIT: ("Energy.slope_not_positive",),
+    written_anew.BOEHM: ("Insertion.same_curve",),
+}
+# Records that a theorem decides from the definition of B-splines, with nothing in between.
+RECORDS = {
+    "eq-1": ("Surfaces.de_boor", "Surfaces.equation_3"),
+    "eq-3": ("Surfaces.equation_3",),
+    "sec-1.generalisation": ("Surfaces.classical",),
+    "sec-2.convex-hull": ("Surfaces.convex_hull", "Surfaces.weights_add_up", "Surfaces.weights_non_negative"),
+    "sec-2.affine-invariance": ("Surfaces.affine_invariance",),
+    "sec-2.localness": ("Surfaces.locality",),
+    "sec-2.continuity-control": ("Smoothness.smooth_at_a_knot", "Smoothness.no_smoother", "Smoothness.piece_end_is"),
+    "sec-2.transformation": ("Insertion.same_curve",),
+    "sec-2.derivatives-classical": ("Derivatives.spline_derivative",),
+    "eq-4": ("Division.de_casteljau",),
+    "eq-5": ("Division.equation_5_abscissa", "Division.bernstein_sum"),
+    "eq-6": ("Division.equation_6_bottom", "Division.equation_6_top"),
+    "sec-2.q-formula": ("Division.formula_of_Q", "Division.degree_of_Q"),
+    "cond-1.1": ("Contact.condition_1_1", "Surfaces.contact_of_surfaces"),
+    "cond-2.1": ("Contact.condition_2_1", "Printed.equation_2_1", "Surfaces.contact_of_surfaces"),
+    "cond-2.2": ("Mirror.condition_2_2", "Printed.printed_2_2_cubic", "Printed.printed_2_2_refuted"),
+    "cond-3.1": (
+        "Contact.condition_3_1",
+        "Printed.printed_3_1_iff",
+        "Printed.printed_3_1_squares_iff",
+        "Printed.printed_3_1_refuted",
+        "Printed.printed_3_1_squares_refuted",
+        "Printed.printed_3_1_curvature",
+        "Printed.printed_3_1_squares_curvature",
+        "Printed.a_ruled_base_exists",
+    ),
+    "cond-3.2": (
+        "Mirror.condition_3_2",
+        "Printed.printed_3_2_iff",
+        "Printed.printed_3_2_squares_iff",
+        "Printed.printed_3_2_refuted",
+        "Printed.printed_3_2_squares_refuted",
+    ),
+    "eq-15": ("Geometry.one_tangent_plane",),
+    "eq-17": ("Printed.printed_17_iff", "Printed.printed_17_refuted"),
+    "sec-A.17-gives-2.1": ("Printed.printed_17_iff", "Printed.printed_17_refuted"),
+    "app-d1": ("EndDerivatives.first_derivative", "EndDerivatives.start_derivative_iff"),
+    "app-d2": ("EndDerivatives.second_derivative", "EndDerivatives.start_derivative_iff"),
+}
+THEOREMS = SENTENCES | RECORDS
