@@ -68,7 +68,9 @@ def verify_command(
     ] = None,
     recheck: Annotated[
         list[str] | None,
-        typer.Option(metavar="SYSTEM", help="Have pari, or the kernel of coq, repeat what verdicts rest on; twice for both."),
+        typer.Option(
+            metavar="SYSTEM", help="Have pari, or the kernel of coq, repeat what verdicts rest on; twice for both."
+        ),
     ] = None,
     certificates: Annotated[
         str | None, typer.Option(metavar="DIR", help="Write what verdicts rest on, for PARI and for Coq alone.")

@@ -139,7 +139,9 @@ def _file(
     parts = [_sum(part, factor) for part in sums]
     (a_low, a_high), (b_low, b_high) = box
     a, b = ((low + high) / 2 + (high - low) / 2 * x for (low, high), x in zip(box, at, strict=True))
-    polynomial = " + ".join(f"{_real(c)}{_monomial(i, j)}" for i, row in enumerate(table) for j, c in enumerate(row) if c)
+    polynomial = " + ".join(
+        f"{_real(c)}{_monomial(i, j)}" for i, row in enumerate(table) for j, c in enumerate(row) if c
+    )
     return f"""Definition {name}_polynomial (s t : R) : R :=
   {polynomial}.
 Definition {name}_middle_a := {_real((a_low + a_high) / 2)}.

@@ -9,7 +9,7 @@ from functools import cache
 from importlib.resources import files
 from pathlib import Path
 
-from semispline.papers.recheck.coq_lemmas import lemma
+from semispline.papers.recheck.coq_lemmas import lemma, met
 from semispline.papers.recheck.gp import CONTROLS, statement_id
 from semispline.papers.recheck.roots import NotForCoqError
 from semispline.papers.recheck.statements import Export, Statement
@@ -28,11 +28,13 @@ class Block:
     ----------
     ids : tuple of str
         The statements that it proves, which differ in nothing but their names.
-    name, text : str
+    names : tuple of str
+        Of the lemma, and of one that says that its premises can be fulfilled.
+    text : str
     """
 
     ids: tuple[str, ...]
-    name: str
+    names: tuple[str, ...]
     text: str
 
 
@@ -62,7 +64,7 @@ class CoqFile:
     @property
     def asked(self) -> tuple[str, ...]:
         """Names whose assumptions are printed at the end, all at once."""
-        return (*(block.name for block in self.blocks), *self.cited)
+        return (*(name for block in self.blocks for name in block.names), *self.cited)
 
     @property
     def text(self) -> str:
@@ -157,8 +159,11 @@ def coq_folder(export: Export) -> CoqFolder:
         if known is not None:
             blocks[text] = replace(known, ids=(*known.ids, identifier))
         else:
-            title = f"(* {_comment(identifier)}{_flags(case)} *)\n"
-            blocks[text] = Block((identifier,), name, f"{title}Lemma {name} : {text}\n\n")
+            lines = [f"(* {_comment(identifier)}{_flags(case)} *)", f"Lemma {name} : {text}"]
+            premises = met(case)
+            names = (name,) if premises is None else (name, f"{name}_met")
+            lines += [] if premises is None else [f"Lemma {name}_met : {premises}"]
+            blocks[text] = Block((identifier,), names, "\n".join(lines) + "\n\n")
     return CoqFolder((*_grouped(blocks.values()), *_theories(export), *_citing(export)), without)
 
 
@@ -179,7 +184,7 @@ def _grouped(blocks: Iterable[Block]) -> Iterator[CoqFile]:
 def _theories(export: Export) -> Iterator[CoqFile]:
     """Yield a file for each theorem that is generated as a whole."""
     for theory in export.theories:
-        block = Block((theory.title,), theory.name, f"(* {_comment(theory.title)} *)\n{theory.text}\n")
+        block = Block((theory.title,), (theory.name,), f"(* {_comment(theory.title)} *)\n{theory.text}\n")
         yield CoqFile(theory.name.capitalize(), theory.needed, (block,), over_reals=theory.over_reals)
 
 
@@ -195,7 +200,9 @@ def write_coq(folder: CoqFolder, place: Path) -> list[Path]:
     sources = needed_sources(folder) | {file.name: file.text for file in folder.files}
     texts = {f"{name}.v": text for name, text in sources.items()}
     texts["order"] = "".join(f"{name}\n" for name in sources)
-    texts["check.sh"] = f"# sh check.sh: silent but for what each file rests on; the status is 0 where Coq accepts all.\n{_LOOP}"
+    texts["check.sh"] = (
+        f"# sh check.sh: silent but for what each file rests on; the status is 0 where Coq accepts all.\n{_LOOP}"
+    )
     place.mkdir(parents=True, exist_ok=True)
     for name, text in texts.items():
         (place / name).write_text(text, encoding="utf-8")

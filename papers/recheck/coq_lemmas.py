@@ -26,7 +26,6 @@ from semispline.papers.recheck.statements import (
 )
 
 
-
 def lemma(statement: Statement) -> str:
     """Return what follows the name of a lemma: its statement and its proof.
 
@@ -44,6 +43,23 @@ def lemma(statement: Statement) -> str:
     """
     stated, proof = _BY_FORM[statement.form](statement)
     return f"{stated}.\nProof. {proof} Qed."
+
+
+def met(statement: Statement) -> str | None:
+    """Return the lemma that numbers fulfil the premises of another lemma, so that it says something; None without any.
+
+    Examples
+    --------
+    >>> print(met(Identity(label="a", left="x/x", right="1", variables=("x",), nonzero=("x",), at=(("x", "2"),))))
+    exists (x : number), ~ x == 0.
+    Proof. exists (2#1). repeat split; by_numbers. Qed.
+    """
+    premises = [*_signs(statement), *_not_zero(statement)] if isinstance(statement, Positive) else _not_zero(statement)
+    if not premises or (isinstance(statement, Identity) and not statement.equal):
+        return None
+    numbers_ = ", ".join(number(Fraction(x)) for _, x in statement.at)
+    stated = f"exists ({' '.join(statement.variables)} : number), " + " /\\ ".join(premises)
+    return f"{stated}.\nProof. exists {numbers_}. repeat split; by_numbers. Qed."
 
 
 def _expression(text: str) -> str:
@@ -91,16 +107,19 @@ def _condition(condition: str) -> str:
 
 
 def _positive(statement: Positive) -> tuple[str, str]:
-    signs = [f"0 < {name}" for name in statement.positive if name in statement.variables]
-    signs += [f"0 <= {name}" for name in statement.nonnegative if name in statement.variables]
     sign = "<" if statement.strict else "<="
-    premises = _premises([*signs, *_not_zero(statement)])
+    premises = _premises([*_signs(statement), *_not_zero(statement)])
     stated = f"{_variables(statement)}{premises}{_lets(statement)}0 {sign} {_expression(statement.left)}"
     if not statement.variables:
         return stated, "by_numbers."
     rule, tactic = ("quotient_positive", "positive") if statement.strict else ("quotient_nonneg", "nonneg")
     over, under = (_sum(part) for part in (statement.over, statement.under))
     return stated, f"intros. apply ({rule} _ ({over}) ({under})); [rational|{tactic}|positive]."
+
+
+def _signs(statement: Positive) -> list[str]:
+    signs = [f"0 < {name}" for name in statement.positive if name in statement.variables]
+    return signs + [f"0 <= {name}" for name in statement.nonnegative if name in statement.variables]
 
 
 def _sum(terms: Sequence[Term]) -> str:

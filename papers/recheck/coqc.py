@@ -14,6 +14,7 @@ from pathlib import Path
 from semispline.papers.ledger import CheckFailedError
 from semispline.papers.recheck.coq_folder import (
     LIBRARY,
+    Block,
     CoqFile,
     CoqFolder,
     imports,
@@ -24,12 +25,13 @@ from semispline.solver.errors import OptionError
 
 # Of processor time; a file takes up to a minute.
 _SECONDS = 600
-# What Coq's own real numbers rest on.
+# What Coq's own real numbers rest on, and its theorems on continuous functions.
 REALS = frozenset(
     {
         "ClassicalDedekindReals.sig_forall_dec",
         "ClassicalDedekindReals.sig_not_dec",
         "FunctionalExtensionality.functional_extensionality_dep",
+        "Classical_Prop.classic",
     }
 )
 
@@ -105,6 +107,8 @@ def kernel_of(folder: CoqFolder, place: str | Path) -> Kernel:
         problems += [f"{one.file.name}.v: found the axiom {name}, expected none" for name in sorted(found - allowed)]
         axioms |= found
     refused = tuple(name for one in settled for name in one.refused)
+    if refused:
+        write_coq(folder, place)
     return Kernel(coq_version(), refused, tuple(problems), frozenset(axioms))
 
 
@@ -127,7 +131,17 @@ def _levels(sources: Mapping[str, str]) -> Iterator[list[str]]:
 
 def _run(place: Path, name: str) -> subprocess.CompletedProcess[str]:
     """Compile one file; its processor time is limited."""
-    command = ["sh", "-c", f'ulimit -t {_SECONDS}; exec "$0" "$@"', require_coqc(), "-q", "-Q", ".", LIBRARY, f"{name}.v"]
+    command = [
+        "sh",
+        "-c",
+        f'ulimit -t {_SECONDS}; exec "$0" "$@"',
+        require_coqc(),
+        "-q",
+        "-Q",
+        ".",
+        LIBRARY,
+        f"{name}.v",
+    ]
     done = subprocess.run(command, cwd=place, capture_output=True, text=True, check=False, stdin=subprocess.DEVNULL)
     if done.returncode < 0:
         raise CheckFailedError(
@@ -137,19 +151,42 @@ def _run(place: Path, name: str) -> subprocess.CompletedProcess[str]:
 
 
 def _settled(place: Path, file: CoqFile) -> _Settled:
-    """Compile a file until what is left of it is accepted."""
+    """Compile a file without the lemmas that are refused."""
     refused: list[str] = []
-    while True:
-        (place / f"{file.name}.v").write_text(file.text, encoding="utf-8")
-        done = _run(place, file.name)
-        if not done.returncode:
-            return _Settled(file, tuple(refused), done.stdout)
-        line = re.search(r"line (\d+), characters", done.stderr)
-        wrong = file.block_at(int(line[1])) if line else None
-        if wrong is None:
-            raise CheckFailedError(f"recheck: {file.name}.v is refused: {_error(done)}")
+    accepted: list[Block] = []
+    left, done = file, _compiled(place, file)
+    while done.returncode:
+        wrong = _refused_block(left, done)
+        at = left.blocks.index(wrong)
         refused += wrong.ids
-        file = replace(file, blocks=tuple(block for block in file.blocks if block is not wrong))
+        accepted += left.blocks[:at]
+        # What stands before is accepted: only the rest is asked again.
+        left = replace(file, blocks=left.blocks[at + 1 :])
+        done = _compiled(place, left)
+    if refused:
+        file = replace(file, blocks=(*accepted, *left.blocks))
+        done = _compiled(place, file)
+    return _Settled(file, tuple(refused), done.stdout)
+
+
+def _compiled(place: Path, file: CoqFile) -> subprocess.CompletedProcess[str]:
+    (place / f"{file.name}.v").write_text(file.text, encoding="utf-8")
+    return _run(place, file.name)
+
+
+def _refused_block(file: CoqFile, done: subprocess.CompletedProcess[str]) -> Block:
+    """Return the block at which Coq stopped.
+
+    Raises
+    ------
+    CheckFailedError
+        It stopped elsewhere.
+    """
+    line = re.search(r"line (\d+), characters", done.stderr)
+    found = file.block_at(int(line[1])) if line else None
+    if found is None:
+        raise CheckFailedError(f"recheck: {file.name}.v is refused: {_error(done)}")
+    return found
 
 
 def _error(done: subprocess.CompletedProcess[str]) -> str:

@@ -68,9 +68,7 @@ def export_of(
             f"certificate {both[0]}: found statements and a reason why there are none, expected one of them"
         )
     reasons = {c.id: not_expressible.get(c.id, UNWRITTEN) for c in decided if c.id not in drafts}
-    return Export(
-        paper.name, tuple(certificates), tuple(controls()), reasons, dict(theorems or {}), tuple(theories())
-    )
+    return Export(paper.name, tuple(certificates), tuple(controls()), reasons, dict(theorems or {}), tuple(theories()))
 
 
 def _certificate(claim: Claim, draft: Draft) -> Certificate:

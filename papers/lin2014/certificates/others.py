@@ -287,9 +287,7 @@ def inference(claim: Claim) -> Draft:
             meets=False,
         )
     )
-    return Draft(
-        [[*hull(), *directions(formulas)], convex], believed=(POWERS, LIMIT)
-    )
+    return Draft([[*hull(), *directions(formulas)], convex], believed=(POWERS, LIMIT))
 
 
 DRAFTS: dict[str, Callable[[Claim], Draft]] = {
