@@ -13,7 +13,8 @@ PYTEST := $(BIN)/python -m pytest -n 2 --dist worksteal --quiet
 LONG := io/test_io_foreign io/test_face_boundary io/test_io_cad judge/test_de_boor \
 	judge/test_meets proof/test_squares blending/test_reduced blending/test_real_bases blending/test_units \
 	blending/test_closed_pairs blending/test_blending blending/test_open_cascade_hundred
-QUICK := tests/test_documents.py tests/test_readme.py tests/test_rooms.py tests/papers/ledger \
+QUICK := tests/test_documents.py tests/test_readme.py tests/test_rooms.py tests/papers/ledger tests/papers/checks \
+	tests/papers/latex tests/papers/pseudocode \
 	$(addprefix tests/solver/,splines generated proof judge blending io c_export) \
 	$(patsubst %,--ignore=tests/solver/%.py,$(LONG))
 

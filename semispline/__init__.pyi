@@ -131,6 +131,7 @@ from .solver.topology.face_edges import ResolvedEdge as ResolvedEdge
 from .solver.topology.face_edges import list_edges as list_edges
 from .solver.topology.free_contact import FreeContact as FreeContact
 from .solver.topology.free_contact import measure_free_contact as measure_free_contact
+from .solver.topology.gate_report import GateReport as GateReport
 from .solver.topology.place import Place as Place
 from .solver.topology.place import Places as Places
 from .solver.topology.place import PlaceSide as PlaceSide
@@ -140,7 +141,6 @@ from .solver.topology.replacing import replaced_pair as replaced_pair
 from .solver.topology.resolving import resolve_edge as resolve_edge
 from .solver.topology.solid_blends import SolidBlend as SolidBlend
 from .solver.topology.solid_blends import replace_face as replace_face
-from .solver.topology.solid_gate import GateReport as GateReport
 from .solver.topology.solid_joins import join_faces as join_faces
 from .solver.topology.solid_rounds import round_edge as round_edge
 

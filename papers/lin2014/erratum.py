@@ -46,6 +46,8 @@ def _set(formula: str) -> str:
 
 def _of_the_ledger(ledger: Ledger) -> dict[str, Any]:
     counts = ledger.counts()
+    others = sum(counts[verdict] for verdict in (Verdict.HOLDS_IF, Verdict.FAILS, Verdict.AMBIGUOUS))
+    caused = sum(len(decisions) for _, decisions in ledger.causes())
     changed = [d.id for d in ledger.decisions if d.verdict is not d.recorded]
     return {
         "title": ledger.paper.title,
@@ -53,7 +55,9 @@ def _of_the_ledger(ledger: Ledger) -> dict[str, Any]:
         "printed": counts["printed"],
         "decided": counts["decided"],
         "holds": counts[Verdict.HOLDS],
-        "holds_if": counts[Verdict.HOLDS_IF],
+        "others": others,
+        "caused": caused,
+        "alone": others - caused,
         "consistent": counts["consistent"],
     }
 
@@ -84,7 +88,10 @@ def _measures(ledger: Ledger) -> dict[str, Any]:
     few = _measured(ledger, "sec-3.fewer-better")
     none, one = (next(v for key, v in few.items() if f"C2, {m} middle curves" in key) for m in (0, 1))
     turn = _measured(ledger, "sec-A.17-gives-2.1")["turn of the normal across the contact [degrees]"]
-    share = _measured(ledger, "sec-4.facing")["share of exit angles below 90 degrees, 1 middle curves"]
+    facing = _measured(ledger, "sec-4.facing")
+    spared = _measured(ledger, "sec-A.special-choice").values()
+    share = facing["share of exit angles below 90 degrees, 1 middle curves"]
+    crease = facing["crease at alpha = 0 between plates at 74 and 37 degrees [degrees]"]
     gap = _measured(ledger, "fig-10.seam")["gap at the seam, 1 middle curves [radius of the first cylinder]"]
     return {
         "jump": f"{100 * _measured(ledger, 'cond-3.1')[jump]:.0f}",
@@ -94,6 +101,8 @@ def _measures(ledger: Ledger) -> dict[str, Any]:
         "least": f"{third['least energy']:.3g}",
         "turn": f"{turn:.0f}",
         "share": f"{100 * share:.0f}",
+        "crease": f"{crease:.0f}",
+        "spared": f"{min(spared):.1g} to {max(spared):.1g}",
         "none": f"{none:.3g}",
         "one": f"{one:.3g}",
         "gap": f"{gap:.1g}",
@@ -102,11 +111,15 @@ def _measures(ledger: Ledger) -> dict[str, Any]:
 
 
 def _saving(counts: Mapping[str, float]) -> list[str]:
-    """Return the rows of the table of control points; Figs. 8 and 9 have the same bases."""
-    rows = []
-    for figure, name in ((5, "5"), (6, "6"), (8, "8, 9"), (10, "10")):
-        before = f"Fig. {figure}, "
-        converted = sorted({int(n) for key, n in counts.items() if key.startswith(f"{before}converted")})
-        last = str(converted[0]) if len(converted) == 1 else f"{converted[0]} to {converted[-1]}"
-        rows.append(f"| {name} | {counts[f'{before}own knots']} | {counts[f'{before}knots of both']} | {last} |")
-    return rows
+    """Return the rows of the table of control points, one for all figures with the same counts."""
+    figures: dict[str, list[str]] = {}
+    for figure in ("5", "6", "8", "9", "10"):
+        cells = [_range(counts, f"Fig. {figure}, {what}") for what in ("own knots", "knots of both", "converted")]
+        figures.setdefault(" | ".join(cells), []).append(figure)
+    return [f"| {', '.join(names)} | {cells} |" for cells, names in figures.items()]
+
+
+def _range(counts: Mapping[str, float], beginning: str) -> str:
+    """Return the least and the largest of some counts, by how the rule for the middle curve is read."""
+    found = sorted({int(number) for name, number in counts.items() if name.startswith(beginning)})
+    return str(found[0]) if len(found) == 1 else f"{found[0]} to {found[-1]}"

@@ -1,4 +1,4 @@
-"""The Coq files of an export: hand-written sources, lemmas of its statements, and the theorems that its records cite."""
+"""The Coq files of an export: hand-written sources, lemmas of its statements, theorems that its records cite."""
 
 from __future__ import annotations
 

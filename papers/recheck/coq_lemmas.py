@@ -41,6 +41,10 @@ def lemma(statement: Statement) -> str:
       x/x == 1.
     Proof. rational. Qed.
     """
+    if statement.form not in _BY_FORM:
+        raise NotForCoqError(_WITHOUT[statement.form])
+    if isinstance(statement, Identity) and statement.roots:
+        raise NotForCoqError("a root: no rational number is one")
     stated, proof = _BY_FORM[statement.form](statement)
     return f"{stated}.\nProof. {proof} Qed."
 
@@ -145,9 +149,10 @@ def _rank(statement: Rank) -> tuple[str, str]:
         return stated, proof
     # A matrix of functions: the rank at the instance, and what sends its columns to zero everywhere.
     sums = []
-    for row in statement.matrix:
+    for texts in statement.matrix:
         for free in range(len(statement.free)):
-            terms = (f"({_expression(a)})*({_expression(k[free])})" for a, k in zip(row, statement.kernel, strict=True))
+            pairs = zip(texts, statement.kernel, strict=True)
+            terms = (f"({_expression(a)})*({_expression(k[free])})" for a, k in pairs)
             sums.append(f"{' + '.join(terms)} == 0")
     everywhere = _variables(statement) + _premises(_not_zero(statement)) + " /\\\n  ".join(sums or ["True"])
     return f"({everywhere}) /\\\n  {stated}", f"split; [repeat split; rational|{proof[:-1]}]."
@@ -196,6 +201,13 @@ _BY_FORM: dict[str, Callable[[Any], tuple[str, str]]] = {
     "contained": _contained,
     "minimum": _minimum,
     "knots": _knots,
+}
+
+
+_WITHOUT = {
+    "matrices": "products and inverses of matrices",
+    "number": "a number of elementary functions, enclosed by intervals",
+    "coefficient": "a coefficient of a power series",
 }
 
 

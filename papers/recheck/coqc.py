@@ -11,7 +11,6 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from semispline.papers.ledger import CheckFailedError
 from semispline.papers.recheck.coq_folder import (
     LIBRARY,
     Block,
@@ -21,7 +20,7 @@ from semispline.papers.recheck.coq_folder import (
     needed_sources,
     write_coq,
 )
-from semispline.solver.errors import OptionError
+from semispline.solver.errors import ComputationError, OptionError
 
 # Of processor time; a file takes up to a minute.
 _SECONDS = 600
@@ -87,7 +86,7 @@ def kernel_of(folder: CoqFolder, place: str | Path) -> Kernel:
 
     Raises
     ------
-    CheckFailedError
+    ComputationError
         A hand-written source is refused, a file takes too long, or is refused at no lemma.
     """
     place = Path(place)
@@ -97,7 +96,7 @@ def kernel_of(folder: CoqFolder, place: str | Path) -> Kernel:
         for level in _levels(sources):
             for name, done in zip(level, pool.map(lambda n: _run(place, n), level), strict=True):
                 if done.returncode:
-                    raise CheckFailedError(f"recheck: derivations/coq/{name}.v is refused: {_error(done)}")
+                    raise ComputationError(f"recheck: derivations/coq/{name}.v is refused: {_error(done)}")
         settled = list(pool.map(lambda file: _settled(place, file), folder.files))
     problems: list[str] = []
     axioms: set[str] = set()
@@ -124,7 +123,7 @@ def _levels(sources: Mapping[str, str]) -> Iterator[list[str]]:
     while len(done) < len(sources):
         level = [name for name in sources if name not in done and done.issuperset(imports(sources[name]))]
         if not level:
-            raise CheckFailedError("recheck: found Coq sources that import each other in a circle")
+            raise ComputationError("recheck: found Coq sources that import each other in a circle")
         yield level
         done.update(level)
 
@@ -144,7 +143,7 @@ def _run(place: Path, name: str) -> subprocess.CompletedProcess[str]:
     ]
     done = subprocess.run(command, cwd=place, capture_output=True, text=True, check=False, stdin=subprocess.DEVNULL)
     if done.returncode < 0:
-        raise CheckFailedError(
+        raise ComputationError(
             f"recheck: coqc ended with signal {-done.returncode} on {name}.v, expected an answer within {_SECONDS} s"
         )
     return done
@@ -179,13 +178,13 @@ def _refused_block(file: CoqFile, done: subprocess.CompletedProcess[str]) -> Blo
 
     Raises
     ------
-    CheckFailedError
+    ComputationError
         It stopped elsewhere.
     """
     line = re.search(r"line (\d+), characters", done.stderr)
     found = file.block_at(int(line[1])) if line else None
     if found is None:
-        raise CheckFailedError(f"recheck: {file.name}.v is refused: {_error(done)}")
+        raise ComputationError(f"recheck: {file.name}.v is refused: {_error(done)}")
     return found
 
 
@@ -199,7 +198,7 @@ def _assumptions(one: _Settled) -> set[str]:
 
     Raises
     ------
-    CheckFailedError
+    ComputationError
         `Print Assumptions` did not answer.
     """
     if not one.file.asked:
@@ -209,5 +208,5 @@ def _assumptions(one: _Settled) -> set[str]:
     head, _, listed = one.output.partition("Axioms:\n")
     found = set(re.findall(r"^(\S+)\s*:", listed, re.MULTILINE))
     if head.strip() or not found:
-        raise CheckFailedError(f"recheck: found no answer to Print Assumptions in {one.file.name}.v, expected one")
+        raise ComputationError(f"recheck: found no answer to Print Assumptions in {one.file.name}.v, expected one")
     return found

@@ -32,6 +32,11 @@ class KernelCheck:
     without: Mapping[str, str]
 
     @property
+    def version(self) -> str:
+        """Of Coq."""
+        return self.kernel.version
+
+    @property
     def problems(self) -> tuple[str, ...]:
         """What the kernel disagrees with, one a line."""
         refused = (f"recheck: refused by the kernel: {name}" for name in self.kernel.refused)
@@ -103,7 +108,7 @@ def kernel_checked(export: Export, folder: str | Path | None = None) -> KernelCh
     ------
     OptionError
         Coq is not installed.
-    CheckFailedError
+    ComputationError
         It gave no answer.
     """
     files = coq_folder(export)

@@ -12,7 +12,9 @@ from semispline.papers.report.ledger_words import (
     counts_text,
     evidence_words,
     mutants_text,
+    print_lines,
     residual_of,
+    words,
 )
 
 
@@ -27,7 +29,9 @@ def ledger_html(ledger: Ledger) -> str:
     )
     pairs = zip(ledger.paper.claims, ledger.decisions, strict=True)
     claims = "\n".join(_claim_html(claim, decision) for claim, decision in pairs)
-    return f"<p>{escape(counts_text(ledger))}</p><p class='filters'>{filters}</p>\n{claims}"
+    meanings = "".join(f"<li>{escape(line)}</li>" for line in words())
+    told = f"<details><summary>What the words mean</summary><ul>{meanings}</ul></details>"
+    return f"<p>{escape(counts_text(ledger))}</p>{told}<p class='filters'>{filters}</p>\n{claims}"
 
 
 def _mutants_and_reasons(decision: Decision) -> str:
@@ -39,6 +43,7 @@ def _mutants_and_reasons(decision: Decision) -> str:
 def _claim_html(claim: Claim, decision: Decision) -> str:
     verdict = str(decision.verdict or "no answer")
     rows: list[tuple[str, str]] = [("where", escape(claim.where))]
+    rows += [(heading, f"<pre>{escape(text)}</pre>") for heading, text in print_lines(claim)]
     rows += [("printed", mathml(f.relation)) for f in claim.formulas]
     residual = residual_of(decision)
     rows += [("residual", mathml(residual))] if residual is not None else []

@@ -59,6 +59,12 @@ class StatedBases:
         return a, b
 
     @property
+    def cuts(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
+        """Where the pieces of both chains begin and end, along the bases."""
+        a, b = (() if strip is None else strip.cuts for strip in self.strips)
+        return a, b
+
+    @property
     def joints(self) -> tuple[Joint, ...]:
         """The joints of both chains."""
         return tuple(joint for strip in self.strips if strip for joint in strip.joints if joint is not None)

@@ -6,10 +6,12 @@ the blend's rulings meet it.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
+from semispline.solver.arrays import FloatArray
 from semispline.solver.blending.conics import recognised_conic
 from semispline.solver.judge import Base, Correspondence, correspond, is_closed, snapped_seam, tied_directions
 from semispline.solver.options import Flip
@@ -28,10 +30,16 @@ _FINER = 4
 _LINE = np.array([0.0, 0.0, 1.0, 1.0])
 
 
-def matched_edges(a: Base, b: Base, flip: Flip) -> Correspondence:
-    """Return how edge b runs along edge a, and where it starts, in b's own parameter."""
+def matched_edges(
+    a: Base, b: Base, flip: Flip, joints: tuple[Sequence[float], Sequence[float]] = ((), ())
+) -> Correspondence:
+    """Return how edge b runs along edge a, and where it starts, in b's own parameter.
+
+    `joints` are where faces meet along chains: at a place where one of each side nearly answers the other, they do.
+    """
     by_angle = run_by_angle(a), run_by_angle(b)
-    matched = snapped_seam(*by_angle, correspond(*by_angle, flip))
+    shares = _shares(a, by_angle[0], joints[0]), _shares(b, by_angle[1], joints[1])
+    matched = snapped_seam(*by_angle, correspond(*by_angle, flip), shares)
     if by_angle[1] is b or not matched.shift:
         return matched
     start, end = by_angle[1].range_along
@@ -40,6 +48,16 @@ def matched_edges(a: Base, b: Base, flip: Flip) -> Correspondence:
     found = closest_point(boundary_curve(b.surface, b.side), at).parameters
     shift = (float(np.ravel(found)[0]) - first) % (last - first)
     return replace(matched, shift=0.0 if min(shift, last - first - shift) < _NO_SHIFT * (last - first) else shift)
+
+
+def _shares(base: Base, by_angle: Base, places: Sequence[float]) -> FloatArray:
+    """Return places along an edge, as shares of the range in which it is run through; its seam too."""
+    start, end = by_angle.range_along
+    if base is not by_angle and len(places):
+        curve = boundary_curve(by_angle.surface, by_angle.side)
+        points = base.derivative(np.array(places), 0, 0)
+        places = [float(np.ravel(closest_point(curve, point).parameters)[0]) for point in points]
+    return np.append((np.array(places, dtype=np.float64) - start) / (end - start), 0.0)
 
 
 def directions_to_try(a: Base, b: Base) -> tuple[Flip, ...]:

@@ -148,7 +148,14 @@ def _solved(stated: StatedBases, flip: Flip) -> _Solved:
     """Solve for the blend: the few numbers that are not linear, then everything that is."""
     said = stated.options
     placed = place_sides(
-        stated.a, stated.b, said, flip, stated.matched, lines_answer=stated.lines_answer, held=stated.held
+        stated.a,
+        stated.b,
+        said,
+        flip,
+        stated.matched,
+        lines_answer=stated.lines_answer,
+        held=stated.held,
+        joints=stated.cuts,
     )
     layout, candidates = find_layout(*placed.scaled, said)
     found = bulged(layout.found, layout.options.bulges)

@@ -49,14 +49,18 @@ def place_sides(
     *,
     lines_answer: bool = False,
     held: tuple[HeldEnd, ...] = (),
+    joints: tuple[Sequence[float], Sequence[float]] = ((), ()),
 ) -> PlacedSides:
-    """Bring both contacts to one parameter v and to coordinates of size 1; as `matched`, where that is known."""
+    """Bring both contacts to one parameter v and to coordinates of size 1; as `matched`, where that is known.
+
+    Else joints, places along both, answer each other where they nearly do.
+    """
     at_a, at_b = options.continuities
     sides = make_side(a, at_a, "base a"), make_side(b, at_b, "base b")
     if lines_answer:
         sides = replace(sides[0], keeps_lines=True), replace(sides[1], keeps_lines=True)
     sides = replace(sides[0], held=held), sides[1]
-    matched = matched or matched_edges(a, b, flip)
+    matched = matched or matched_edges(a, b, flip, joints)
     # Far from the origin each operation would round by the distance: there is but one rounding, of the result.
     origin = local_origin(a.surface, b.surface)
     local = matched_sides(sides[0].moved(origin, 1.0), sides[1].moved(origin, 1.0), matched)

@@ -182,7 +182,8 @@ def write_solid(
             cut_a, cut_b = wanted.cuts
             assert cut_a is not None
             assert cut_b is not None
-            found = solid_with_round(*sharp, (cut_a, cut_b), outputs.suffix, options)
+            title = f"--cut-a {cut_a} --cut-b {cut_b} from edge {sharp[2]} of face {sharp[1]}"
+            found = solid_with_round(*sharp, (cut_a, cut_b), outputs.suffix, options, title)
         else:
             assert wanted.replaced is not None
             found = solid_with_blend(
@@ -211,7 +212,7 @@ def _write(found: SolidBlend, outputs: SolidOutputs) -> None:
         written = Path(folder, f"solid{outputs.suffix}")
         written.write_bytes(found.content)
         with progress("measuring"):
-            contacts = contacts_in_solid(written, found.faces, orders)
+            contacts = contacts_in_solid(written, found.faces, orders, [end.range for end in found.kept])
         pictures = {} if outputs.plots is None else {"solid.png": solid_picture(written, found.faces)}
     with ExitStack() as stack:
         # Each lies in its temporary file before the first takes its place.
@@ -224,6 +225,8 @@ def _write(found: SolidBlend, outputs: SolidOutputs) -> None:
             write_files(outputs.plots, pictures)
     _print(found)
     print_contacts(contacts)
+    if found.kept:
+        typer.echo("the blend along its whole contacts, with the ends that were kept, where contact is G1 alone:")
     print_result(found.blend)
 
 
@@ -267,10 +270,12 @@ def _print(found: SolidBlend) -> None:
     )
     about = f"{report.volume_expected:.4g}, give or take" if report.volume_expected else "at most"
     typer.echo(f"volume {had:.9g} -> {has:.9g}, by {has - had:.4g} of {about} {report.volume_limit:.4g}")
-    before = max((edge.was or 0.0 for edge in report.border), default=0.0)
+    were = [edge.was for edge in report.border if edge.was is not None]
+    before = f"{max(were):.2g} -> " if were else ""
     typer.echo(
-        f"largest tolerance at the blend {before:.2g} -> {report.largest_tolerance:.2g}, read back "
-        f"{found.read_back.largest_tolerance:.2g}; largest gap {max(edge.gap for edge in report.border):.2g}"
+        f"largest tolerance at the blend {before}{report.largest_tolerance:.2g}, read back "
+        f"{found.read_back.largest_tolerance:.2g}; largest gap {max(edge.gap for edge in report.border):.2g}; of all "
+        f"edges {report.tolerance[0]:.2g} -> {report.tolerance[1]:.2g}, read back {found.read_back.tolerance[1]:.2g}"
     )
     for note in found.notes:
         typer.echo(note)
@@ -282,11 +287,21 @@ def _blends(faces: tuple[int, ...]) -> str:
 
 def print_contacts(contacts: Sequence[SolidContact]) -> None:
     """Print how the new faces meet the others, measured on these as they stand in the solid."""
-    rows = [("edge", "on face", "gap", "angle, degrees", "curvature jump", "rate jump")]
+    rows = [("edge", "on face", "gap", "angle, degrees", "curvature jump", "rate jump", "where")]
     for x in contacts:
         found = x.contact
         rate = "" if found.rate_jump_relative is None else f"{found.rate_jump_relative:.2g}"
         figures = (f"{found.gap:.2g}", f"{found.angle_degrees:.2g}", f"{found.curvature_jump_relative:.2g}", rate)
-        rows.append((x.edge, str(x.face), *figures))
+        where = ""
+        if x.stretch:
+            place = found.at["curvature_jump_relative"].point
+            where = "{}: G1, the jump at ({:.6g}, {:.6g}, {:.6g})".format(x.stretch, *place)
+        rows.append((x.edge, str(x.face), *figures, where))
     typer.echo("contacts of the blend as it stands in the solid, measured on the faces themselves:")
-    print_table([row if any(row[-1] for row in rows[1:]) else row[:-1] for row in rows])
+    shown = [k for k in range(len(rows[0])) if any(row[k] for row in rows[1:])]
+    print_table([tuple(row[k] for k in shown) for row in rows])
+    if any(x.stretch for x in contacts):
+        typer.echo(
+            "curvature jumps are over the largest curvature of the face there; a flat one counts as bent with a radius "
+            "of a thousand times its size"
+        )

@@ -172,10 +172,13 @@ def samples_in_spans(breaks: FloatArray, *, ends: bool) -> FloatArray:
     return np.concatenate([breaks[:1], inside, breaks[-1:]]) if ends else np.asarray(inside)
 
 
-def snapped_seam(a: Base, b: Base, matched: Correspondence) -> Correspondence:
+def snapped_seam(
+    a: Base, b: Base, matched: Correspondence, joints: tuple[FloatArray, FloatArray] | None = None
+) -> Correspondence:
     """Move each seam of two closed edges that comes close to a knot of the other one onto it.
 
-    The nearest pair decides, whichever edge it is on: the order of the edges does not matter.
+    The nearest pair decides, whichever edge it is on: the order of the edges does not matter. `joints` are places on
+    both, as fractions of their domains, that are to answer each other too where they come so close.
     """
     if not matched.shift:
         return matched
@@ -183,6 +186,9 @@ def snapped_seam(a: Base, b: Base, matched: Correspondence) -> Correspondence:
     on_a, on_b = ((base.breakpoints_along() - base.range_along[0]) / np.ptp(base.range_along) for base in (a, b))
     # Shifts, as fractions of b's domain, that put the seam of a on a knot of b, or the seam of b on a knot of a.
     wanted = np.concatenate([on_b, on_a if matched.flipped else 1 - on_a])
+    if joints is not None:
+        of_a, of_b = joints
+        wanted = np.concatenate([wanted, np.subtract.outer(of_b, 1 - of_a if matched.flipped else of_a).ravel()])
     move = np.mod(wanted - matched.shift / length + 0.5, 1.0) - 0.5
     nearest = int(np.abs(move).argmin())
     if abs(move[nearest]) > SNAP:

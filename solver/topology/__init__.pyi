@@ -24,7 +24,6 @@ from .face_edges import is_of_a_face as is_of_a_face
 from .face_edges import list_edges as list_edges
 from .face_meshes import EdgeLine as EdgeLine
 from .face_meshes import FaceMesh as FaceMesh
-from .face_runs import replaced_run as replaced_run
 from .free_contact import FreeContact as FreeContact
 from .free_contact import measure_free_contact as measure_free_contact
 from .listing import place_lines as place_lines
@@ -33,6 +32,7 @@ from .place import Place as Place
 from .place import Places as Places
 from .place import PlaceSide as PlaceSide
 from .places import find_places as find_places
+from .replaced_runs import replaced_run as replaced_run
 from .replacing import ReplacedPair as ReplacedPair
 from .replacing import replaced_pair as replaced_pair
 from .resolving import Resolved as Resolved

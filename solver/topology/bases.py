@@ -18,6 +18,7 @@ from semispline.solver.topology.edge_base import EdgeBase
 from semispline.solver.topology.face_edges import ResolvedEdge, split_part
 from semispline.solver.topology.joined_bases import in_order, joined, merged_edges
 from semispline.solver.topology.plane_chains import edges_on_planes, strips_on_planes
+from semispline.solver.topology.plane_strips import strip_of_arc
 from semispline.solver.topology.trim_curves import TrimCurve, read_trim_curves
 
 # Of the length of an edge: nearer ends are one point.
@@ -41,7 +42,8 @@ def edge_bases(
     continuity : str or sequence of str
         That all, or each, is to be met with.
     share : float
-        Of its limits, that a band may use.
+        Of its limits, that a band may use. Less than all asks for bases that are as close as can be: then lines and
+        arcs on planes have strips of these, exact and with few points.
 
     Raises
     ------
@@ -108,6 +110,9 @@ def _bases_of_edge(
         unit = end.loaded.unit
         millimetres = None if unit is None else MILLIMETRES[unit]
         return (EdgeBase(end.edge, Base(end.surface, end.edge), millimetres=millimetres),)
+    strip = strip_of_arc(curve) if share < 1 and end.part is None else None
+    if strip is not None:
+        return (EdgeBase(curve.word, strip.base, strip, curve, millimetres=curve.millimetres),)
     return bases_along(curve, wanted, end.part, share)
 
 

@@ -92,11 +92,11 @@ def moved_uses(measured: MeasuredEdges, rows: Sequence[int], cuts: Sequence[str]
         Of all faces that do not reach so far, how far they do.
     """
     uses, path = measured.graph.uses, measured.graph.path
+    # Of a chain a face may have several.
+    titles = [f"face {uses.face[row]}" + f", beside {uses.name(row)}" * (len(rows) > 2) for row in rows]
     ends = [
-        _Wanted(
-            "A", f"{path}#{uses.face[row]}", uses.name(row), parse_cut(cut), measured, row, f"face {uses.face[row]}"
-        )
-        for row, cut in zip(rows, cuts, strict=True)
+        _Wanted("A", f"{path}#{uses.face[row]}", uses.name(row), parse_cut(cut), measured, row, title)
+        for row, cut, title in zip(rows, cuts, titles, strict=True)
     ]
     surfaces, curves = _surfaces([end.spec for end in ends]), _curves(ends)
     found, refused = [], []

@@ -41,30 +41,6 @@ def going_on(graph: EdgeGraph, relations: Relations, ends: Sequence[int]) -> lis
     return [row for row in ends if partner[row] != NONE and median[row] < _GOES_ON]
 
 
-def check_ends(graph: EdgeGraph, relations: Relations, faces: Sequence[int], ends: Sequence[int]) -> None:
-    """Refuse faces that go on into others beyond their end edges.
-
-    Raises
-    ------
-    EdgeError
-        With the faces that belong together.
-    """
-    smooth = going_on(graph, relations, ends)
-    if not smooth:
-        return
-    beyond = list(dict.fromkeys(int(graph.uses.face[relations.partner[row]]) for row in smooth))
-    several = len(faces) > 1
-    over = " and ".join(f"{graph.uses.face[row]}:" * several + graph.uses.name(row) for row in smooth)
-    which = "face" if len(beyond) == 1 else "faces"
-    together = ",".join(map(str, [*faces, *beyond]))
-    raise EdgeError(
-        f"--replace {','.join(map(str, faces))}: it goes on into {which} {' and '.join(map(str, beyond))} over {over}: "
-        "a blend that bends less than a round at its contacts cannot keep these edges; replace the faces together "
-        f"(--replace {together}), or keep the edges, where contact falls to G1 (--keep-ends); --surfaces writes the "
-        "blend alone"
-    )
-
-
 def faces_at_ends(graph: EdgeGraph, relations: Relations, ends: Sequence[int]) -> list[tuple[FloatArray, int]]:
     """Return the points at which end edges begin and end, each with a use of the edge by the face beyond.
 
@@ -77,10 +53,13 @@ def faces_at_ends(graph: EdgeGraph, relations: Relations, ends: Sequence[int]) -
     for row in ends:
         partner = int(relations.partner[row])
         if partner == NONE:
-            raise EdgeError(
-                f"{graph.uses.name(row)} of {graph.path}#{graph.uses.face[row]}: no other face lies beyond this end of "
-                "the fillet"
-            )
+            title = f"--replace: {graph.uses.name(row)} of face {graph.uses.face[row]}"
+            if graph.uses.degenerate[row]:
+                raise EdgeError(
+                    f"{title} is a point: a face with three sides is none that a blend takes the place of, expected "
+                    "one with four, or with two rims; what ends on it is replaced with --keep-ends"
+                )
+            raise EdgeError(f"{title}: no other face lies beyond this end, on which the blend could end")
         found += [(graph.uses.points[row, sample], partner) for sample in (0, -1)]
     return found
 

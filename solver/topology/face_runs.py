@@ -1,25 +1,17 @@
-"""Faces that go on into each other over their end edges, as one run with two long sides: what is replaced together."""
+"""Faces that go on into each other over their end edges, as one run with two long sides."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 from semispline.solver.errors import EdgeError
-from semispline.solver.io import LoadedSurface, read_surfaces
 from semispline.solver.topology.between import Between, measure
-from semispline.solver.topology.chain_edges import chain_of_uses
 from semispline.solver.topology.contact_words import beyond
 from semispline.solver.topology.end_faces import end_edges, going_on
-from semispline.solver.topology.face_edges import check_face, resolved_use
 from semispline.solver.topology.half_edges import NONE, EdgeGraph
-from semispline.solver.topology.measuring import MeasuredEdges, measured_edges
 from semispline.solver.topology.relations import Relations, relate
-from semispline.solver.topology.replacing import STRAIGHT, opposite_sides, pair_of, resolved_pair, rows_beyond
-from semispline.solver.topology.resolving import Resolved
-
-# How the sides of a face are walked along the run.
-_WALKS: tuple[Callable[[Between], Sequence[int]], ...] = (lambda m: m.a.uses, lambda m: m.b.uses[::-1])
+from semispline.solver.topology.replacing import STRAIGHT, opposite_sides, pair_of
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,52 +49,6 @@ class FaceRun:
         return [row for row in rows if partners[row] == NONE or int(graph.uses.face[partners[row]]) not in own]
 
 
-@dataclass(frozen=True, eq=False)
-class ReplacedRun:
-    """Both sides of a run, to be blended as if its faces were not there.
-
-    Attributes
-    ----------
-    measured : MeasuredEdges
-    run : FaceRun
-    a, b : ResolvedEdge or ResolvedChain
-        The sides as those of the faces beyond.
-    said : str
-        What was taken, in words.
-    """
-
-    measured: MeasuredEdges
-    run: FaceRun
-    a: Resolved
-    b: Resolved
-    said: str
-
-
-def replaced_run(path: str, faces: Sequence[int], edge_a: str | None = None, edge_b: str | None = None) -> ReplacedRun:
-    """Return what is to be blended when faces of a file are replaced together.
-
-    Parameters and errors are those of `replaced_pair`; `edge_a` and `edge_b` are edges of the first face.
-    """
-    measured = measured_edges(path)
-    graph = measured.graph
-    for face in faces:
-        check_face(graph, face, str(path))
-    run = face_run(graph, relate(graph), faces, edge_a, edge_b)
-    if run.is_plain:
-        (between,) = run.members
-        pair = resolved_pair(measured, between, _loaded(graph, rows_beyond(graph, between)))
-        return ReplacedRun(measured, run, pair.a, pair.b, pair.said)
-    a, b = _sides(measured, run)
-    length = sum(member.length for member in run.members)
-    width = sum(member.width * member.length for member in run.members) / length
-    kind = "a closed run, " if run.closed and len(run.members) > 1 else ""
-    said = (
-        f"{_counted(run.faces)} replaced from {a.edge} to {b.edge}: {kind}{length:.4g} x {width:.4g} "
-        f"{graph.unit or 'model units'}"
-    )
-    return ReplacedRun(measured, run, a, b, said)
-
-
 def face_run(
     graph: EdgeGraph, relations: Relations, faces: Sequence[int], edge_a: str | None = None, edge_b: str | None = None
 ) -> FaceRun:
@@ -138,13 +84,9 @@ def face_run(
             break
         face, entry = links[leave], int(relations.partner[leave])
         if face in {x.face for x in members}:
-            raise EdgeError(f"--replace: {_counted(faces)} branch at face {face}, expected a run")
+            raise EdgeError(f"--replace: the faces {listed(faces)} branch at face {face}, expected a run")
     if len(members) < len(faces):
-        rest = [n for n in faces if n not in {x.face for x in members}]
-        raise EdgeError(
-            f"--replace: {_counted(rest)} and {_counted([x.face for x in members])} do not go on into each other over "
-            "ends of both; replace them one after the other"
-        )
+        raise EdgeError(f"{not_one_run(faces)}; replace them one after the other")
     creased = [row for row in links if row not in going_on(graph, relations, [row])]
     if creased:
         row = creased[0]
@@ -186,8 +128,10 @@ def _member(
             # It says what is wrong.
             return pair_of(graph, relations, face)
     if not fitting:
+        others = sorted(own - {face})
         raise EdgeError(
-            f"--replace: face {face} lies between no two sides at whose ends {_counted(sorted(own - {face}))} begin"
+            f"--replace: face {face} has no two opposite sides at whose ends {counted(others)} "
+            f"{'begins' if len(others) == 1 else 'begin'}"
         )
     return max(fitting, key=lambda x: (x.curvature if x.turn > STRAIGHT else 0.0, -x.width))
 
@@ -212,32 +156,23 @@ def _turned(graph: EdgeGraph, member: Between, links: dict[int, int], entry: int
     return next(x for x in both if x[1] != entry)
 
 
-def _sides(measured: MeasuredEdges, run: FaceRun) -> list[Resolved]:
-    """Return both sides of a run as the faces beyond have them."""
-    graph = measured.graph
-    # The faces beyond walk side a against the run, and side b along it.
-    both = [beyond(relate(graph), [row for m in run.members for row in uses(m)]) or () for uses in _WALKS]
-    # Each file is read once.
-    loaded = iter(_loaded(graph, [row for rows in both for row in rows]))
-    return [_side(measured, rows, [next(loaded) for _ in rows], name) for rows, name in zip(both, "AB", strict=True)]
+def listed(words: Sequence[object]) -> str:
+    """Return words as one says them.
+
+    Examples
+    --------
+    >>> listed([3]), listed([3, 4]), listed([3, 4, 5])
+    ('3', '3 and 4', '3, 4 and 5')
+    """
+    first, last = words[:-1], str(words[-1])
+    return f"{', '.join(map(str, first))} and {last}" if first else last
 
 
-def _side(measured: MeasuredEdges, rows: Sequence[int], loaded: Sequence[LoadedSurface], name: str) -> Resolved:
-    graph = measured.graph
-    specs = [f"{graph.path}#{graph.uses.face[row]}" for row in rows]
-    edges = [
-        resolved_use(measured, row, spec, surface, graph.uses.name(row), f"base {name}")
-        for row, spec, surface in zip(rows, specs, loaded, strict=True)
-    ]
-    if len(edges) == 1:
-        return edges[0]
-    word = "+".join(f"{graph.uses.face[row]}:{graph.uses.name(row)}" for row in rows)
-    return chain_of_uses(graph, rows, edges, word, f"base {name}")
+def not_one_run(faces: Sequence[int]) -> str:
+    """Say that faces do not go on into each other."""
+    return f"--replace: {counted(faces)} do not go on into each other over ends of both"
 
 
-def _loaded(graph: EdgeGraph, rows: Sequence[int]) -> list[LoadedSurface]:
-    return list(read_surfaces([f"{graph.path}#{graph.uses.face[row]}" for row in rows]))
-
-
-def _counted(faces: Sequence[int]) -> str:
-    return f"face {faces[0]}" if len(faces) == 1 else f"faces {', '.join(map(str, faces))}"
+def counted(faces: Sequence[int]) -> str:
+    """Return what some faces are called."""
+    return f"{'face' if len(faces) == 1 else 'faces'} {listed(faces)}"

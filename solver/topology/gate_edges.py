@@ -86,8 +86,8 @@ class EdgeTable:
     tolerance: list[float]
 
     @classmethod
-    def of(cls, shape: Any) -> EdgeTable:
-        """Return the table of a shape."""
+    def of(cls, shape: Any, first: int = 0) -> EdgeTable:
+        """Return the table of a shape, of which the first face is called by a number."""
         from OCP.BRep import BRep_Tool
         from OCP.collections import IndexedMap_TopoDS_Shape_TopTools_ShapeMapHasher
         from OCP.TopAbs import TopAbs_Orientation
@@ -106,7 +106,7 @@ class EdgeTable:
                 at = ids.Add(edge) - 1
                 if at == len(edges):
                     edges.append(forward(edge))
-                    names.append(f"{number}:e{k}")
+                    names.append(f"{first + number}:e{k}")
                     faces.append([])
                     uses.append([])
                 faces[at].append(number)
@@ -148,6 +148,10 @@ class EdgeTable:
             own = ends(edge)
             found.append([v for other, v in at_ends if any(x.IsSame(y) for x in own for y in ends(other))])
         return found
+
+    def largest_tolerance(self) -> float:
+        """Return the largest tolerance of all edges and their vertices."""
+        return max([*self.tolerance, *(tolerance for _, tolerance, _ in self.vertices())], default=0.0)
 
     def vertices(self) -> list[tuple[FloatArray, float, list[int]]]:
         """Return where each vertex is, its tolerance, and the edges that end there."""

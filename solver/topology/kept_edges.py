@@ -85,6 +85,8 @@ class KeptEnd:
         Between the end of the blend and the edge.
     crease_degrees : float
         Between the blend and the face beyond, along the edge.
+    range : (float, float)
+        The parameters v of the blend within which contact is G1 alone.
     """
 
     face: int
@@ -93,6 +95,7 @@ class KeptEnd:
     length: float
     distance: float
     crease_degrees: float
+    range: tuple[float, float]
 
     def __str__(self) -> str:
         return (
@@ -157,11 +160,19 @@ def ended_on_edges(surface: BSplineSurface, edges: Sequence[KeptEdge]) -> tuple[
         within = _WITHIN * float(np.ptp(bounding_box(surface), axis=0).max())
         made = end_on_curve(surface, end, points, tangents, share, within)
         surface = made.surface
+        low, high = surface.domain[1]
+        reach = share * (high - low)
         found.append(
             KeptEnd(
-                edge.face, edge.name, edge.beyond, length, made.distance, _crease(surface, end, edge)
+                face=edge.face,
+                edge=edge.name,
+                beyond=edge.beyond,
+                length=length,
+                distance=made.distance,
+                crease_degrees=_crease(surface, end, edge),
+                range=(high - reach, high) if end else (low, low + reach),
             )
-        )  # fmt: skip
+        )
     return surface, found
 
 

@@ -13,10 +13,11 @@ from typing import Any
 
 from semispline.solver.errors import EdgeError
 from semispline.solver.io import MILLIMETRES
+from semispline.solver.topology.gate_report import Change, GateReport
 from semispline.solver.topology.occ_joining import joined
 from semispline.solver.topology.occ_parts import Part, PartFile, move_labels, open_parts, placed, root_of
 from semispline.solver.topology.occ_shapes import children, copy_of, parts
-from semispline.solver.topology.solid_gate import Change, GateReport, gate
+from semispline.solver.topology.solid_gate import gate
 from semispline.solver.topology.solid_orders import Joining, Outcome
 from semispline.solver.topology.xcaf_words import Words, pieces_of, set_words, words_of
 
@@ -71,16 +72,16 @@ def join_parts(path: str, wanted: Joining, suffix: str) -> Outcome:
     solid, change = joined(copy, caps, surfaces)
     millimetres = None if unit is None else MILLIMETRES[unit]
     report = gate(before, solid, change, millimetres=millimetres)
-    assert change.kept is not None
-    touched = tuple(sorted(change.kept[n] for n in change.touched if n in change.kept))
     if not report.is_sound:
-        return Outcome(report, None, None, touched, change.new, 1)
+        return Outcome(report, None, None, (), (), 1)
     whole, notes = _whole(a, b, solid, change, unit)
     content = whole.content(suffix)
     first = _first_of(whole.root, solid)
     again = _read_back(content, suffix, first + change.new[0], before, change, millimetres)
+    report, again = report.numbered_from(first), again.numbered_from(first)
     new = tuple(first + n for n in change.new)
-    touched = tuple(first + n for n in touched)
+    assert change.kept is not None
+    touched = tuple(sorted(first + change.kept[n] for n in change.touched if n in change.kept))
     return Outcome(report, again, content if again.is_sound else None, touched, new, 1, notes)
 
 

@@ -16,6 +16,7 @@ from semispline.solver.arrays import FloatArray
 from semispline.solver.errors import EdgeError
 from semispline.solver.io import occ_surface
 from semispline.solver.splines import BSplineSurface
+from semispline.solver.topology.gate_report import Change
 from semispline.solver.topology.occ_edges import wires
 from semispline.solver.topology.occ_faces import closed_face, new_face, rebuilt, seam_edge
 from semispline.solver.topology.occ_new_edges import end_edge, foot_on, line_on, settle
@@ -36,7 +37,6 @@ from semispline.solver.topology.occ_shapes import (
     turned,
     with_range,
 )
-from semispline.solver.topology.solid_gate import Change
 from semispline.solver.topology.tube_volume import tube_volume
 
 # Tolerances: a cut of the blend that is nearer to a vertex of an outline, or to either end of the edge, ends there.

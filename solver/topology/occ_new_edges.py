@@ -38,6 +38,8 @@ _FEWEST, _MOST = 33, 513
 _DEGREE = 5
 # A curve that is this near, of the range, to a straight one is one.
 _STRAIGHT = 1e-11
+# Of its size: a border whose ends are this near is closed.
+_CLOSED = 1e-9
 # Places at which a curve is compared with its edge, and those of the border from which a nearest point is sought.
 _MEASURED, _NODES = 129, 1000
 _STEPS, _SECANTS = 30, 6
@@ -88,8 +90,10 @@ def _add_along(
     at_ends: tuple[float | None, ...],
     on_face: Callable[[FloatArray], FloatArray],
 ) -> tuple[float, float]:
+    near = _near_seam(border, edge, at_ends)
+
     def along(t: FloatArray) -> FloatArray:
-        v = _nearest(border, points_of(edge, t))
+        v = _nearest(border, points_of(edge, t), None if near is None else near(t))
         for limit, end in zip(range_of(edge), at_ends, strict=True):
             v = v if end is None else np.where(t == limit, end, v)
         return v
@@ -282,20 +286,50 @@ def _distance(
     return own, best
 
 
-def _nearest(border: BSplineCurve, points: FloatArray) -> FloatArray:
-    """Return where on a curve the points nearest to others are, which run along it."""
+def _near_seam(
+    border: BSplineCurve, edge: Any, at_ends: tuple[float | None, ...]
+) -> Callable[[FloatArray], FloatArray] | None:
+    """Return about where along a closed border the places of an edge are; None of a border that is open.
+
+    At its seam a point has two feet. Which is meant is told by walking the edge from an end of which it is known, or
+    from its middle.
+    """
+    start, end = border.evaluate(border.knots[[0, -1]])
+    if np.linalg.norm(end - start) > _CLOSED * float(np.ptp(border.control_points, axis=0).max()):
+        return None
+    t = np.linspace(*range_of(edge), _MEASURED)
+    v = _nearest(border, points_of(edge, t))
+    first, last = at_ends
+    k = _MEASURED // 2
+    if first is not None:
+        k, v[0] = 0, first
+    elif last is not None:
+        k, v[-1] = _MEASURED - 1, last
+    period = float(np.ptp(border.knots))
+    v[k:], v[: k + 1] = np.unwrap(v[k:], period=period), np.unwrap(v[k::-1], period=period)[::-1]
+    return lambda x: np.interp(x, t, v)
+
+
+def _nearest(border: BSplineCurve, points: FloatArray, near: FloatArray | None = None) -> FloatArray:
+    """Return where on a curve the points nearest to others are, which run along it.
+
+    Of a closed curve those that lie `near`, where that is told: its end is its start.
+    """
     low, high = float(border.knots[0]), float(border.knots[-1])
     nodes = np.linspace(low, high, _NODES + 1)
     there = border.evaluate(nodes)
     v = nodes[((points[:, None] - there) ** 2).sum(axis=2).argmin(axis=1)]
+    if near is not None:
+        v += (high - low) * np.round((near - v) / (high - low))
     for _ in range(_STEPS):
-        away = points - border.evaluate(v)
-        slope, bend = border.evaluate(v, 1), border.evaluate(v, 2)
+        on = np.clip(v, low, high)
+        away = points - border.evaluate(on)
+        slope, bend = border.evaluate(on, 1), border.evaluate(on, 2)
         # Newton's step, or that of Gauss where the curve bends away.
         full = (slope**2).sum(axis=1) - (away * bend).sum(axis=1)
         full = np.where(full > 0.5 * (slope**2).sum(axis=1), full, (slope**2).sum(axis=1))
         step = (away * slope).sum(axis=1) / np.maximum(full, 1e-300)
-        moved = np.clip(v + step, low, high)
+        moved = np.clip(on + step, low, high)
         if np.abs(moved - v).max() <= 1e-15 * (high - low):
             break
         v = moved

@@ -49,6 +49,8 @@ class Part:
         From the part to where that face is.
     times : int
         How often the part stands in the file.
+    before : int
+        How often it stands there before that face.
     """
 
     shape: Any
@@ -56,6 +58,7 @@ class Part:
     face: int
     place: Any
     times: int
+    before: int = 0
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,8 +99,8 @@ class PartFile:
                 for k, own in enumerate(parts(shape, "FACE")):
                     if own.IsPartner(face):
                         place = face.Location().Transformation() * own.Location().Transformation().Inverted()
-                        times = sum(own.IsPartner(other) for other in faces)
-                        return Part(shape, label, k, place, times)
+                        same = [n for n, other in enumerate(faces) if own.IsPartner(other)]
+                        return Part(shape, label, k, place, len(same), same.index(number))
         return Part(self.root, None, number, gp_Trsf(), 1)
 
     def with_part(

@@ -16,6 +16,7 @@ from semispline.solver.arrays import FloatArray
 from semispline.solver.errors import EdgeError
 from semispline.solver.io import occ_surface
 from semispline.solver.splines import BSplineSurface, iso_curve
+from semispline.solver.topology.gate_report import Change
 from semispline.solver.topology.occ_edges import wires
 from semispline.solver.topology.occ_faces import closed_face, evenly, has_loose_faces, new_face, seam_edge, shell_of
 from semispline.solver.topology.occ_new_edges import (
@@ -45,7 +46,6 @@ from semispline.solver.topology.occ_shapes import (
     tolerance_of,
     turned,
 )
-from semispline.solver.topology.solid_gate import Change
 from semispline.solver.topology.solid_orders import NewFace
 
 

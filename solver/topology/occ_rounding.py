@@ -17,6 +17,7 @@ from semispline.solver.arrays import FloatArray
 from semispline.solver.errors import EdgeError
 from semispline.solver.io import occ_surface
 from semispline.solver.splines import BSplineSurface, iso_curve, split_v
+from semispline.solver.topology.gate_report import Change
 from semispline.solver.topology.occ_edges import wires
 from semispline.solver.topology.occ_faces import closed_face, evenly, new_face, rebuilt, seam_edge, with_faces
 from semispline.solver.topology.occ_new_edges import add_by_feet, border_edge, end_edge, line_on, settle, trimmed
@@ -32,7 +33,6 @@ from semispline.solver.topology.occ_shapes import (
     points_of,
     range_of,
 )
-from semispline.solver.topology.solid_gate import Change
 from semispline.solver.topology.solid_orders import Rounding
 
 _SAMPLES = 65

@@ -13,12 +13,13 @@ import OCP  # noqa: F401
 
 from semispline.solver.errors import ComputationError, SemisplineError
 from semispline.solver.io import MILLIMETRES
+from semispline.solver.topology.gate_report import Change, GateReport, Point
 from semispline.solver.topology.occ_joined_parts import join_parts
-from semispline.solver.topology.occ_parts import PartFile, open_parts, placed
+from semispline.solver.topology.occ_parts import Part, PartFile, open_parts, placed
 from semispline.solver.topology.occ_replacing import change_of, opening, put_in
 from semispline.solver.topology.occ_rounding import rounded
 from semispline.solver.topology.occ_shapes import copy_of, parts
-from semispline.solver.topology.solid_gate import Change, GateReport, gate
+from semispline.solver.topology.solid_gate import gate
 from semispline.solver.topology.solid_orders import Joining, Outcome, Replacement, Rounding
 
 
@@ -52,24 +53,46 @@ def _changed(file: PartFile, wanted: Replacement | Rounding, suffix: str) -> Out
         edges = [(face - wanted.face + part.face, k) for face, k in wanted.edges]
         after, became, change = rounded(copy, edges, replace(wanted, surface=placed(wanted.surface, back)))
     millimetres = None if file.unit is None else MILLIMETRES[file.unit]
-    report = gate(part.shape, after, change, millimetres=millimetres)
-    touched = tuple(sorted(set(change.touched) - set(change.old)))
-    if not report.is_sound:
-        return Outcome(report, None, None, touched, change.new, part.times)
     before = part.shape
     own, olds = parts(after, "FACE"), parts(before, "FACE")
+    # What the first face of the part is called: where it stands before the face that was named it changes, too.
+    first = wanted.face - part.face
+    firsts = first, first + part.before * (len(own) - len(olds))
+    report = in_file(gate(before, after, change, millimetres=millimetres, first=firsts), part)
+    if not report.is_sound:
+        return Outcome(report, None, None, (), (), part.times)
+    kept = change.kept_of(len(olds), len(own))
+    touched = tuple(sorted(firsts[1] + kept[n] for n in change.touched if n in kept))
+    new = tuple(firsts[1] + n for n in change.new)
     # A face in the place of another has its label; beside an edge that of the faces on the first side.
     like = [(own[k], olds[n]) for k, n in zip(change.new, change.like, strict=False)]
     whole = file.with_part(part, after, lambda piece: became(image(piece)), like)
-    all_faces = parts(whole.root, "FACE")
-    new = tuple(next(n for n, face in enumerate(all_faces) if face.IsPartner(own[k])) for k in change.new)
     content = whole.content(suffix)
-    again = _read_back(content, suffix, None if part.label is None else new[0], before, change, millimetres)
+    again = _read_back(content, suffix, None if part.label is None else new[0], before, change, millimetres, firsts)
+    again = in_file(again, part)
     return Outcome(report, again, content if again.is_sound else None, touched, new, part.times)
 
 
+def in_file(report: GateReport, part: Part) -> GateReport:
+    """Return a report with places where the part stands."""
+    from OCP.gp import gp_Pnt
+
+    def moved(place: Point) -> Point:
+        x, y, z = gp_Pnt(*place).Transformed(part.place).Coord()
+        return x, y, z
+
+    place = None if report.place is None else moved(report.place)
+    return replace(report, place=place, border=tuple(replace(edge, at=moved(edge.at)) for edge in report.border))
+
+
 def _read_back(
-    content: bytes, suffix: str, face: int | None, before: Any, change: Change, millimetres: float | None
+    content: bytes,
+    suffix: str,
+    face: int | None,
+    before: Any,
+    change: Change,
+    millimetres: float | None,
+    first: tuple[int, int],
 ) -> GateReport:
     """Gate what was written once more: the part that a face belongs to, or all of it."""
     with TemporaryDirectory() as folder:
@@ -77,4 +100,4 @@ def _read_back(
         path.write_bytes(content)
         file = open_parts(path)
         shape = file.root if face is None else file.part_of(face).shape
-        return gate(before, shape, change, millimetres=millimetres, read_back=True)
+        return gate(before, shape, change, millimetres=millimetres, read_back=True, first=first)

@@ -14,9 +14,10 @@ import numpy as np
 
 from semispline.solver.arrays import FloatArray
 from semispline.solver.splines import BSplineCurve, BSplineSurface, curve_length, greville
-from semispline.solver.topology.band_search import band_limits
+from semispline.solver.topology.band_search import band_limits, is_plane
 from semispline.solver.topology.bands import Band
 from semispline.solver.topology.face_curves import Source
+from semispline.solver.topology.face_jets import Face
 from semispline.solver.topology.trim_curves import TrimCurve
 
 End = Literal[0, 1]
@@ -24,6 +25,8 @@ End = Literal[0, 1]
 _WIDTH = 0.1
 # Sine of the angle between an edge and the way into the face, at the least.
 _STEEP = 0.05
+# The degree of lines and arcs, as kernels write them.
+_OF_ARCS = 2
 # Of the size of a bilinear surface: what its corners may miss a parallelogram by.
 _AFFINE = 1e-12
 
@@ -79,6 +82,13 @@ def plane_strip(curve: TrimCurve, ways: Mapping[End, FloatArray]) -> Band | None
         cut_at_start="",
         cut_at_end="",
     )
+
+
+def strip_of_arc(curve: TrimCurve) -> Band | None:
+    """Return the strip of a plane along a line or an arc of it, square to it all along; None of other curves."""
+    if not is_plane(Face(curve.surface)) or curve.edge is None or curve.edge.degree > _OF_ARCS:
+        return None
+    return plane_strip(curve, {})
 
 
 def ways_between(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TypeAlias
@@ -93,8 +93,14 @@ class _Asked:
         return self.word.removesuffix("*") if self.word.startswith(NEAR) else None
 
 
-def resolve_edges(edges: Sequence[tuple[str, str]], names: Sequence[str] = ("--edge-a", "--edge-b")) -> list[Resolved]:
+def resolve_edges(
+    edges: Sequence[tuple[str, str]],
+    names: Sequence[str] = ("--edge-a", "--edge-b"),
+    known: Mapping[str, MeasuredEdges] | None = None,
+) -> list[Resolved]:
     """Return what `resolve_edge` does for the edges of a blend, each file read once; all in one unit.
+
+    Edges of files that are `known` are not read again; words of points need them measured for these.
 
     Two points in one file without numbers of faces are two clicks: they say which face lies between, and the bases are
     the faces beyond; the same edge twice is a sharp edge with its two faces.
@@ -102,7 +108,7 @@ def resolve_edges(edges: Sequence[tuple[str, str]], names: Sequence[str] = ("--e
     asked = [_Asked(spec, word.strip(), name) for (spec, word), name in zip(edges, names, strict=True)]
     for one in asked:
         check_edge_word(one.word, one.name)
-    measured = _measured(asked)
+    measured = _measured(asked) if known is None else dict(known)
     found = _take_faces([_with_rows(one, measured) for one in asked], measured)
     found = [_with_all(one, measured) for one in found]
     specs = [_specs(one, measured) for one in found]

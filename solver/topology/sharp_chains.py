@@ -145,9 +145,9 @@ def _check_square(graph: EdgeGraph, passage: Passage | None, title: str) -> None
     slant = float(np.degrees(np.arcsin(min(1.0, abs(along @ away)))))
     if slant > _SLANT:
         raise EdgeError(
-            f"{title}: the edge between faces {faces[0]} and {faces[1]} slants by {slant:.2g} degrees where they meet "
-            f"the rounded edges {_named(graph, (passage.before, passage.after))}, expected one that is square to them; "
-            "they cannot be rounded together"
+            f"{title}: it goes on from {_named(graph, (passage.before, passage.after), ' to ')}, and the edge between "
+            f"faces {faces[0]} and {faces[1]} slants by {slant:.2g} degrees there, expected one square to them: on a "
+            "slanted one contacts at one distance from both do not meet, so that they cannot be rounded together"
         )
 
 
@@ -155,8 +155,8 @@ def _is_point(graph: EdgeGraph, one: FloatArray, other: FloatArray) -> bool:
     return bool(np.linalg.norm(one - other) <= _SAME_POINT * graph.size)
 
 
-def _named(graph: EdgeGraph, rows: tuple[int, ...]) -> str:
-    return ", ".join(_names(graph, rows))
+def _named(graph: EdgeGraph, rows: tuple[int, ...], between: str = ", ") -> str:
+    return between.join(_names(graph, rows))
 
 
 def _names(graph: EdgeGraph, rows: tuple[int, ...]) -> Iterator[str]:

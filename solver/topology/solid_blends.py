@@ -16,19 +16,23 @@ from semispline.solver.options import BlendOptions, Continuity, named_options
 from semispline.solver.topology.bases import edge_bases
 from semispline.solver.topology.edge_base import EdgeBase
 from semispline.solver.topology.edge_blends import blend_bases
-from semispline.solver.topology.end_faces import blend_onto, check_ends, faces_at_ends, going_on
-from semispline.solver.topology.face_runs import FaceRun, ReplacedRun, replaced_run
+from semispline.solver.topology.end_faces import blend_onto, faces_at_ends, going_on
+from semispline.solver.topology.face_runs import FaceRun
+from semispline.solver.topology.gate_report import GateReport
 from semispline.solver.topology.kept_edges import KeptEdge, KeptEnd, ended_on_edges, kept_edges, measured_again
 from semispline.solver.topology.panels import panels_of
 from semispline.solver.topology.relations import relate
+from semispline.solver.topology.replaced_runs import ReplacedRun, replaced_run
 from semispline.solver.topology.resolving import Resolved
-from semispline.solver.topology.solid_gate import GateReport
+from semispline.solver.topology.run_ends import check_ends
 from semispline.solver.topology.solid_orders import Joining, NewFace, Outcome, Replacement, Rounding
 
 # Operating, measuring twice, writing and reading again take so many times as long as reading, at most.
 _TIMES = 12.0
 # Of their limits bands use so much: then they lie within 1e-7 of their length, and no tolerance grows.
 _SHARE = 1e-2
+# Open edges that are named in what is said; a report has all of them.
+_NAMED = 8
 _WRITTEN = (".step", ".stp", ".brep", ".brp")
 
 
@@ -48,7 +52,7 @@ class SolidBlend:
     read_back : GateReport
         The same of what was written and read again.
     touched : tuple of int
-        Faces whose borders were changed.
+        Faces whose borders were changed, likewise.
     notes : tuple of str
         What else is to be said.
     content : bytes
@@ -145,7 +149,7 @@ def solid_with_blend(
     """Return what `replace_face` writes, in the format of a suffix; its errors."""
     found = replaced_run(str(path), faces, edge_a, edge_b)
     made = _blended(found, options, keep_ends=keep_ends)
-    outcome = operated(path, Replacement(made.news), suffix)
+    outcome = operated(path, Replacement(made.news), suffix, f"--replace {','.join(map(str, faces))}")
     assert outcome.content is not None
     assert outcome.read_back is not None
     return SolidBlend(
@@ -179,8 +183,8 @@ def check_suffixes(path: str | Path, out: str | Path) -> None:
         raise FileError(f"{out}: no solid goes into it, expected .step or .brep; `write_surface` writes a blend")
 
 
-def operated(path: str | Path, order: Replacement | Rounding | Joining, suffix: str) -> Outcome:
-    """Return what came of an order, carried out by a process of its own.
+def operated(path: str | Path, order: Replacement | Rounding | Joining, suffix: str, title: str) -> Outcome:
+    """Return what came of an order, carried out by a process of its own; messages begin with the title.
 
     Raises
     ------
@@ -195,12 +199,6 @@ def operated(path: str | Path, order: Replacement | Rounding | Joining, suffix: 
             path, "semispline.solver.topology.occ_solid_worker", "Open CASCADE", [str(written), suffix], _TIMES
         )
     assert isinstance(outcome, Outcome)
-    if isinstance(order, Rounding):
-        title = "--round {}:e{}".format(*order.edges[0])
-    elif isinstance(order, Joining):
-        title = f"--from {path}#{order.face} --to {order.other_path or path}#{order.other}"
-    else:
-        title = f"--replace {','.join(str(x.face) for x in order.faces)}"
     for report, when in ((outcome.report, ""), (outcome.read_back, "written and read again, ")):
         if report is not None and report.reason is not None:
             where = "" if report.place is None else " near ({:.6g}, {:.6g}, {:.6g})".format(*report.place)
@@ -235,9 +233,10 @@ def _blended(found: ReplacedRun, options: BlendOptions, *, keep_ends: bool) -> _
     else:
         rows = run.ends(graph)
         smooth = going_on(graph, relations, rows) if keep_ends else []
-        check_ends(graph, relations, run.faces, [row for row in rows if row not in smooth])
+        rest = [row for row in rows if row not in smooth]
+        at = faces_at_ends(graph, relations, rest)
+        check_ends(graph, relations, run, rest)
         kept = kept_edges(graph, relations, smooth)
-        at = faces_at_ends(graph, relations, [row for row in rows if row not in smooth])
         result, surface = blend_onto(graph, a, b, options, at, kept)
         surface, made = ended_on_edges(surface, kept)
         ends = tuple(made)
@@ -284,8 +283,11 @@ def notes_of(outcome: Outcome) -> tuple[str, ...]:
     notes = list(outcome.notes)
     if outcome.times > 1:
         notes.append(f"the part stands {outcome.times} times in the file, and is changed wherever it stands")
-    if outcome.report.open_edges:
-        notes.append(f"{outcome.report.open_edges} edges belong to one face alone, as before: this is no closed solid")
+    names = outcome.report.open_edges
+    if names:
+        said = ", ".join(names[:_NAMED]) + (f" and {len(names) - _NAMED} more" if len(names) > _NAMED else "")
+        verb = "belong" if len(names) > 1 else "belongs"
+        notes.append(f"{said} {verb} to one face alone, as before: this is no closed solid")
     return tuple(notes)
 
 

@@ -2,22 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass, replace
+from itertools import pairwise
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal, TypeAlias
 
 import numpy as np
 
 from semispline.solver.arrays import FloatArray
 from semispline.solver.io import read_surfaces
-from semispline.solver.judge import Base, FaceContact, measure_face_contact
+from semispline.solver.judge import Base, FaceContact, measure_face_contact, required_face_measures
+from semispline.solver.splines import parse_edge
 from semispline.solver.topology.edge_limits import default_limits, face_limits
 from semispline.solver.topology.face_edges import resolved_use
 from semispline.solver.topology.half_edges import NONE
 from semispline.solver.topology.measuring import measured_edges
 from semispline.solver.topology.relations import relate
 from semispline.solver.topology.trim_curves import read_trim_curves
+
+Stretch: TypeAlias = Literal["", "beside a kept end", "kept end"]
 
 # Degrees: where a new face meets another one at more it ends there, and was not to be smooth.
 _ENDS = 2.0
@@ -36,19 +40,28 @@ class SolidContact:
     contact : FaceContact
     allowed : dict
         For each measure its limit.
+    stretch : {"", "beside a kept end", "kept end"}
+        Which part of the edge; where an end edge was kept contact is G1, and no limit holds for curvature.
     """
 
     edge: str
     face: int
     contact: FaceContact
     allowed: dict[str, float]
+    stretch: Stretch = ""
 
     def record(self) -> dict[str, Any]:
         """Return what a report holds of it."""
-        return {"edge": self.edge, "face": self.face, **asdict(self.contact), "allowed": self.allowed}
+        own = {"edge": self.edge, "face": self.face, "stretch": self.stretch}
+        return {**own, **asdict(self.contact), "allowed": self.allowed}
 
 
-def contacts_in_solid(path: str | Path, faces: Sequence[int], orders: tuple[int, int] = (2, 2)) -> list[SolidContact]:
+def contacts_in_solid(
+    path: str | Path,
+    faces: Sequence[int],
+    orders: tuple[int, int] = (2, 2),
+    faded: Sequence[tuple[float, float]] = (),
+) -> list[SolidContact]:
     """Return how new faces of a file meet the others, edge by edge.
 
     Parameters
@@ -58,6 +71,9 @@ def contacts_in_solid(path: str | Path, faces: Sequence[int], orders: tuple[int,
         N of `PATH#N`, of the new ones.
     orders : (int, int)
         Of contact, that are asked for on both sides.
+    faded : sequence of (float, float)
+        The parameters v of the blend beside end edges that were kept, where contact is G1 alone: these stretches of
+        contacts are measured by themselves.
 
     Raises
     ------
@@ -81,15 +97,31 @@ def contacts_in_solid(path: str | Path, faces: Sequence[int], orders: tuple[int,
     curves = read_trim_curves(path, asked) if asked else []
     order = max(2, *orders)
     found: list[SolidContact] = []
-    for row, face, curve in zip(rows, own, curves, strict=True):
+    for row, face, curve, (beyond, _) in zip(rows, own, curves, asked, strict=True):
         name = uses.name(row)
         end = resolved_use(measured, row, f"{path}#{face}", replace(loaded[face], boundary=None), name, name)
-        base = Base(end.surface, end.edge)
-        contact = measure_face_contact(base, curve.free_edge(), order=order)
-        kind = default_limits(curve)
-        allowed = face_limits(curve, base, kind, length=contact.length, order=order)
-        found.append(SolidContact(f"{face}:{name}", asked[len(found)][0], contact, allowed))
+        for base, stretch in _stretches(Base(end.surface, end.edge), faded):
+            contact = measure_face_contact(base, curve.free_edge(), order=order)
+            allowed = face_limits(curve, base, default_limits(curve), length=contact.length, order=order)
+            if stretch:
+                allowed = {key: limit for key, limit in allowed.items() if key in required_face_measures("G1")}
+            found.append(SolidContact(f"{face}:{name}", beyond, contact, allowed, stretch))
     return found
+
+
+def _stretches(base: Base, faded: Sequence[tuple[float, float]]) -> Iterator[tuple[Base, Stretch]]:
+    """Yield the parts of an edge of a blend where contact is as asked for, and where it is G1 alone."""
+    if not faded:
+        yield base, ""
+        return
+    if parse_edge(base.edge).direction == "v":
+        yield base, "kept end"
+        return
+    low, high = base.range_along
+    places = sorted({low, high, *(v for ends in faded for v in ends if low < v < high)})
+    for start, end in pairwise(places):
+        within = any(a <= (start + end) / 2 <= b for a, b in faded)
+        yield Base(base.surface, f"{base.side}[{start!r},{end!r}]"), "beside a kept end" if within else ""
 
 
 def outward_at_border(path: str | Path, faces: Sequence[int]) -> FloatArray:

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 from semispline.solver.blending import BlendResult, Split, faces_of_blend
-from semispline.solver.errors import EdgeError, FileError
+from semispline.solver.errors import ComputationError, EdgeError, FileError
 from semispline.solver.io import check_outputs, split_spec, write_bytes
 from semispline.solver.options import BlendOptions, named_options
+from semispline.solver.splines import reverse_u
 from semispline.solver.topology.caps import outline_of
 from semispline.solver.topology.edge_blends import blend_bases
 from semispline.solver.topology.end_faces import as_spline
@@ -69,16 +71,20 @@ def joined_solid(specs: tuple[str, str], suffix: str, options: BlendOptions, spl
     is_same = Path(path).resolve() == Path(other).resolve()
     if is_same and face == beyond:
         raise EdgeError(f"--to: found {specs[1]!r} as at --from, expected another face")
-    graphs = {name: measured_edges(name).graph for name in dict.fromkeys((path, path if is_same else other))}
+    paths = path, path if is_same else other
+    measured = {name: measured_edges(name) for name in dict.fromkeys(paths)}
     words = [
-        outline_of(graphs[path if is_same else name], number, said)
-        for name, number, said in zip((path, other), (face, beyond), NAMES, strict=True)
+        outline_of(measured[name].graph, number, said)
+        for name, number, said in zip(paths, (face, beyond), NAMES, strict=True)
     ]
-    ends = resolve_edges([(path, words[0]), (other, words[1])], NAMES)
-    result = _blended(ends, options)
+    ends = resolve_edges(list(zip(paths, words, strict=True)), NAMES, measured)
+    made = _blended(ends, options)
+    result = made.result
     surfaces = tuple(as_spline(one) for one in faces_of_blend(result, split))
+    if made.turned:
+        surfaces = tuple(map(reverse_u, surfaces))
     order = Joining(face, None if is_same else other, beyond, surfaces)
-    outcome = operated(path, order, suffix)
+    outcome = operated(path, order, suffix, f"--from {specs[0]} --to {specs[1]}")
     assert outcome.content is not None
     assert outcome.read_back is not None
     counts = [word.count("+") + 1 for word in words]
@@ -89,7 +95,7 @@ def joined_solid(specs: tuple[str, str], suffix: str, options: BlendOptions, spl
         gate=outcome.report,
         read_back=outcome.read_back,
         touched=outcome.touched,
-        notes=notes_of(outcome),
+        notes=(*made.notes, *notes_of(outcome)),
         content=outcome.content,
     )
 
@@ -101,9 +107,53 @@ def _named(spec: str, name: str) -> tuple[str, int]:
     return path, number
 
 
-def _blended(ends: list[Resolved], options: BlendOptions) -> BlendResult:
+@dataclass(frozen=True, eq=False)
+class _Blended:
+    """A blend of both outlines; `turned` where a of it is the second one."""
+
+    result: BlendResult
+    turned: bool = False
+    notes: tuple[str, ...] = ()
+
+
+def _blended(ends: list[Resolved], options: BlendOptions) -> _Blended:
+    """Return the fairer one of the blends from the first outline to the second and back.
+
+    What faces what is told from the first, and the fairest shape is sought from there: where the outlines are of
+    different kinds the other order gives another blend, and which was named first is to be no matter. What is asked
+    along v is meant along the first.
+    """
     (a,), (b,) = _single(close_bases(ends, options.continuities), ends)
-    return blend_bases(a, b, options)
+    found: list[_Blended] = []
+    errors: list[ComputationError] = []
+    along_v = not isinstance(options.middle_knots, str | None) or any(isinstance(x, tuple) for x in options.alphas)
+    for turned in (False,) if along_v else (False, True):
+        try:
+            result = blend_bases(b, a, _turned(options)) if turned else blend_bases(a, b, options)
+            found.append(_Blended(result, turned))
+        except ComputationError as error:
+            errors.append(error)
+    if not found:
+        raise errors[0]
+    best = min(found, key=lambda x: (bool(x.result.warnings), x.result.shape.fairness.value))
+    if not best.turned:
+        return best
+    why = "the other does not do" if errors else "that is the fairer order"
+    return replace(best, notes=(f"A is the outline of {NAMES[1]}, B that of {NAMES[0]}: {why}",))
+
+
+def _turned(options: BlendOptions) -> BlendOptions:
+    """Return what is asked of b at a, and the other way round."""
+    both: dict[str, Any] = {"continuity": options.continuities[::-1], "bulge": options.bulges[::-1]}
+    if options.alpha is not None:
+        both["alpha"] = options.alphas[::-1]
+    if not isinstance(options.p2, str):
+        both["p2"] = options.p2[::-1]
+    if not isinstance(options.match, str):
+        both["match"] = tuple(pair[::-1] for pair in options.match)
+    if options.u_knots is not None:
+        both["u_knots"] = tuple(1 - x for x in options.u_knots[::-1])
+    return replace(options, **both)
 
 
 def _single(sides: list[Any], ends: list[Resolved]) -> list[Any]:

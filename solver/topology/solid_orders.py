@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from semispline.solver.splines import BSplineSurface
-from semispline.solver.topology.solid_gate import GateReport
+from semispline.solver.topology.gate_report import GateReport
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,9 +109,9 @@ class Outcome:
     content : bytes or None
         The file; None where the gate stopped it.
     touched : tuple of int
-        Faces whose borders were changed, by their numbers in the part.
+        Faces whose borders were changed, by their numbers in the file; none where nothing was written.
     new : tuple of int
-        The new faces, by their numbers in the file; where nothing was written by those in the part.
+        The new faces, likewise.
     times : int
         How often the changed part stands in the file.
     notes : tuple of str

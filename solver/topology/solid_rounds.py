@@ -73,11 +73,20 @@ def round_edge(
 
 
 def solid_with_round(
-    path: str | Path, face: int, edge: str, cuts: tuple[str, str], suffix: str, options: BlendOptions
+    path: str | Path,
+    face: int,
+    edge: str,
+    cuts: tuple[str, str],
+    suffix: str,
+    options: BlendOptions,
+    title: str | None = None,
 ) -> SolidBlend:
-    """Return what `round_edge` writes, in the format of a suffix; cuts are words, as `parse_cut` takes them."""
+    """Return what `round_edge` writes, in the format of a suffix.
+
+    Cuts are words, as `parse_cut` takes them; messages begin with the title, or else with the edge to be rounded.
+    """
     measured = measured_edges(path)
-    graph, title = measured.graph, f"--round {face}:{edge}"
+    graph, title = measured.graph, title or f"--round {face}:{edge}"
     check_face(graph, face, str(path))
     relations = relate(graph)
     chain = sharp_chain(graph, relations, row_of(graph, edge, face, "--round"), title)
@@ -97,7 +106,7 @@ def solid_with_round(
         chain.closed,
         not chain.convex,
     )
-    outcome = operated(path, order, suffix)
+    outcome = operated(path, order, suffix, title)
     assert outcome.content is not None
     assert outcome.read_back is not None
     return SolidBlend(

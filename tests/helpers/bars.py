@@ -6,7 +6,8 @@ from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge, BRepBuilderAPI_MakeFace,
 from OCP.BRepOffsetAPI import BRepOffsetAPI_ThruSections
 from OCP.BRepPrimAPI import BRepPrimAPI_MakePrism
 from OCP.GC import GC_MakeArcOfCircle
-from OCP.gp import gp_Pnt, gp_Vec
+from OCP.Geom import Geom_Ellipse
+from OCP.gp import gp_Ax2, gp_Dir, gp_Pnt, gp_Vec
 
 from helpers.parts import graph_of
 
@@ -29,6 +30,15 @@ def round_wire(radius, z, arcs, turn=0.3):
     for k in range(arcs):
         start = turn + 2 * pi * k / arcs
         wire.Add(_arc((0.0, 0.0), radius, start, start + 2 * pi / arcs, z))
+    return wire.Wire()
+
+
+def ellipse_wire(a, b, z, arcs, turn=0.0):
+    """An ellipse in arcs of equal ranges of its angle."""
+    wire, curve = BRepBuilderAPI_MakeWire(), Geom_Ellipse(gp_Ax2(gp_Pnt(0, 0, z), gp_Dir(0, 0, 1)), a, b)
+    for k in range(arcs):
+        start = turn + 2 * pi * k / arcs
+        wire.Add(BRepBuilderAPI_MakeEdge(curve, start, start + 2 * pi / arcs).Edge())
     return wire.Wire()
 
 

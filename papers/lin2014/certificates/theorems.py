@@ -1,16 +1,22 @@
-"""Theorems of `derivations/coq` that stand for what certificates believe, and that prove records from the definition."""
+"""Theorems of `derivations/coq` that stand for what certificates believe, or decide records from the definition."""
 
 from __future__ import annotations
 
 from semispline.papers.lin2014.certificates import (
-    appendix,
     bezier,
     contact,
     counts,
-    energy,
+    densities,
+    general_contact,
+    least_energies,
+    linear_system,
     many_rows,
+    minima,
     others,
-    surfaces,
+    spline_properties,
+    spline_steps,
+    subpatch_counts,
+    sums,
     written_anew,
 )
 
@@ -30,7 +36,7 @@ SENTENCES = {
         "EndDerivatives.second_derivative",
         "Mirror.end_derivative_iff",
     ),
-    surfaces.INDUCTION: (
+    spline_steps.INDUCTION: (
         "BSplines.local_support",
         "BSplines.non_negative",
         "BSplines.partition_of_unity",
@@ -40,21 +46,21 @@ SENTENCES = {
         "Smoothness.smooth_at_a_knot",
         "Smoothness.no_smoother",
     ),
-    surfaces.UNROLLED: ("Surfaces.de_boor", "Surfaces.equation_3", "Surfaces.classical"),
-    surfaces.SPACES: ("Polynomials.same_on_span",),
-    surfaces.SLOPE: ("Energy.slope_of_power",),
+    sums.UNROLLED: ("Surfaces.de_boor", "Surfaces.equation_3", "Surfaces.classical"),
+    spline_steps.SPACES: ("Polynomials.same_on_span",),
+    spline_properties.SLOPE: ("Energy.slope_of_power",),
     counts.STEPS: ("BSplines.own_knots", "BSplines.local_support", "BSplines.positive_inside"),
-    counts.DEGREE: ("Division.degree_of_Q",),
+    subpatch_counts.DEGREE: ("Division.degree_of_Q",),
     bezier.UNROLLED: _DIVISION,
     bezier.BINOMIALS: ("Division.bern_step", "Division.bern_product"),
-    energy.NO_ENERGY: ("Energy.zero_energy", "Independence.independent"),
-    energy.FUBINI: ("Energy.product_of_integrals",),
-    energy.CURVATURES: ("Geometry.principal_curvatures", "Geometry.principal_curvatures_exist"),
-    energy.UNROLLED: ("Energy.half_slope",),
-    energy.LEAST: ("Energy.least_energy",),
+    minima.NO_ENERGY: ("Energy.zero_energy", "Independence.independent"),
+    linear_system.FUBINI: ("Energy.product_of_integrals",),
+    densities.CURVATURES: ("Geometry.principal_curvatures", "Geometry.principal_curvatures_exist"),
+    minima.UNROLLED: ("Energy.half_slope",),
+    least_energies.QUADRATIC: ("Energy.least_energy",),
     many_rows.CUBICS: ("Energy.cubic_is_least",),
-    appendix.PLANES: ("Geometry.one_tangent_plane",),
-    appendix.FORMS: ("Geometry.curvatures_agree",),
+    general_contact.PLANES: ("Geometry.one_tangent_plane",),
+    general_contact.FORMS: ("Geometry.curvatures_agree",),
     others.POWERS: ("Energy.powers_taken_away",),
     others.NO_SINE: ("Polynomials.no_rational_solution",),
     others.CIRCLE: ("Polynomials.none_on_a_circle",),

@@ -12,19 +12,22 @@ import sympy as sp
 
 from semispline.papers.ledger import LedgerError, collected
 from semispline.papers.lin2014.certificates import (
-    appendix,
     bezier,
-    conditions,
     contact,
     controls,
     counts,
-    energy,
+    densities,
     export,
+    general_contact,
+    linear_system,
     many_rows,
     others,
-    surfaces,
+    set_rows,
+    special_choice,
+    subpatch_counts,
     written_anew,
 )
+from semispline.papers.lin2014.checks import energy
 from semispline.papers.recheck import Export, rechecked, write_certificates
 from semispline.papers.recheck.draft import UNWRITTEN, Draft, export_of, is_decided
 from semispline.papers.recheck.statements import Identity
@@ -148,22 +151,24 @@ def test_every_printed_formula_that_fails_is_refused_with_a_witness():
 BROKEN = {
     "end_derivatives": (contact, "end_derivatives", lambda m: m + _at(m, 2, 2), "cond-3.1"),
     "contact_rows": (contact, "contact_rows", lambda m: m.subs(sp.Symbol("a", positive=True), 2), "cond-2.1"),
-    "contact_conditions": (appendix, "contact_conditions", lambda c: [x.subs("q1", 0) for x in c], "eq-16"),
-    "special_conditions": (appendix, "special_conditions", lambda c: [-x for x in c], "eq-17"),
+    "contact_conditions": (general_contact, "contact_conditions", lambda c: [x.subs("q1", 0) for x in c], "eq-16"),
+    "special_conditions": (special_choice, "special_conditions", lambda c: [-x for x in c], "eq-17"),
     "last_knot": (counts, "last_knot", lambda x: x + 1, "sec-2.u-knots"),
     "functions_of_order": (counts, "functions_of_order", lambda x: x + 1, "sec-3.uniform-knots"),
     "support_end": (counts, "support_end", lambda x: 2 * x, "sec-3.contact-domain"),
     "domain_ends": (counts, "domain_ends", lambda x: x[::-1], "sec-3.inner-knots"),
-    "row_degrees": (counts, "row_degrees", lambda x: x[::-1], "sec-2.bottom-counts"),
-    "contact_matrix": (counts, "contact_matrix", lambda m: m + _at(m, 2, 1), "sec-4.no-middle-curve"),
-    "gram_matrix": (energy, "gram_matrix", lambda m: m + _at(m, 1, 1), "eq-11"),
-    "energy_matrix": (energy, "energy_matrix", lambda m: 2 * m, "sec-4.third-term"),
-    "gram_block": (energy, "gram_block", lambda x: x.subs(sp.Symbol("A1"), sp.Symbol("A1") / 2), "eq-14"),
-    "thin_plate_density": (energy, "thin_plate_density", lambda x: x - sp.Symbol("P_uv") ** 2, "eq-11"),
+    "row_degrees": (subpatch_counts, "row_degrees", lambda x: x[::-1], "sec-2.bottom-counts"),
+    "contact_matrix": (set_rows, "contact_matrix", lambda m: m + _at(m, 2, 1), "sec-4.no-middle-curve"),
+    "gram_matrix": (densities, "gram_matrix", lambda m: m + _at(m, 1, 1), "eq-11"),
+    "energy_matrix": (linear_system, "energy_matrix", lambda m: 2 * m, "sec-4.third-term"),
+    "gram_block": (linear_system, "gram_block", lambda x: x.subs(sp.Symbol("A1"), sp.Symbol("A1") / 2), "eq-14"),
+    "thin_plate_density": (densities, "thin_plate_density", lambda x: x - sp.Symbol("P_uv") ** 2, "eq-11"),
     "blossom": (bezier, "blossom", lambda x: x + x, "sec-2.blossom-1"),
     "contact_rows at a seam": (written_anew, "contact_rows", lambda m: m + _at(m, 1, 1), "fig-10.seam"),
     "energy_matrix at a seam": (written_anew, "energy_matrix", lambda m: m + _at(m, 18, 18), "fig-10.seam"),
     "end_derivatives of strips": (many_rows, "end_derivatives", lambda m: m + _at(m, 2, 2), "sec-3.minimum-over-rows"),
+    "end_energy": (energy, "end_energy", lambda x: x + sp.Rational(1, 7), "sec-3.minimum-over-rows"),
+    "exact_minimum": (energy, "middle_knot_blends", lambda x: (x[0], (*x[1][:2], x[0][2])), "sec-1.fairness"),
     "de_casteljau": (bezier, "de_casteljau", lambda x: x * x, "eq-4"),
     "division_curve": (bezier, "division_curve", lambda x: x[::-1], "eq-6"),
 }  # fmt: skip
@@ -175,7 +180,7 @@ def _at(matrix, i, j):
 
 def forget():
     """Clear what the modules remember."""
-    for module in (appendix, bezier, conditions, contact, counts, energy, many_rows, surfaces, written_anew):
+    for module in export.MODULES:
         for value in vars(module).values():
             if hasattr(value, "cache_clear"):
                 value.cache_clear()

@@ -11,9 +11,9 @@ from OCP.TopLoc import TopLoc_Location
 from typer.testing import CliRunner
 
 from helpers.parts import compound, graph_of, moved, rounded_box, written
-from helpers.solids import MODELS, box_with_fillet, slanted, volume
+from helpers.solids import MODELS, box, box_with_fillet, pipe, slanted, volume
 from helpers.xcaf import labels_of, write_assembly, write_coloured
-from semispline import ComputationError, EdgeError, FileError, SolidError, read_surface, replace_face
+from semispline import ComputationError, EdgeError, FileError, SolidError, read_surface, replace_face, round_edge
 from semispline.solver import workers
 from semispline.solver.cli import app
 from semispline.solver.io import foreign
@@ -90,6 +90,22 @@ def test_edges_named_either_way_give_the_same_solid(tmp_path):
     assert other.gate.volume[1] == pytest.approx(first.gate.volume[1], rel=1e-9)
 
 
+@pytest.mark.parametrize("name", ["boss r=2.0", "pipe r=1.0", "pipe r=2.5"])
+def test_circles_on_planes_are_met_exactly_and_with_few_points(name, tmp_path):
+    """Both contacts are arcs of like parameters: the blend is the surface of revolution of one section."""
+    shape = (MODELS | {"pipe r=1.0": lambda: pipe(1.0), "pipe r=2.5": lambda: pipe(2.5)})[name]()
+    found = replace_face(written(shape, tmp_path / "part.brep"), fillet_of(shape), tmp_path / "out.step")
+    assert found.gate.tolerance == (1e-7, 1e-7)
+    assert max(edge.gap for edge in found.gate.border) <= 1e-12
+    assert found.blend.rows_converted == 6 * 7
+    surface = read_surface(f"{tmp_path / 'out.step'}#{found.face}")
+    axis = [20.0, 20.0] if name.startswith("boss") else [0.0, 0.0]
+    points = surface.evaluate_grid(np.linspace(0, 1, 5), np.linspace(*surface.domain[1], 33))
+    away = np.linalg.norm(points[..., :2] - axis, axis=-1)
+    assert np.ptp(away, axis=1).max() <= 1e-12
+    assert np.ptp(points[..., 2], axis=1).max() <= 1e-12
+
+
 @pytest.mark.parametrize("unit", ["mm", "in"])
 def test_units_names_colours_and_layers_stay(unit, tmp_path):
     shape = box_with_fillet(5.0)
@@ -114,6 +130,30 @@ def test_a_part_of_an_assembly_is_changed_wherever_it_stands(tmp_path):
     back = open_parts(tmp_path / "out.step").root
     alone = replace_face(written(shape, tmp_path / "part.brep"), number, tmp_path / "alone.brep")
     assert volume(back) == pytest.approx(2 * alone.gate.volume[1], rel=1e-6)
+    # All numbers and places are those of the place that was named.
+    assert found.faces == (7 + number,)
+    assert found.touched == tuple(7 + n for n in alone.touched)
+    assert [edge.name for edge in found.gate.border] == [
+        "{}:{}".format(7 + int(name.partition(":")[0]), name.partition(":")[2])
+        for name in (edge.name for edge in alone.gate.border)
+    ]
+    for edge, own in zip(found.gate.border, alone.gate.border, strict=True):
+        assert edge.beyond == 7 + own.beyond
+        point = gp_Pnt(*own.at).Transformed(there)
+        # Where rounding is largest is no place that could be told from others: both lie in the same edge.
+        assert np.linalg.norm(np.array(edge.at) - point.Coord()) <= own.length
+
+
+def test_a_rounded_part_before_the_one_that_was_named_grows_too(tmp_path):
+    there = gp_Trsf()
+    there.SetTranslation(gp_Vec(100, 0, 0))
+    path = write_assembly(box(20, 30, 40), tmp_path / "part.step", [TopLoc_Location(), TopLoc_Location(there)])
+    found = round_edge(path, 6, "e0", 2.0, tmp_path / "out.step")
+    # Seven faces of the first, six old ones of the second.
+    assert found.faces == (13,)
+    assert 7 in found.touched
+    graph = graph_of(open_parts(tmp_path / "out.step").root)
+    assert all((graph.uses.points[graph.uses.of_face(n)][..., 0] > 99).all() for n in (*found.touched, *found.faces))
 
 
 def test_a_shell_stays_as_open_as_it_was(tmp_path):
@@ -123,8 +163,12 @@ def test_a_shell_stays_as_open_as_it_was(tmp_path):
     far = next(n for n, face in enumerate(faces) if not touches(face, faces[number]))
     path = written(compound(face for n, face in enumerate(faces) if n != far), tmp_path / "part.brep")
     found = replace_face(path, number - (far < number), tmp_path / "out.brep")
-    assert found.gate.open_edges == 4
-    assert "4 edges belong to one face alone" in found.notes[0]
+    # They are named, as the written file has them.
+    graph = graph_of(open_parts(tmp_path / "out.brep").root)
+    lonely = [f"{graph.uses.face[k]}:{graph.uses.name(k)}" for k in np.flatnonzero(graph.uses.naked)]
+    assert sorted(found.gate.open_edges) == sorted(lonely)
+    assert len(lonely) == 4
+    assert f"{lonely[0]}, {lonely[1]}, {lonely[2]}, {lonely[3]} belong to one face alone" in found.notes[0]
 
 
 def touches(face, other):

@@ -58,6 +58,21 @@ def test_a_right_solid_passes():
     assert found.volume[0] < found.volume[1] < 24000
 
 
+def test_tolerances_before_and_after_are_told():
+    """Of each edge of the border that in whose place it comes; of the whole the largest, wherever it is."""
+    shape = copy_of(box_with_fillet(5.0))[0]
+    number, _ = the_fillet(shape)
+    border, rest = ([e for n, f in enumerate(parts(shape, "FACE")) for e in parts(f, "EDGE") if (n == number) == own]
+                    for own in (True, False))  # fmt: skip
+    for edge in border:
+        raise_tolerance(edge, 3e-6)
+    raise_tolerance(next(e for e in rest if not any(e.IsSame(x) for x in border)), 7e-5)
+    found = report_of(shape, corner_blend())
+    assert found.is_sound, found.reason
+    assert [edge.was for edge in found.border] == [3e-6] * 4
+    assert found.tolerance == (7e-5, 7e-5)
+
+
 def test_a_right_solid_beside_a_hole_passes():
     found = report_of(with_hole(), corner_blend())
     assert found.is_sound, found.reason
@@ -146,7 +161,7 @@ def test_an_open_shell_may_stay_open():
     shape = compound(face for n, face in enumerate(parts(box_with_fillet(5.0), "FACE")) if n != far_face())
     found = report_of(shape, corner_blend())
     assert found.is_sound, found.reason
-    assert found.open_edges == 4
+    assert len(found.open_edges) == 4
 
 
 def far_face():

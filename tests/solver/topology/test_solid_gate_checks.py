@@ -13,6 +13,7 @@ from OCP.TopoDS import TopoDS_Shell
 from helpers.gated import corner_blend, edge_rounded, placed, solid_of
 from helpers.parts import compound, graph_of, moved, written
 from helpers.solids import MODELS, box, box_with_fillet, cylinder, volume
+from helpers.sweeps import first_ones
 from semispline import (
     Base,
     BSplineCurve,
@@ -28,6 +29,8 @@ from semispline import (
 from semispline.solver.topology import solid_blends, solid_gate
 from semispline.solver.topology.end_faces import blend_onto
 from semispline.solver.topology.fillets import find_fillets
+from semispline.solver.topology.gate_report import Change, GateReport
+from semispline.solver.topology.gate_sides import NotSoundError
 from semispline.solver.topology.occ_faces import rebuilt
 from semispline.solver.topology.occ_joining import joined
 from semispline.solver.topology.occ_new_edges import copied_edge
@@ -48,7 +51,7 @@ from semispline.solver.topology.occ_shapes import (
     with_range,
 )
 from semispline.solver.topology.relations import relate
-from semispline.solver.topology.solid_gate import Change, GateReport, gate
+from semispline.solver.topology.solid_gate import gate
 
 OUT = np.array([-1.0, -1.0, 0.0]) / np.sqrt(2)
 
@@ -387,11 +390,13 @@ def test_an_area_that_stays_has_a_limit(share, is_same):
         next(x for x in parts(box(1, y, 1), "FACE") if np.ptp(box_of_face(x)[:, 2]) < 1e-9)
         for y in (1.0, 1 + share * 1e-9)
     ]
-    both = SimpleNamespace(kept={0: 0}, change=Change((), (), (), 0.0, ()), faces=([faces[0]], [faces[1]]), size=1.0)
+    both = SimpleNamespace(
+        kept={0: 0}, change=Change((), (), (), 0.0, ()), faces=([faces[0]], [faces[1]]), first=(0, 0), size=1.0
+    )
     if is_same:
         solid_gate._unchanged(both, GateReport(None), read_back=False)
     else:
-        with pytest.raises(solid_gate._NotSoundError, match="was not to be changed"):
+        with pytest.raises(NotSoundError, match="was not to be changed"):
             solid_gate._unchanged(both, GateReport(None), read_back=False)
 
 
@@ -418,7 +423,7 @@ def test_what_crossed_before_may_go_on_doing_so():
     assert found.is_sound, found.reason
 
 
-@pytest.mark.parametrize("share", [0.8, 1.25])
+@pytest.mark.parametrize("share", first_ones(1, [0.8, 1.25]))
 def test_an_end_on_a_curved_face_may_be_off_by_so_much(share, tmp_path, monkeypatch, read_here):
     shape = MODELS["round end r=3.0"]()
     path = written(shape, tmp_path / "part.brep")

@@ -1,6 +1,7 @@
 """Fillets that go on into each other replaced together; or with their old end edges kept, where contact falls to G1."""
 
 import json
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -13,6 +14,7 @@ from typer.testing import CliRunner
 
 from helpers.parts import fillet, graph_of, moved, rounded_box, written
 from helpers.solids import box, circles_at, cut, cylinder, half_space, rounded, volume
+from helpers.sweeps import first_rows
 from semispline import Base, EdgeError, SolidError, read_surface, replace_face
 from semispline.solver.cli import app
 from semispline.solver.judge import measure_face_contact
@@ -58,7 +60,7 @@ def is_valid(path):
     return BRepCheck_Analyzer(shape, True).IsValid() and len(parts(shape, "SOLID")) == 1
 
 
-@pytest.mark.parametrize(("upright", "top"), [(3.0, 1.5), (4.0, 1.0), (5.0, 4.0)])
+@pytest.mark.parametrize(("upright", "top"), first_rows(1, [(3.0, 1.5), (4.0, 1.0), (5.0, 4.0)]))
 def test_a_closed_rim_of_eight_fillets_is_replaced_together(upright, top, tmp_path):
     shape = rounded_box(upright, top)
     ring = ring_of(shape)
@@ -76,6 +78,7 @@ def test_a_closed_rim_of_eight_fillets_is_replaced_together(upright, top, tmp_pa
     assert 0 < found.gate.volume[1] - found.gate.volume[0] < most
 
 
+@pytest.mark.slow
 def test_straight_parts_of_a_ring_are_extruded(tmp_path):
     """With the same shape parameters each unit of length takes away the same, whatever the lengths are."""
     changes, shape_of_all = [], {}
@@ -119,6 +122,7 @@ def test_an_open_chain_ends_on_slanted_walls_too(tmp_path):
     assert found.gate.largest_tolerance <= 1.1e-7
 
 
+@pytest.mark.slow
 def test_a_second_replacement_of_a_ring_changes_nothing(tmp_path):
     shape = rounded_box()
     ring = ring_of(shape)
@@ -129,6 +133,7 @@ def test_a_second_replacement_of_a_ring_changes_nothing(tmp_path):
     assert again.gate.volume[1] == pytest.approx(first.gate.volume[1], abs=1e-3 * change)
 
 
+@pytest.mark.slow
 def test_faces_of_a_ring_whose_sides_do_not_answer_each_other_meet_across(tmp_path):
     """With a free row both sides are smooth chains of their own: corners lie at different v, on the seam too."""
     shape = rounded_box()
@@ -139,6 +144,7 @@ def test_faces_of_a_ring_whose_sides_do_not_answer_each_other_meet_across(tmp_pa
     assert found.gate.volume[1] > found.gate.volume[0]
 
 
+@pytest.mark.slow
 def test_place_turn_and_scale_change_nothing(tmp_path):
     shape = rounded_box()
     ring = ring_of(shape)
@@ -160,7 +166,9 @@ def test_an_end_edge_is_kept_and_contact_says_so(continuity, tmp_path):
     assert groups == []
     number = next(iter(accepted))
     path = written(shape, tmp_path / "part.brep")
-    with pytest.raises(EdgeError, match=r"goes on into face \d+ over e\d.*--keep-ends"):
+    # With a ball there is no chain that could be replaced.
+    said = r"goes on into face \d+ over e\d.* face \d+ cannot be replaced with it \(.*three-sided\): keep this edge"
+    with pytest.raises(EdgeError, match=said):
         replace_face(path, number, tmp_path / "out.step")
     found = replace_face(path, number, tmp_path / "out.step", keep_ends=True, continuity=continuity)
     assert is_valid(tmp_path / "out.step")
@@ -189,6 +197,53 @@ def test_a_kept_edge_at_the_pole_of_a_ball_is_measured(tmp_path):
         # The limits of CAD checkers: an edge is kept in the tolerance of its file.
         assert max(x.contact.angle_degrees for x in contacts) <= 1e-2
         assert max(x.contact.gap for x in contacts) <= 1e-6 * 40
+
+
+def test_a_crease_at_a_kept_edge_is_stopped(tmp_path, monkeypatch):
+    """The end lies on the edge, and the row beside it leaves the tangent plane of the ball by one part in a hundred."""
+    shape = three_edges()
+    _, _, accepted, _ = found_in(shape)
+    real = solid_blends.ended_on_edges
+
+    def creased(surface, edges):
+        made, kept = real(surface, edges)
+        points, end = made.control_points.copy(), kept[0].range[0] > made.domain[1][0]
+        near, way = (-2, points[:, -1] - points[:, -2]) if end else (1, points[:, 0] - points[:, 1])
+        # Rows of the contacts stay.
+        points[2:-2, near] += 0.01 * np.cross(way, points[1:, near][:1] - points[:1, near])[2:-2]
+        return replace(made, control_points=points), kept
+
+    path, out = written(shape, tmp_path / "part.brep"), tmp_path / "out.step"
+    found = replace_face(path, next(iter(accepted)), out, keep_ends=True)
+    assert 0 < found.gate.crease_degrees < 1e-4
+    out.unlink()
+    monkeypatch.setattr(solid_blends, "ended_on_edges", creased)
+    with pytest.raises(
+        SolidError, match=r"at a crease of .* where the old one went on smoothly, expected at most 0.01"
+    ):
+        replace_face(path, next(iter(accepted)), out, keep_ends=True)
+    assert not out.exists()
+
+
+def test_contacts_beside_kept_ends_are_told_from_the_rest(tmp_path):
+    shape = three_edges()
+    _, _, accepted, _ = found_in(shape)
+    path, out, report = (tmp_path / name for name in ("part.brep", "out.step", "report.json"))
+    words = ["--replace", str(next(iter(accepted))), "--keep-ends", "-o", str(out), "--report", str(report)]
+    done = CliRunner().invoke(app, ["blend", str(written(shape, path)), *words])
+    assert done.exit_code == 0, done.output
+    rows = json.loads(report.read_text())["contacts_in_solid"]
+    kinds = [row["stretch"] for row in rows]
+    assert sorted(kinds) == ["", "", "beside a kept end", "beside a kept end", "kept end"]
+    for row in rows:
+        # Curvature has no limit where contact is G1 alone.
+        assert ("curvature_jump_relative" in row["allowed"]) == (row["stretch"] == "")
+        assert all(row[name] <= limit for name, limit in row["allowed"].items() if row[name] is not None)
+        if row["stretch"] == "beside a kept end":
+            # The jump is at the edge, a radius from the corner.
+            place = np.array(row["at"]["curvature_jump_relative"]["point"])
+            assert sorted(np.abs(place)) == pytest.approx([0, 3, 3], abs=1e-6)
+    assert done.output.count("beside a kept end: G1, the jump at (") == 2
 
 
 def test_beyond_the_stated_length_contact_is_what_was_asked(tmp_path):
@@ -260,8 +315,13 @@ def test_ends_of_a_chain_are_kept_and_its_joints_are_not(tmp_path):
     graph, relations, _, (ring,) = found_in(shape)
     pair = face_run(graph, relations, ring).faces[:2]
     path = written(shape, tmp_path / "part.brep")
-    with pytest.raises(EdgeError, match=r"\d+,\d+: it goes on into faces \d+ and \d+ over \d+:e\d and \d+:e\d"):
+    with pytest.raises(
+        EdgeError, match=r"\d+,\d+: they go on into faces \d+ and \d+ over \d+:e\d and \d+:e\d"
+    ) as found:
         replace_face(path, pair, tmp_path / "out.step")
+    # All eight are named, not only the next ones, and what is printed does it.
+    named = re.search(r"\(--replace ([\d,]+)\)", str(found.value))
+    assert set(map(int, named[1].split(","))) == set(ring)
     found = replace_face(path, pair, tmp_path / "out.step", keep_ends=True)
     assert is_valid(tmp_path / "out.step")
     assert len(found.kept) == 2
@@ -274,13 +334,21 @@ def test_what_is_no_run_is_refused(tmp_path):
     graph, relations, accepted, (ring,) = found_in(shape)
     order = face_run(graph, relations, ring).faces
     path, out = written(shape, tmp_path / "part.brep"), tmp_path / "out.step"
-    with pytest.raises(EdgeError, match="do not go on into each other over ends of both"):
+    with pytest.raises(EdgeError, match="belong to one chain of fillets: replace all of it") as found:
         replace_face(path, [order[0], order[4]], out)
+    named = re.search(r"\(--replace ([\d,]+)\)", str(found.value))
+    assert set(map(int, named[1].split(","))) == set(ring)
     with pytest.raises(EdgeError, match="is there twice"):
         replace_face(path, [order[0], order[0]], out)
     uprights = [face for face in accepted if face not in ring]
-    with pytest.raises(EdgeError, match="do not go on into each other over ends of both"):
+    with pytest.raises(EdgeError, match="do not go on into each other over ends of both; replace them one after"):
         replace_face(path, uprights[:2], out)
+    # An upright round ends on one of the ring: that lies across.
+    with pytest.raises(EdgeError, match=r"it is a fillet across\): keep this edge, .* \(--keep-ends\)"):
+        replace_face(path, uprights[0], out)
+    flat = next(n for n in range(len(graph.faces)) if graph.uses.of_face(n).stop - graph.uses.of_face(n).start == 8)
+    with pytest.raises(EdgeError, match=rf"face {flat} has no two opposite sides at whose ends face \d+ begins"):
+        replace_face(path, [order[0], flat], out)
     assert not out.exists()
 
 
@@ -301,6 +369,7 @@ def test_the_gate_stops_a_ring_whose_neighbours_do_not_meet(tmp_path, monkeypatc
     assert not (tmp_path / "out.step").exists()
 
 
+@pytest.mark.slow
 def test_pairs_offers_the_chain_and_its_command_does_it(tmp_path):
     shape = rounded_box()
     path, report = written(shape, tmp_path / "part.brep"), tmp_path / "report.json"
