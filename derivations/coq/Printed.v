@@ -411,3 +411,20 @@ Proof.
   - unfold knot, W, vector. cbn. lra.
   - unfold last_knot, knot, U_quartic, W, vector in H. cbn in H. lra.
 Qed.
+
+(** The second derivative of the appendix, a plain second difference over one span, without and with a square. *)
+Theorem printed_d2_refuted : ~ forall P y, start_derivative 2 5 U 3 P y ->
+  y = 3 * 2 / knot U 3 1 * (P 2%nat - 2 * P 1%nat + P O).
+Proof.
+  intro H. specialize (H curved _ (start_derivative_is 2 5 U 3 curved U_ascending U_clamped ltac:(lia))).
+  rewrite end_derivatives, second_derivative in H by (auto using U_ascending, U_clamped).
+  destruct U_knots as [U1 U2]. rewrite U1, U2 in H. cbn in H. lra.
+Qed.
+
+Theorem printed_d2_squares_refuted : ~ forall P y, start_derivative 2 5 U 3 P y ->
+  y = 3 * 2 / knot U 3 1 ^ 2 * (P 2%nat - 2 * P 1%nat + P O).
+Proof.
+  intro H. specialize (H curved _ (start_derivative_is 2 5 U 3 curved U_ascending U_clamped ltac:(lia))).
+  rewrite end_derivatives, second_derivative in H by (auto using U_ascending, U_clamped).
+  destruct U_knots as [U1 U2]. rewrite U1, U2 in H. cbn in H. lra.
+Qed.

@@ -9,8 +9,9 @@ from functools import cache
 from importlib.resources import files
 from pathlib import Path
 
-from semispline.papers.recheck.coq_lemmas import NotForCoqError, lemma
+from semispline.papers.recheck.coq_lemmas import lemma, met
 from semispline.papers.recheck.gp import CONTROLS, statement_id
+from semispline.papers.recheck.roots import NotForCoqError
 from semispline.papers.recheck.statements import Export, Statement
 
 LIBRARY = "Semispline"
@@ -27,11 +28,13 @@ class Block:
     ----------
     ids : tuple of str
         The statements that it proves, which differ in nothing but their names.
-    name, text : str
+    names : tuple of str
+        Of the lemma, and of one that says that its premises can be fulfilled.
+    text : str
     """
 
     ids: tuple[str, ...]
-    name: str
+    names: tuple[str, ...]
     text: str
 
 
@@ -48,17 +51,20 @@ class CoqFile:
     blocks : tuple of Block
     cited : tuple of str
         Theorems of hand-written sources.
+    over_reals : bool
+        Whether the axioms of the library's real numbers are allowed.
     """
 
     name: str
     needed: tuple[str, ...]
     blocks: tuple[Block, ...] = ()
     cited: tuple[str, ...] = ()
+    over_reals: bool = False
 
     @property
     def asked(self) -> tuple[str, ...]:
         """Names whose assumptions are printed at the end, all at once."""
-        return (*(block.name for block in self.blocks), *self.cited)
+        return (*(name for block in self.blocks for name in block.names), *self.cited)
 
     @property
     def text(self) -> str:
@@ -69,7 +75,8 @@ class CoqFile:
 
     @property
     def _head(self) -> str:
-        return f"From {LIBRARY} Require Import {' '.join(self.needed)}.\nOpen Scope Q_scope.\n\n"
+        scope = "" if self.over_reals else "Open Scope Q_scope.\n"
+        return f"From {LIBRARY} Require Import {' '.join(self.needed)}.\n{scope}\n"
 
     def block_at(self, line: int) -> Block | None:
         """Return the block that a line stands in."""
@@ -152,9 +159,12 @@ def coq_folder(export: Export) -> CoqFolder:
         if known is not None:
             blocks[text] = replace(known, ids=(*known.ids, identifier))
         else:
-            title = f"(* {_comment(identifier)}{_flags(case)} *)\n"
-            blocks[text] = Block((identifier,), name, f"{title}Lemma {name} : {text}\n\n")
-    return CoqFolder((*_grouped(blocks.values()), *_citing(export)), without)
+            lines = [f"(* {_comment(identifier)}{_flags(case)} *)", f"Lemma {name} : {text}"]
+            premises = met(case)
+            names = (name,) if premises is None else (name, f"{name}_met")
+            lines += [] if premises is None else [f"Lemma {name}_met : {premises}"]
+            blocks[text] = Block((identifier,), names, "\n".join(lines) + "\n\n")
+    return CoqFolder((*_grouped(blocks.values()), *_theories(export), *_citing(export)), without)
 
 
 def _grouped(blocks: Iterable[Block]) -> Iterator[CoqFile]:
@@ -171,11 +181,18 @@ def _grouped(blocks: Iterable[Block]) -> Iterator[CoqFile]:
             size += len(block.text)
 
 
+def _theories(export: Export) -> Iterator[CoqFile]:
+    """Yield a file for each theorem that is generated as a whole."""
+    for theory in export.theories:
+        block = Block((theory.title,), (theory.name,), f"(* {_comment(theory.title)} *)\n{theory.text}\n")
+        yield CoqFile(theory.name.capitalize(), theory.needed, (block,), over_reals=theory.over_reals)
+
+
 def _citing(export: Export) -> Iterator[CoqFile]:
     """Yield the file that asks what the cited theorems rest on."""
     cited = tuple(dict.fromkeys(name for names in export.theorems.values() for name in names))
     if cited:
-        yield CoqFile(CITED, tuple(dict.fromkeys(name.partition(".")[0] for name in cited)), (), cited)
+        yield CoqFile(CITED, tuple(dict.fromkeys(name.partition(".")[0] for name in cited)), (), cited, over_reals=True)
 
 
 def write_coq(folder: CoqFolder, place: Path) -> list[Path]:

@@ -16,6 +16,7 @@ from semispline.papers.lin2014.certificates import (
     figures,
     general_contact,
     knot_vectors,
+    least_energy_theorems,
     linear_system,
     many_rows,
     minima,
@@ -27,6 +28,7 @@ from semispline.papers.lin2014.certificates import (
     spline_properties,
     subpatch_counts,
     sums,
+    theorems,
     untouched_bases,
     written_anew,
 )
@@ -61,6 +63,8 @@ MODULES = (
 
 
 def export(paper: Paper) -> Export:
-    """Return the certificates of all decided records, and reasons for those that have none."""
+    """Return the certificates of all decided records, reasons for those that have none, and theorems they cite."""
     drafts = {identifier: draft for module in MODULES for identifier, draft in module.DRAFTS.items()}
-    return export_of(paper, drafts, others.NOT_EXPRESSIBLE, controls.controls)
+    return export_of(
+        paper, drafts, others.NOT_EXPRESSIBLE, controls.controls, theorems.THEOREMS, least_energy_theorems.theories
+    )
