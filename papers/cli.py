@@ -75,7 +75,8 @@ def verify_command(
     recheck: Annotated[
         list[str] | None,
         typer.Option(
-            metavar="SYSTEM", help="Have pari, or the kernel of coq, repeat what verdicts rest on; twice for both."
+            metavar="SYSTEM",
+            help="Have pari, or the kernel of coq (minutes), repeat what verdicts rest on; twice for both.",
         ),
     ] = None,
     certificates: Annotated[

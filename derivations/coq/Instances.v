@@ -56,6 +56,8 @@ Proof. apply no_smoother; known; lia. Qed.
 Example piece_end_met P := piece_end_is 2 3 5 D 3 P D_ascending ltac:(lia) ltac:(lia).
 Example de_boor_met P := de_boor U 3 5 3 (1/6) P U_ascending ltac:(lia) in_first_span.
 Example independent_met P := independent U 3 5 P U_ascending U_clamped U_clamped_end U_proper.
+Example independent_on_span_met P := independent_on_span 3 U 5 P 3 U_ascending ltac:(lia) ltac:(cbn; lra).
+Example same_points_met P Q := same_points U 3 5 P Q U_ascending U_clamped U_clamped_end U_proper.
 Example same_on_span_met P Q x : span U 3 x -> span D 3 x ->
   (forall y, In y [1/10; 1/9; 1/8; 1/7] -> spline 5 U 3 P y = spline 5 D 3 Q y) -> spline 5 U 3 P x = spline 5 D 3 Q x.
 Proof.
@@ -69,6 +71,12 @@ Example start_derivative_is_met P := start_derivative_is 2 5 U 3 P U_ascending U
 Example start_derivative_iff_met P y := start_derivative_iff 2 5 U 3 P y U_ascending U_clamped ltac:(lia).
 Example end_derivatives_met P := end_derivatives 2 U 3 P U_ascending U_clamped.
 Example end_derivative_iff_met P y := end_derivative_iff 2 5 U 3 P y U_ascending U_clamped_end ltac:(lia).
+Example start_value_met P := start_value 5 U 3 P U_ascending U_clamped.
+Example rows_met P := rows 3 U 3 P U_ascending U_clamped ltac:(lia).
+Example rows_iff_met P d := rows_iff 3 U 3 P d U_ascending U_clamped ltac:(lia).
+Example end_contact_iff_met b P Q := end_contact_iff 2 b 5 U 3 P 5 W 3 Q U_ascending U_clamped_end ltac:(lia).
+Example contact_rows_by_met c P Q := contact_rows_by c 3 5 U 3 P 5 W 3 Q U_ascending U_clamped W_ascending W_clamped
+  ltac:(lia) ltac:(lia).
 Example contact_rows_met a P Q : contact 3 a 5 U 3 P 5 W 3 Q <-> _ :=
   contact_rows 3 a 5 U 3 P 5 W 3 Q U_ascending U_clamped W_ascending W_clamped ltac:(lia) ltac:(lia).
 Example contact_general_met g P Q := contact_general_rows 3 g 5 U 3 P 5 W 3 Q U_ascending U_clamped W_ascending W_clamped
@@ -81,8 +89,11 @@ Example condition_3_2_met := condition_3_2 5 U 3 5 W 3 U_ascending U_clamped_end
 Example printed_2_2_cubic_met be P Q := printed_2_2_cubic 5 U 5 W 3 be P Q U_ascending U_clamped_end W_ascending W_clamped
   ltac:(lia) ltac:(lia).
 
-(** Of [printed_3_1_iff] and its kin: the blends of [printed_3_1_fails] and [printed_3_2_fails]; of the curvatures:
-    [a_ruled_base_exists]; of [printed_17_iff] and [equation_2_1]: *)
+(** Of [printed_3_1_iff], [printed_3_1_squares_iff], [printed_3_2_iff] and [printed_3_2_squares_iff]: the blends of
+    [printed_3_1_fails], [printed_3_1_squares_fails], [printed_3_2_fails] and [printed_3_2_squares_fails], for every alpha
+    other than 0; of [printed_3_1_curvature] and [printed_3_1_squares_curvature]: [a_ruled_base_exists]. *)
+Example blends_met := (printed_3_1_fails 1 R1_neq_R0, printed_3_1_squares_fails 1 R1_neq_R0,
+  printed_3_2_fails 1 R1_neq_R0, printed_3_2_squares_fails 1 R1_neq_R0, a_ruled_base_exists 1 R1_neq_R0).
 Example printed_17_iff_met : exists P Q, P O = Q O /\ printed_17 1 3 3 (1/3) 1 (P O) (P 1%nat) (Q O) (Q 1%nat).
 Proof. exists (fun i => nth i [0; 1/3] 0), linear. unfold printed_17. cbn. split; [reflexivity|field]. Qed.
 Example equation_2_1_met : exists P, contact 1 (1 ^ 2) 5 U 3 P 5 W 3 curved.
@@ -146,6 +157,11 @@ Proof.
   - intro e. unfold bilinear. cbn. pose proof (Rle_0_sqr (e O)). unfold Rsqr in *. lra.
   - intros. unfold row. cbn. ring.
 Qed.
+Example expansion_met x d := expansion 1 (fun _ _ => 1) (fun _ => 1) (fun _ _ => eq_refl) x d.
+Lemma zero_slope x : derivable_pt_lim (fun _ => 0) x 0.
+Proof. apply derivable_pt_lim_const. Qed.
+Example cubic_is_least_met := cubic_is_least (fun _ => 0) (fun _ => 0) (fun _ => 0) 1 0 0 0 0 Rlt_0_1 zero_slope zero_slope
+  ltac:(apply continuity_const; now intros ? ?) ltac:(cbn; ring) ltac:(cbn; ring) ltac:(cbn; ring) ltac:(cbn; ring).
 Example powers_taken_away_met := powers_taken_away 3 (fun _ => exp) (fun _ x => derivable_pt_lim_exp x).
 Example slope_not_positive_met : -1 <= 0.
 Proof.
@@ -158,6 +174,16 @@ Example slope_of_power_met := slope_of_power 2 3 ltac:(lra).
 (** Polynomials: the constants of a circle, and nothing but zero for y'' = - y. *)
 Lemma polynomial_constant c : polynomial 1 (fun _ => c).
 Proof. exists (fun _ => c). intro. cbn. ring. Qed.
+Example too_many_zeros_met x : (fun y : R => 0 * y) x = 0.
+Proof.
+  apply (too_many_zeros 1 (fun y => 0 * y) [2]).
+  - exists (fun _ => 0). intro. cbn. ring.
+  - repeat constructor. now intros [].
+  - reflexivity.
+  - intros. ring.
+Qed.
+Example bounded_is_constant_met x := bounded_is_constant 1 (fun _ => 3) 3 (polynomial_constant 3)
+  ltac:(intros; rewrite Rabs_pos_eq; lra) x.
 Example none_on_a_circle_met t := none_on_a_circle 1 (fun _ => 3) (fun _ => 4) 5 (polynomial_constant 3)
   (polynomial_constant 4) (fun _ => ltac:(cbv beta; ring)) t.
 Example no_rational_solution_met x := no_rational_solution 1 (fun _ => 0) (fun _ => 1) (fun _ => 0) (fun _ => 0) 0

@@ -28,7 +28,6 @@ from .exporting import rank as rank
 from .exporting import series as series
 from .files import require_folder as require_folder
 from .files import write_certificates as write_certificates
-from .kernel import KernelCheck as KernelCheck
 from .kernel import kernel_checked as kernel_checked
 from .rechecking import Recheck as Recheck
 from .rechecking import exported as exported

@@ -124,7 +124,10 @@ def imports(text: str) -> tuple[str, ...]:
 
 
 def needed_sources(folder: CoqFolder) -> dict[str, str]:
-    """Return the hand-written sources that the files of a folder need, each after those that it imports."""
+    """Return the hand-written sources that the files of a folder need, each after those that it imports.
+
+    Where theorems of them are cited, all of them: those that none needs are instances and controls.
+    """
     every, found = hand_written(), dict[str, str]()
 
     def add(name: str) -> None:
@@ -134,7 +137,7 @@ def needed_sources(folder: CoqFolder) -> dict[str, str]:
             found[name] = every[name]
 
     for file in folder.files:
-        for name in file.needed:
+        for name in every if file.cited else file.needed:
             add(name)
     return found
 

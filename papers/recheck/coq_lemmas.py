@@ -136,7 +136,7 @@ def _rank(statement: Rank) -> tuple[str, str]:
     entries = [[value(entry, at) for entry in row] for row in statement.matrix]
     minor = [[entries[i][j] for j in statement.columns] for i in statement.rows]
     inverse = _inverse(minor)
-    left = [[Fraction(0)] * rows for _ in range(statement.rank)]
+    left = [[Fraction(0)] * rows for _ in statement.rows]
     for row, line in zip(left, inverse, strict=True):
         for i, number_ in zip(statement.rows, line, strict=True):
             row[i] = number_
@@ -144,7 +144,7 @@ def _rank(statement: Rank) -> tuple[str, str]:
     combinations = _product(inverse, picked)
     stated = f"rank_is {rows} {columns} {numbers(entries)} {statement.rank}"
     indices = "[" + "; ".join(f"{j}%nat" for j in statement.columns) + "]"
-    proof = f"apply (rank_by _ _ _ _ {indices} {numbers(left)} {numbers(combinations)}). by_numbers."
+    proof = f"apply (rank_by _ _ _ _ {indices} {numbers(left)} {numbers(combinations)}); by_numbers."
     if not statement.variables:
         return stated, proof
     # A matrix of functions: the rank at the instance, and what sends its columns to zero everywhere.

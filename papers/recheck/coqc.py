@@ -24,6 +24,8 @@ from semispline.solver.errors import ComputationError, OptionError
 
 # Of processor time; a file takes up to a minute.
 _SECONDS = 600
+# Each takes up to a gigabyte.
+_AT_ONCE = 4
 # What Coq's own real numbers rest on, and its theorems on continuous functions.
 REALS = frozenset(
     {
@@ -92,7 +94,7 @@ def kernel_of(folder: CoqFolder, place: str | Path) -> Kernel:
     place = Path(place)
     write_coq(folder, place)
     sources = needed_sources(folder)
-    with ThreadPoolExecutor(min(os.cpu_count() or 1, 4)) as pool:
+    with ThreadPoolExecutor(min(os.cpu_count() or 1, _AT_ONCE)) as pool:
         for level in _levels(sources):
             for name, done in zip(level, pool.map(lambda n: _run(place, n), level), strict=True):
                 if done.returncode:
@@ -101,7 +103,7 @@ def kernel_of(folder: CoqFolder, place: str | Path) -> Kernel:
     problems: list[str] = []
     axioms: set[str] = set()
     for one in settled:
-        found = _assumptions(one)
+        found = assumptions_in(one.output, one.file.name) if one.file.asked else set()
         allowed = REALS if one.file.over_reals else frozenset[str]()
         problems += [f"{one.file.name}.v: found the axiom {name}, expected none" for name in sorted(found - allowed)]
         axioms |= found
@@ -193,20 +195,18 @@ def _error(done: subprocess.CompletedProcess[str]) -> str:
     return " ".join(done.stderr.split())[:400] or f"status {done.returncode}"
 
 
-def _assumptions(one: _Settled) -> set[str]:
-    """Return the axioms that a file's lemmas rest on.
+def assumptions_in(output: str, name: str) -> set[str]:
+    """Return the axioms that `Print Assumptions` named at the end of a file.
 
     Raises
     ------
     ComputationError
-        `Print Assumptions` did not answer.
+        It did not answer.
     """
-    if not one.file.asked:
+    if output.strip() == "Closed under the global context":
         return set()
-    if one.output.strip() == "Closed under the global context":
-        return set()
-    head, _, listed = one.output.partition("Axioms:\n")
-    found = set(re.findall(r"^(\S+)\s*:", listed, re.MULTILINE))
+    head, _, listed = output.partition("Axioms:\n")
+    found = set(re.findall(r"^([^\s:]+)\s*:", listed, re.MULTILINE))
     if head.strip() or not found:
-        raise ComputationError(f"recheck: found no answer to Print Assumptions in {one.file.name}.v, expected one")
+        raise ComputationError(f"recheck: found no answer to Print Assumptions in {name}.v, expected one")
     return found
