@@ -22,6 +22,7 @@ from semispline.papers.ledger import (
     Counterexample,
     EndlessError,
     Formula,
+    Print,
     Strength,
     UndefinedError,
     given,
@@ -90,6 +91,12 @@ class Code(sp.Basic):
         """Words that are no code, and what stands for them."""
         words = [str(word) for word in self.args[3:]]
         return dict(zip(words[::2], words[1::2], strict=True))
+
+    @property
+    def printed(self) -> Print:
+        """For a report: the lines, and what is run in the place of words that are no code."""
+        instead = "; ".join(f"{old}: run as {new}" for old, new in self.replaced.items())
+        return Print(self.text, by_hand=instead)
 
     def changes(self) -> Iterator[tuple[str, Code]]:
         """Yield code with one sign or number changed."""

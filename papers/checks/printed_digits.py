@@ -29,6 +29,8 @@ from semispline.papers.recheck import Statement, number
 # How the last digit comes about.
 Ending: TypeAlias = Literal["rounded", "cut"]
 
+# Of what is left where digits are wrong.
+_PLACES = 12
 _NUMERAL = re.compile(r"[+-]?\d+(\.\d*)?([eE][+-]?\d+)?|[+-]?\.\d+([eE][+-]?\d+)?")
 
 
@@ -165,7 +167,16 @@ def _case(exact: Any, printed: Digits, ending: Ending) -> Case:
     if right:
         return Case(f"{printed.text} for {shown}", True)
     better = [f"{_WORDS[e]} {as_digits(exact, printed.unit, e)}" for e in _IS_RIGHT]
-    return Case(f"{printed.text} for {shown} ({', '.join(better)})", False, residual=printed.exact - exact)
+    return Case(f"{printed.text} for {shown} ({', '.join(better)})", False, residual=_apart(exact, printed))
+
+
+def _apart(exact: Any, printed: Digits) -> Any:
+    """Return how far the digits are from the number, as a fraction or with the digits that are certain."""
+    value = exact_value(exact, {})
+    if value is not None:
+        return printed.exact - sp.Rational(value.numerator, value.denominator)
+    with precision(MOST_BITS):
+        return Digits((_ball(printed.exact) - enclosure(exact)).str(_PLACES, radius=False))
 
 
 def _is_right(exact: Any, printed: Digits, ending: Ending) -> bool:

@@ -41,8 +41,10 @@ from .records import Counterexample as Counterexample
 from .records import EndlessError as EndlessError
 from .records import Formula as Formula
 from .records import LedgerError as LedgerError
+from .records import Notation as Notation
 from .records import Paper as Paper
 from .records import Part as Part
+from .records import Places as Places
 from .records import Print as Print
 from .records import Reading as Reading
 from .records import Strength as Strength

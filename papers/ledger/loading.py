@@ -1,6 +1,7 @@
 """Finding a paper: a folder with `printed.py`, and records in the tuples `CLAIMS` of its `claims.py` or `claims/`.
 
-What several records share as the cause of their faults stands in `CAUSES` of its `causes.py`, where it has one.
+What several records share as the cause of their faults stands in `CAUSES` of its `causes.py`, how it writes functions
+in `NOTATION` of its `notation.py`, where it has these.
 `printed.py` is the only module in which a printed formula can run. All of them are run as Python.
 """
 
@@ -17,6 +18,7 @@ from importlib.machinery import ModuleSpec
 from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
 from types import ModuleType
+from typing import Any
 
 from semispline.papers.ledger.mistakes import MistakeError, place_of_text, placed
 from semispline.papers.ledger.record_checks import check_causes, check_complete, check_record, same_ids
@@ -130,7 +132,10 @@ def collected(name: str) -> Paper:
         what = "the id twice" if len(set(twice)) == 1 else f"the ids {twice[0]} and {twice[1]}, which sort as one"
         raise MistakeError(f"{where or folder}: claim {twice[0]}: found {what}; expected each once")
     title, _, legend = inspect.cleandoc(package.__doc__ or folder.name).partition("\n\n")
-    return Paper(name, " ".join(title.split()).rstrip("."), legend, tuple(claims), _causes(name, folder), folder)
+    causes = _named(name, folder, "causes", "CAUSES", _are_causes, "tuple of Cause")
+    notation = _named(name, folder, "notation", "NOTATION", _is_notation, "dict of functions")
+    title = " ".join(title.split()).rstrip(".")
+    return Paper(name, title, legend, tuple(claims), causes or (), folder, notation or {})
 
 
 def _check(paper: Paper, check: Callable[[Claim], None], claims: Iterable[Claim]) -> None:
@@ -143,14 +148,23 @@ def _check(paper: Paper, check: Callable[[Claim], None], claims: Iterable[Claim]
             raise MistakeError(f"{where}: {error}" if where else str(error)) from None
 
 
-def _causes(name: str, folder: Path) -> tuple[Cause, ...]:
-    module = paper_module(name, "causes")
+def _named(name: str, folder: Path, within: str, what: str, fits: Callable[[Any], bool], expected: str) -> Any:
+    """Return a name of a module that a paper may have; None where it has no such module."""
+    module = paper_module(name, within)
     if module is None:
-        return ()
-    found = getattr(module, "CAUSES", None)
-    if not isinstance(found, tuple) or not all(isinstance(c, Cause) for c in found):
-        raise MistakeError(f"{folder / 'causes.py'}: CAUSES is a {type(found).__name__}, expected a tuple of Cause")
+        return None
+    found = getattr(module, what, None)
+    if not fits(found):
+        raise MistakeError(f"{folder / within}.py: {what} is a {type(found).__name__}, expected a {expected}")
     return found
+
+
+def _are_causes(found: Any) -> bool:
+    return isinstance(found, tuple) and all(isinstance(cause, Cause) for cause in found)
+
+
+def _is_notation(found: Any) -> bool:
+    return isinstance(found, dict) and all(callable(rule) for rule in found.values())
 
 
 def _module_parts(path: Path, folder: Path) -> tuple[str, ...]:

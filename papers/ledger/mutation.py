@@ -243,7 +243,7 @@ def _variants(expression: Any, near_by: dict[Any, list[Any]]) -> Iterator[tuple[
     """Yield (kind, expression with one change), walking through the whole tree."""
     yield from (("index", other) for other in near_by.get(expression, []))
     yield from _node_variants(expression)
-    if hasattr(expression, "changes") or isinstance(expression, sp.Indexed):
+    if hasattr(expression, "changes") or isinstance(expression, sp.Indexed | sp.CRootOf):
         return
     if isinstance(expression, sp.MatrixBase):
         yield from _matrix_variants(expression, near_by)

@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from enum import IntEnum, StrEnum
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeAlias
 
 import sympy as sp
 
@@ -294,19 +294,19 @@ class Cause:
 
 @dataclass(frozen=True)
 class Print:
-    """What is printed of a claim as LaTeX, and what was read of it: its formulas are made of that.
+    """What is printed of a claim as LaTeX or as lines of code, and what was read of it: its formulas are made of that.
 
     Attributes
     ----------
-    latex : str
+    text : str
         As printed.
     echo : str
-        What was read, as LaTeX with every product and bracket; empty where nothing was.
+        What was read of LaTeX, with every product and bracket; empty where nothing was.
     by_hand : str
-        Why and where it was not read: then the formulas are transcribed by hand.
+        Why and where it was not read: then the formulas are transcribed by hand. Or which words of code were replaced.
     """
 
-    latex: str
+    text: str
     echo: str = ""
     by_hand: str = ""
 
@@ -340,7 +340,7 @@ class Claim:
     cause : str
         Key of the cause of what is wrong in it, where something is.
     printed : Print, optional
-        What a report shows beside the formulas.
+        What a report shows beside the formulas; where there is none, lines of code in them.
     """
 
     id: str
@@ -378,6 +378,19 @@ class Claim:
 
 
 @dataclass(frozen=True)
+class Places:
+    """Where the arguments of a function stand: as indices below and above, and between brackets; texts as they are."""
+
+    lower: tuple[Any, ...] = ()
+    upper: tuple[Any, ...] = ()
+    arguments: tuple[Any, ...] = ()
+
+
+# Name of a function -> where its arguments stand; None for the usual brackets.
+Notation: TypeAlias = Mapping[str, Callable[[tuple[Any, ...]], Places | None]]
+
+
+@dataclass(frozen=True)
 class Paper:
     """A loaded paper.
 
@@ -392,6 +405,8 @@ class Paper:
         In the order in which a report tells them; none where the paper's records name none.
     folder : Path
         Where its files are.
+    notation : mapping
+        Name of a function -> where its arguments stand in print.
     """
 
     name: str
@@ -400,6 +415,7 @@ class Paper:
     claims: tuple[Claim, ...]
     causes: tuple[Cause, ...] = ()
     folder: Path = Path()
+    notation: Notation = field(default_factory=dict)
 
     def claim(self, identifier: str) -> Claim:
         """Return the record with this id."""

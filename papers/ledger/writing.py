@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
 from itertools import pairwise
 from typing import Any
@@ -33,6 +34,8 @@ def parts(check: Check, *formulas: Formula) -> tuple[Part, ...]:
 def formula(relation: Any, *assumptions: Any, **more: Any) -> Formula:
     """Return a formula whose variables are the symbols that are in it.
 
+    Letters that differ in one number alone, such as P_1 and P_2, are neighbours: one may be mistaken for the next one.
+
     Parameters
     ----------
     relation : sympy.Rel
@@ -49,7 +52,20 @@ def formula(relation: Any, *assumptions: Any, **more: Any) -> Formula:
     (T, n)
     """
     used = {s for expression in (relation, *assumptions) for s in expression.free_symbols if isinstance(s, sp.Symbol)}
-    return Formula(relation, tuple(sorted(used, key=str)), assumptions, **more)
+    variables = tuple(sorted(used, key=str))
+    more.setdefault("neighbours", _numbered(variables))
+    return Formula(relation, variables, assumptions, **more)
+
+
+def _numbered(letters: Iterable[Any]) -> tuple[tuple[Any, ...], ...]:
+    """Return letters whose names are the same but for their last number, in its order."""
+    chains: dict[tuple[str, str], dict[int, Any]] = {}
+    for letter in letters:
+        found = re.fullmatch(r"(.*?)(\d+)(\D*)", str(letter))
+        if found:
+            chains.setdefault((found[1], found[3]), {})[int(found[2])] = letter
+    ordered = (tuple(chain[number] for number in sorted(chain)) for chain in chains.values())
+    return tuple(chain for chain in ordered if len(chain) > 1)
 
 
 def chain(*sides: Any, **more: Any) -> tuple[Formula, ...]:

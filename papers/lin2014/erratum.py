@@ -11,6 +11,7 @@ from semispline.papers.ledger import Ledger, LedgerError, Verdict
 from semispline.papers.lin2014 import erratum_strip as strip
 from semispline.papers.lin2014 import printed as pr
 from semispline.papers.lin2014.claims.section_3_conditions import TRUE_3_1, TRUE_3_2
+from semispline.papers.lin2014.notation import NOTATION
 from semispline.papers.lin2014.printed import CUBIC
 from semispline.papers.report import Erratum, latex
 
@@ -64,7 +65,7 @@ def _of_the_ledger(ledger: Ledger) -> dict[str, Any]:
 
 def _of_the_strip() -> dict[str, Any]:
     def bicubic(relation: Any) -> str:
-        return f"$`{latex(relation.subs({pr.k: CUBIC, pr.k_r: CUBIC, pr.k_s: CUBIC}))}`$"
+        return f"$`{latex(relation.subs({pr.k: CUBIC, pr.k_r: CUBIC, pr.k_s: CUBIC}), NOTATION)}`$"
 
     return {
         "printed_ratio": strip.curvature_ratio("printed"),

@@ -7,6 +7,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+from semispline.papers.checks import Code
 from semispline.papers.latex import (
     Block,
     Formula,
@@ -64,15 +65,17 @@ def printed(identifier: str) -> Print:
 
     Examples
     --------
-    >>> printed("explanation.1").latex, printed("canonical.4").by_hand
+    >>> printed("explanation.1").text, printed("canonical.4").by_hand
     ('  f(x) = \\cos(x)\n', 'numeral at 17_canonical.md:25:5')
     """
-    latex = blocks()[identifier].text
+    block = blocks()[identifier]
+    if block.kind == "text":
+        return Code(block.text, replace=replaced(identifier)).printed
     try:
         found = formula(identifier)
     except UnreadableError as error:
-        return Print(latex, by_hand=f"{error.trouble} at {error.place}")
-    return Print(latex, echo(found.statements, found.names))
+        return Print(block.text, by_hand=f"{error.trouble} at {error.place}")
+    return Print(block.text, echo(found.statements, found.names))
 
 
 def steps(identifier: str, given: Mapping[str, Any] | None = None, branch: int = 1) -> tuple[Relation, ...]:

@@ -8,7 +8,7 @@ from typing import Any
 
 from sympy import Equality
 
-from semispline.papers.ledger import Claim, Decision, Formula, Ledger, ReadingDecision, Verdict
+from semispline.papers.ledger import Claim, Decision, Formula, Ledger, Notation, ReadingDecision, Verdict
 from semispline.papers.report.formulas import latex
 from semispline.papers.report.ledger_words import (
     checked_text,
@@ -166,50 +166,57 @@ def _erratum(ledger: Ledger) -> Iterator[str]:
 
     for claim, decision in sorted(_pairs(ledger, Verdict.FAILS), key=weight):
         yield from (f"### {claim.id} ({claim.where})", "")
-        for heading, text in _failure_lines(claim, decision):
-            yield f"- **{heading}** {text}"
+        for heading, text in _failure_lines(claim, decision, ledger.paper.notation):
+            yield from (line.rstrip() for line in f"- **{heading}** {text}".split("\n"))
         yield ""
 
 
-def _failure_lines(claim: Claim, decision: Decision) -> Iterator[tuple[str, str]]:
+def _failure_lines(claim: Claim, decision: Decision, notation: Notation) -> Iterator[tuple[str, str]]:
     """Yield what is printed, what is wrong, where it shows first, what is true, and what it does if measured."""
-    yield "Printed:", f"{claim.statement} {_formulas(claim.formulas)}".rstrip()
+    yield "Printed:", f"{claim.statement} {_formulas(claim.formulas, notation)}".rstrip()
     for heading, text in print_lines(claim):
-        yield f"{heading.capitalize()}:", f"`{' '.join(text.split())}`"
+        yield f"{heading.capitalize()}:", _verbatim(text)
     minus = (
         "printed minus true" if all(isinstance(f.relation, Equality) for f in claim.formulas) else "left minus right"
     )
     several = len(decision.readings) > 1
-    wrong = "; ".join(_residual_text(reading, minus, several) for reading in decision.readings)
+    wrong = "; ".join(_residual_text(reading, minus, several, notation) for reading in decision.readings)
     yield "Wrong:", f"{wrong}. {claim.remark}".rstrip()
     yield "Smallest counterexample:", decision.counterexample + "."
-    yield "Correct:", _correction(claim, decision)
+    yield "Correct:", _correction(claim, decision, notation)
     if decision.consequence:
         yield "What it does:", consequence_text(decision.consequence)
 
 
-def _correction(claim: Claim, decision: Decision) -> str:
+def _correction(claim: Claim, decision: Decision, notation: Notation) -> str:
     """Return what is true instead, without the formulas that stay as they are printed, and how it was shown."""
     printed = {formula.relation for formula in claim.formulas}
     changed = tuple(formula for formula in claim.corrected_formulas if formula.relation not in printed)
     shown = decision.correction
     proof = f" ({kind_text(shown)}, {checked_text(shown)}.)" if shown else ""
-    return f"{correction_text(claim)} {_formulas(changed or claim.corrected_formulas)}{proof}"
+    return f"{correction_text(claim)} {_formulas(changed or claim.corrected_formulas, notation)}{proof}"
 
 
-def _formulas(formulas: tuple[Formula, ...]) -> str:
-    return "; ".join(dict.fromkeys(_code(formula.relation) for formula in formulas))
+def _formulas(formulas: tuple[Formula, ...], notation: Notation) -> str:
+    return "; ".join(dict.fromkeys(_code(formula.relation, notation) for formula in formulas))
 
 
-def _residual_text(reading: ReadingDecision, minus: str, labelled: bool) -> str:
+def _residual_text(reading: ReadingDecision, minus: str, labelled: bool, notation: Notation) -> str:
     label = f"read with {reading.label}: " if labelled else ""
     if reading.residual is None:
         return f"{label}violated by {reading.false_case} (compared: {reading.method})"
-    return f"{label}{minus} leaves {_code(reading.residual)} ({reading.false_case})"
+    return f"{label}{minus} leaves {_code(reading.residual, notation)} ({reading.false_case})"
 
 
-def _code(relation: Any) -> str:
-    return f"$`{latex(relation)}`$"
+def _verbatim(text: str) -> str:
+    """Return a text as it stands; one of several lines as a block of its own within an item of a list."""
+    if "\n" not in text:
+        return f"`{text}`"
+    return "\n".join(["", "", "  ```text", *(f"  {line}".rstrip() for line in text.split("\n")), "  ```"])
+
+
+def _code(relation: Any, notation: Notation) -> str:
+    return f"$`{latex(relation, notation)}`$"
 
 
 def _section(ledger: Ledger, verdict: Verdict, heading: str, lines: Any, *, remarked: bool = False) -> Iterator[str]:
@@ -220,13 +227,13 @@ def _section(ledger: Ledger, verdict: Verdict, heading: str, lines: Any, *, rema
     yield from (f"## {heading}", "")
     for claim, decision in pairs:
         yield f"- **{claim.id}** ({claim.where}): {claim.statement}"
-        yield from (f"  - {line}" for line in lines(claim, decision))
+        yield from (f"  - {line}" for line in lines(claim, decision, ledger.paper.notation))
         if claim.remark:
             yield f"  - {claim.remark}"
     yield ""
 
 
-def _conditional_lines(claim: Claim, decision: Decision) -> Iterable[str]:
+def _conditional_lines(claim: Claim, decision: Decision, notation: Notation) -> Iterable[str]:
     for reading in decision.readings:
         yield f"Holds if {reading.condition}: true for {reading.true_case}, false for {reading.false_case}."
     if decision.counterexample:
@@ -234,28 +241,28 @@ def _conditional_lines(claim: Claim, decision: Decision) -> Iterable[str]:
     if decision.consequence:
         yield f"What it does: {consequence_text(decision.consequence)}"
     if claim.correction:
-        yield f"In general: {claim.correction.statement} {_formulas(claim.corrected_formulas)}".rstrip()
+        yield f"In general: {claim.correction.statement} {_formulas(claim.corrected_formulas, notation)}".rstrip()
 
 
-def _ambiguous_lines(claim: Claim, decision: Decision) -> Iterable[str]:
+def _ambiguous_lines(claim: Claim, decision: Decision, notation: Notation) -> Iterable[str]:
     for reading in decision.readings:
         verdict = f"holds if {reading.condition}" if reading.verdict is Verdict.HOLDS_IF else str(reading.verdict)
-        extra = f"; leaves {_code(reading.residual)}" if reading.residual not in (None, 0) else ""
+        extra = f"; leaves {_code(reading.residual, notation)}" if reading.residual not in (None, 0) else ""
         wrong = f" false: {reading.false_case}{extra}" if reading.false_case else ""
         yield f"Read as {reading.label}: **{verdict}**.{wrong} ({kind_text(reading)}, {checked_text(reading)})"
     if decision.counterexample:
         yield f"Smallest counterexample: {decision.counterexample}."
     if claim.correction:
-        yield f"Correct: {_correction(claim, decision)}"
+        yield f"Correct: {_correction(claim, decision, notation)}"
     if decision.consequence:
         yield f"What it does: {consequence_text(decision.consequence)}"
 
 
-def _proof_lines(_claim: Claim, decision: Decision) -> Iterable[str]:
+def _proof_lines(_claim: Claim, decision: Decision, _notation: Notation) -> Iterable[str]:
     for reading in decision.readings:
         label = f"Read as {reading.label}: " if reading.label else ""
         yield f"{label}{kind_text(reading)}, {checked_text(reading)}."
 
 
-def _reason_lines(claim: Claim, _decision: Decision) -> Iterable[str]:
+def _reason_lines(claim: Claim, _decision: Decision, _notation: Notation) -> Iterable[str]:
     return (claim.reason,)

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
-from semispline.papers.ledger import Claim, Consequence, Decision, Ledger, ReadingDecision, Strength, Verdict
+from sympy import preorder_traversal
+
+from semispline.papers.ledger import Claim, Consequence, Decision, Ledger, Print, ReadingDecision, Strength, Verdict
 
 
 def evidence_text(decision: Decision) -> str:
@@ -33,7 +35,7 @@ def strength_text(decision: Decision) -> str:
 
 
 def print_lines(claim: Claim) -> list[tuple[str, str]]:
-    r"""Return what is printed as LaTeX, beside it what was read of it, or why it was read by hand.
+    r"""Return what is printed as LaTeX or as code, beside it what was read of it, or why it was read by hand.
 
     Examples
     --------
@@ -42,10 +44,15 @@ def print_lines(claim: Claim) -> list[tuple[str, str]]:
     >>> print_lines(claim)
     [('as printed', '2at'), ('read as', '2 \\cdot a \\cdot t')]
     """
-    if claim.printed is None:
-        return []
-    lines = (("as printed", "latex"), ("read as", "echo"), ("read by hand", "by_hand"))
-    return [(heading, text) for heading, name in lines if (text := getattr(claim.printed, name).strip())]
+    prints = [claim.printed] if claim.printed is not None else _code_lines(claim)
+    lines = (("as printed", "text"), ("read as", "echo"), ("read by hand", "by_hand"))
+    return [(heading, text) for one in prints for heading, name in lines if (text := getattr(one, name).strip("\n "))]
+
+
+def _code_lines(claim: Claim) -> list[Print]:
+    """Return the lines of code that formulas contain, each once."""
+    nodes = (node for formula in claim.formulas for node in preorder_traversal(formula.relation))
+    return list(dict.fromkeys(n.printed for n in nodes if isinstance(getattr(n, "printed", None), Print)))
 
 
 def consequence_text(consequence: Consequence | None) -> str:

@@ -23,10 +23,10 @@ from semispline.papers.recheck.statements import Term
 X, R, S, C = sp.symbols("x r s c")
 TURN, SHEAR = sp.Matrix([[X, 1], [1, 0]]), sp.Matrix([[1, X], [0, 1]])
 MATRIX = [[2, 1, 0], [1, 2, 1], [0, 1, 2]]
-C, S = sp.symbols("co si")
+COS, SIN = sp.symbols("co si")
 RIGHT = {
     # Divided by a letter that PARI takes for a lesser one than the other, since it meets it later.
-    "roots": identity("a", "(1 - co)/si", "(co - 1)/si*co + si", roots=[(S, 1 - C**2, 2)]),
+    "roots": identity("a", "(1 - co_)/si_", "(co_ - 1)/si_*co_ + si_", roots=[(SIN, 1 - COS**2, 2)]),
     "identity": identity("a", (X**2 - 1) / (X - 1), X + 1),
     "where": identity("a", "y^2", "x^2 + 2*x + 1", where=(("y", "x + 1"),)),
     "different": different("a", X**2, X, conditions=("x > 1",)),

@@ -1,13 +1,17 @@
-"""What is printed as LaTeX stands in both reports beside what was read of it, or beside why it was read by hand."""
+"""What is printed stands in both reports beside what was read of it, or beside why it was read by hand."""
 
 from dataclasses import replace
 
 import pytest
+import sympy as sp
 
+from semispline.papers.checks.printed_code import Code, code
 from semispline.papers.ledger.records import Print
 from semispline.papers.ledger.verification import verify
+from semispline.papers.ledger.writing import formula, holds, part
 from semispline.papers.report.ledger_as_html import ledger_html
 from semispline.papers.report.ledger_as_markdown import ledger_markdown
+from semispline.papers.report.ledger_words import print_lines
 
 
 @pytest.fixture(scope="module")
@@ -38,3 +42,13 @@ def test_the_erratum_has_both(ledger):
 def test_records_without_a_print_look_as_before(made_up_paper_once):
     text = ledger_html(verify(str(made_up_paper_once), workers=1))
     assert "<th>as printed</th>" not in text
+
+
+def test_lines_of_code_are_shown_with_the_words_that_were_replaced():
+    n = sp.Symbol("n")
+    lines = Code("\nf(n):\n  return clone n\n", "f(n)", {"clone n": "n"})
+    record = holds("alg-1", "Section 1", "It is n.", part(code(), formula(sp.Eq(n, lines, evaluate=False))))
+    text = [("as printed", "f(n):\n  return clone n"), ("read by hand", "clone n: run as n")]
+    assert print_lines(record) == text
+    # What a record itself says is printed is shown alone.
+    assert print_lines(replace(record, printed=Print("x"))) == [("as printed", "x")]
