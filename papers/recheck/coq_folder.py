@@ -30,12 +30,19 @@ class Block:
         The statements that it proves, which differ in nothing but their names.
     names : tuple of str
         Of the lemma, and of one that says that its premises can be fulfilled.
-    text : str
+    title, proved : str
     """
 
     ids: tuple[str, ...]
     names: tuple[str, ...]
-    text: str
+    title: str
+    proved: str
+
+    @property
+    def text(self) -> str:
+        """What stands in the file: the statements that it proves, and the lemmas."""
+        also = ", ".join(identifier.partition(":")[0] for identifier in self.ids[1:])
+        return f"(* {_comment(self.title)}{'; also ' if also else ''}{_comment(also)} *)\n{self.proved}\n\n"
 
 
 @dataclass(frozen=True)
@@ -162,11 +169,10 @@ def coq_folder(export: Export) -> CoqFolder:
         if known is not None:
             blocks[text] = replace(known, ids=(*known.ids, identifier))
         else:
-            lines = [f"(* {_comment(identifier)}{_flags(case)} *)", f"Lemma {name} : {text}"]
             premises = met(case)
             names = (name,) if premises is None else (name, f"{name}_met")
-            lines += [] if premises is None else [f"Lemma {name}_met : {premises}"]
-            blocks[text] = Block((identifier,), names, "\n".join(lines) + "\n\n")
+            proved = [f"Lemma {name} : {text}", *([] if premises is None else [f"Lemma {name}_met : {premises}"])]
+            blocks[text] = Block((identifier,), names, identifier + _flags(case), "\n".join(proved))
     return CoqFolder((*_grouped(blocks.values()), *_theories(export), *_citing(export)), without)
 
 
@@ -187,7 +193,7 @@ def _grouped(blocks: Iterable[Block]) -> Iterator[CoqFile]:
 def _theories(export: Export) -> Iterator[CoqFile]:
     """Yield a file for each theorem that is generated as a whole."""
     for theory in export.theories:
-        block = Block((theory.title,), (theory.name,), f"(* {_comment(theory.title)} *)\n{theory.text}\n")
+        block = Block((theory.title,), (theory.name,), theory.title, theory.text)
         yield CoqFile(theory.name.capitalize(), theory.needed, (block,), over_reals=theory.over_reals)
 
 

@@ -56,6 +56,7 @@ def test_a_statement_that_two_records_have_is_proved_once():
     (file,) = coq_folder(export_of_cases({"eq-1": case, "eq-2": case})).files
     (block,) = file.blocks
     assert [i.partition(":")[0] for i in block.ids] == ["eq-1 #1", "eq-2 #1"]
+    assert "; also eq-2 #1 *)" in file.text
     assert file.block_at(file.text.splitlines().index("Proof. rational. Qed.") + 1) is block
     assert file.block_at(len(file.text.splitlines())) is None
 
