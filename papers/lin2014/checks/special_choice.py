@@ -34,7 +34,7 @@ def only_special_cases() -> Iterator[Case]:
 @cache
 def special_choice_cost() -> Consequence:
     """Minimise (11) over p_2, alpha^2, beta^2 and q_2: numbers or linear in v, then splines of v, on two pairs."""
-    measured = {}
+    measured: dict[str, float] = {}
     figure_6 = example(6)
     for name, pair in (("made pair", made_pair()), ("Fig. 6", (figure_6.a, figure_6.b))):
         measured |= {f"{name}: (11) saved by {choice} [%]": share for choice, share in saved_by(*pair).items()}
