@@ -112,6 +112,8 @@ class Formula:
     undecidable : mapping
         Text of a mutant -> why nothing printed can tell it from the formula; for printed data, such as a number that
         nothing else of the paper depends on.
+    equivalent_if : callable, optional
+        Mutant -> why it says the same as the formula, empty where it does not; asked of those that survive.
     """
 
     relation: Any
@@ -120,6 +122,7 @@ class Formula:
     neighbours: tuple[tuple[Any, ...], ...] = ()
     equivalent: Mapping[str, str] = field(default_factory=dict)
     undecidable: Mapping[str, str] = field(default_factory=dict)
+    equivalent_if: Callable[[Any], str] | None = None
 
 
 @dataclass(frozen=True)
