@@ -6,9 +6,10 @@ Heavy imports wait inside the functions, so that `--help` answers fast.
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from copy import copy
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -72,10 +73,14 @@ def verify_command(
         typer.Option(metavar="FILE", help="Write two pages for a reader of the paper, their picture beside them."),
     ] = None,
     recheck: Annotated[
-        str | None, typer.Option(metavar="SYSTEM", help="Have a second system, pari, repeat what verdicts rest on.")
+        list[str] | None,
+        typer.Option(
+            metavar="SYSTEM",
+            help="Have pari, or the kernel of coq (minutes), repeat what verdicts rest on; twice for both.",
+        ),
     ] = None,
     certificates: Annotated[
-        str | None, typer.Option(metavar="DIR", help="Write what verdicts rest on, for PARI alone: gp -q check.gp.")
+        str | None, typer.Option(metavar="DIR", help="Write what verdicts rest on, for PARI and for Coq alone.")
     ] = None,
     draft: Annotated[
         bool,
@@ -99,12 +104,12 @@ def verify_command(
     check_outputs(outputs, paper_files(paper))
     if erratum is not None:
         require_erratum(paper)
-    if recheck is not None:
-        require_system(recheck)
+    for system in recheck or ():
+        require_system(system)
     if certificates is not None:
         require_folder(certificates)
     ledger = decided(paper)
-    second = _second_system(ledger, recheck, certificates) if recheck or certificates else None
+    second = _second_systems(ledger, recheck or [], certificates) if recheck or certificates else None
     if json_file == "-":
         typer.echo(to_text(ledger_record(ledger, second)), nl=False)
     elif json_file is not None:
@@ -147,14 +152,15 @@ def _workers() -> int:
     return min(os.cpu_count() or 1, 8)
 
 
-def _second_system(ledger: Ledger, system: str | None, folder: str | None) -> Recheck:
+def _second_systems(ledger: Ledger, systems: list[str], folder: str | None) -> Recheck:
     """Export what the verdicts of a ledger rest on, write it where asked, and have it repeated where asked."""
-    from semispline.papers.recheck import Recheck, exported, rechecked, write_certificates
+    from semispline.papers.recheck import Recheck, exported, kernel_checked, rechecked, write_certificates
 
     export = exported(ledger.paper)
     if folder is not None:
         write_certificates(folder, export)
-    return rechecked(export, folder) if system is not None else Recheck(export)
+    found = rechecked(export, folder) if "pari" in systems else Recheck(export)
+    return replace(found, kernel=kernel_checked(export, folder)) if "coq" in systems else found
 
 
 def recheck_text(second: Recheck) -> str:
@@ -166,12 +172,24 @@ def recheck_text(second: Recheck) -> str:
         else ""
     )
     said = f"{counts['identities_exported']} identities exported{done}; {counts['not_expressible']} not expressible"
-    named: dict[str, list[str]] = {}
-    for identifier, reason in second.reasons().items():
-        named.setdefault(reason, []).append(identifier)
-    reasons = [f"{', '.join(found) if len(found) < 4 else len(found)}: {why}" for why, found in named.items()]
     same = f"{counts['identities_of_one_text']} identities are one text on both sides, and not counted"
-    return "\n".join([said, *([same] if counts["identities_of_one_text"] else []), *reasons])
+    lines = [said, *([same] if counts["identities_of_one_text"] else []), *_by_reason(second.reasons())]
+    if second.kernel is not None:
+        lines += [
+            f"Coq {second.kernel.version}: {counts['kernel_identities']} identities and {counts['kernel_statements']} "
+            f"statements accepted; {counts['kernel_checked']} records checked as a whole by its kernel, "
+            f"{counts['kernel_inexpressible']} not expressible",
+            *_by_reason(second.kernel.reasons()),
+        ]
+    return "\n".join(lines)
+
+
+def _by_reason(reasons: Mapping[str, str]) -> list[str]:
+    """Return each reason with its records, or with their number."""
+    named: dict[str, list[str]] = {}
+    for identifier, reason in reasons.items():
+        named.setdefault(reason, []).append(identifier)
+    return [f"{', '.join(found) if len(found) < 4 else len(found)}: {why}" for why, found in named.items()]
 
 
 @app.command("new-paper")

@@ -44,6 +44,7 @@ DOCUMENTS = (
     "benchmarks/README.md",
     "docs/architecture.md",
     "docs/theory.md",
+    "docs/what-has-to-be-believed.md",
     "docs/your-own-paper.md",
 )
 

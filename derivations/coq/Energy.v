@@ -125,15 +125,15 @@ Qed.
 End Quadratic.
 
 (** Of all curves with given values and slopes at both ends the cubic has the least energy: by parts, since H'''' = 0. *)
-Theorem cubic_is_least (f f1 f2 : R -> R) c0 c1 c2 c3 :
+Theorem cubic_is_least (f f1 f2 : R -> R) l c0 c1 c2 c3 : 0 < l ->
   let H x := c0 + c1 * x + c2 * x ^ 2 + c3 * x ^ 3 in let H1 x := c1 + 2 * c2 * x + 3 * c3 * x ^ 2 in
   let H2 x := 2 * c2 + 6 * c3 * x in
   (forall x, derivable_pt_lim f x (f1 x)) -> (forall x, derivable_pt_lim f1 x (f2 x)) -> continuity f2 ->
-  f 0 = H 0 -> f 1 = H 1 -> f1 0 = H1 0 -> f1 1 = H1 1 ->
-  forall (pf : Riemann_integrable (fun x => f2 x * f2 x) 0 1) (pH : Riemann_integrable (fun x => H2 x * H2 x) 0 1),
+  f 0 = H 0 -> f l = H l -> f1 0 = H1 0 -> f1 l = H1 l ->
+  forall (pf : Riemann_integrable (fun x => f2 x * f2 x) 0 l) (pH : Riemann_integrable (fun x => H2 x * H2 x) 0 l),
     RiemannInt pH <= RiemannInt pf.
 Proof.
-  intros H H1 H2 Df Df1 Cf E0 E1 E2 E3 pf pH.
+  intros Hl H H1 H2 Df Df1 Cf E0 E1 E2 E3 pf pH.
   assert (D : forall x, derivable_pt_lim H x (H1 x)).
   { intro x. apply (derivable_value _ _ (0 + c1 * 1 + c2 * (2 * x ^ 1) + c3 * (3 * x ^ 2))); [|unfold H1; ring].
     repeat apply (derivable_pt_lim_plus (fun y => _) (fun y => _)).
@@ -155,13 +155,13 @@ Proof.
   set (g := fun x => f x - H x). set (g1 := fun x => f1 x - H1 x). set (g2 := fun x => f2 x - H2 x).
   assert (CH : continuity H2) by (intro x; apply derivable_continuous_pt; exists (6 * c3); apply D2).
   assert (Cg : continuity g2) by (apply (continuity_minus f2 H2); assumption).
-  assert (pg : Riemann_integrable (fun x => H2 x * g2 x) 0 1).
+  assert (pg : Riemann_integrable (fun x => H2 x * g2 x) 0 l).
   { apply continuity_implies_RiemannInt; [lra|]. intros x _. now apply (continuity_pt_mult H2 g2). }
-  assert (pgg : Riemann_integrable (fun x => g2 x * g2 x) 0 1).
+  assert (pgg : Riemann_integrable (fun x => g2 x * g2 x) 0 l).
   { apply continuity_implies_RiemannInt; [lra|]. intros x _. now apply (continuity_pt_mult g2 g2). }
   (* H'' g' - H''' g has the derivative H'' g'', and vanishes at both ends. *)
   assert (Z : RiemannInt pg = 0).
-  { rewrite (newton_leibniz _ (fun x => H2 x * g1 x - 6 * c3 * g x) 0 1 pg); [|lra| |].
+  { rewrite (newton_leibniz _ (fun x => H2 x * g1 x - 6 * c3 * g x) 0 l pg); [|lra| |].
     - unfold g, g1. rewrite E0, E1, E2, E3. ring.
     - intros x _. now apply (continuity_pt_mult H2 g2).
     - intros x _. replace (H2 x * g2 x) with (6 * c3 * g1 x + H2 x * g2 x - 6 * c3 * g1 x) by ring.

@@ -217,3 +217,35 @@ Proof.
   assert (P : 0 < inject_Z (Zpos s) * form n A x) by (rewrite Split; lra).
   assert (0 < inject_Z (Zpos s)) by reflexivity. destruct (Qlt_le_dec 0 (form n A x)); [assumption|nra].
 Qed.
+
+(** A quadratic energy with a positive definite form is least at the solution of its normal equation, and there alone. *)
+Definition energy n A (b x : nat -> number) : number := form n A x + 2 * sum n (fun i => b i * x i).
+Definition solves n A (b x : list number) := all n (fun i =>
+  same (reduced_sum n (fun j => entry A i j * nth j x 0)) (- nth i b 0)).
+Definition point (x : list number) (i : nat) : number := nth i x 0.
+
+Theorem minimiser n s F A b x : definite_check n s A F = true -> solves n A b x = true ->
+  forall d, (exists i, (i < n)%nat /\ ~ d i == 0) ->
+    energy n A (point b) (point x) < energy n A (point b) (fun i => point x i + d i).
+Proof.
+  intros D S d Hd. destruct (definite_by n s A F D) as [Sym P]. specialize (P d Hd).
+  assert (R : forall i, (i < n)%nat -> sum n (fun j => entry A i j * point x j) == - point b i).
+  { intros i Hi. pose proof (all_spec _ _ S i Hi) as E. apply Qeq_bool_eq in E. now rewrite reduced_sum_is in E. }
+  assert (E : energy n A (point b) (fun i => point x i + d i) == energy n A (point b) (point x) + form n A d).
+  { unfold energy, form.
+    rewrite (sum_ext n (fun i => sum n (fun j => entry A i j * (point x i + d i) * (point x j + d j))) (fun i =>
+      sum n (fun j => entry A i j * point x i * point x j) + sum n (fun j => entry A i j * point x i * d j)
+      + (d i * sum n (fun j => entry A i j * point x j) + sum n (fun j => entry A i j * d i * d j)))).
+    2: { intros i _. rewrite <- sum_scale, <- !sum_add. apply sum_ext. intros. ring. }
+    rewrite !sum_add, (sum_swap n n (fun i j => entry A i j * point x i * d j)).
+    rewrite (sum_ext n (fun j => sum n (fun i => entry A i j * point x i * d j)) (fun i => - (point b i * d i))).
+    2: { intros i Hi. rewrite (sum_ext n _ (fun j => d i * (entry A i j * point x j)))
+           by (intros j Hj; rewrite (Sym j i Hj Hi); ring). rewrite sum_scale, (R i Hi). ring. }
+    rewrite (sum_ext n (fun i => d i * sum n _) (fun i => - (point b i * d i))).
+    2: { intros i Hi. rewrite (R i Hi). ring. }
+    rewrite (sum_ext n (fun i => point b i * (point x i + d i)) (fun i => point b i * point x i + point b i * d i))
+      by (intros; ring).
+    rewrite sum_add, (sum_ext n (fun i => - (point b i * d i)) (fun i => -1 * (point b i * d i))) by (intros; ring).
+    rewrite !sum_scale. ring. }
+  rewrite E. lra.
+Qed.

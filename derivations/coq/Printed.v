@@ -270,22 +270,31 @@ Proof.
 Qed.
 End Section_of_a_ruled_base.
 
-(** The hypotheses of that section can be fulfilled, whatever alpha is. *)
+(** The hypotheses of that section can be fulfilled, whatever alpha is, in both readings. *)
 Definition linear : nat -> R := fun i => nth i [0; 1; 4] 0.
-Theorem a_ruled_base_exists al : al <> 0 -> exists Px Pz x1 x2 z1 z2 X1 X2 Z1 Z2,
+Definition ruled_base (al : R) (row_2 : (nat -> R) -> Prop) := exists Px Pz x1 x2 z1 z2 X1 X2 Z1 Z2,
   contact 1 (al ^ 2) 5 U 3 Px 5 W 3 linear /\ contact 1 (al ^ 2) 5 U 3 Pz 5 W 3 curved /\ linear 1%nat <> linear O /\
   start_derivative 1 5 W 3 linear x1 /\ start_derivative 2 5 W 3 linear x2 /\
   start_derivative 1 5 W 3 curved z1 /\ start_derivative 2 5 W 3 curved z2 /\
   start_derivative 1 5 U 3 Px X1 /\ start_derivative 2 5 U 3 Px X2 /\
-  start_derivative 1 5 U 3 Pz Z1 /\ start_derivative 2 5 U 3 Pz Z2 /\
-  printed_3_1 al 3 3 (1/3) 1 (Pz O) (Pz 1%nat) (Pz 2%nat) 0 0 1.
+  start_derivative 1 5 U 3 Pz Z1 /\ start_derivative 2 5 U 3 Pz Z2 /\ row_2 Pz.
+
+Lemma ruled_base_by al Pz (row_2 : (nat -> R) -> Prop) : contact 1 (al ^ 2) 5 U 3 Pz 5 W 3 curved -> row_2 Pz ->
+  ruled_base al row_2.
 Proof.
-  intro Ha. destruct (printed_3_1_fails al Ha) as (Pz & C & E & _).
-  exists (fun i => nth i [0; - al ^ 2 / 3] 0), Pz. do 8 eexists.
+  intros C E. exists (fun i => nth i [0; - al ^ 2 / 3] 0), Pz. do 8 eexists.
   repeat apply conj; [| exact C | cbn; lra | | | | | | | | | exact E];
     try (apply start_derivative_is; auto using U_ascending, W_ascending, U_clamped, W_clamped; lia).
   apply equation_2_1; auto using U_ascending, W_ascending, U_clamped, W_clamped; try lia.
   destruct U_knots as [-> _], W_knots as [-> _]. unfold printed_2_1. cbn. split; field.
+Qed.
+
+Theorem a_ruled_base_exists al : al <> 0 ->
+  ruled_base al (fun P => printed_3_1 al 3 3 (1/3) 1 (P O) (P 1%nat) (P 2%nat) 0 0 1) /\
+  ruled_base al (fun P => printed_3_1_squares al 3 3 (1/3) 1 (P O) (P 1%nat) (P 2%nat) 0 0 1).
+Proof.
+  intro Ha. split; [destruct (printed_3_1_fails al Ha) as (P & C & E & _)
+    | destruct (printed_3_1_squares_fails al Ha) as (P & C & E & _)]; exact (ruled_base_by al P _ C E).
 Qed.
 
 (** The other end: (3.2) as printed is (3.1) as printed of the mirrored blend, its knot the last inner one. *)
@@ -410,4 +419,21 @@ Proof.
   destruct H as [_ H]; [unfold printed_2_2; cbn; field|].
   - unfold knot, W, vector. cbn. lra.
   - unfold last_knot, knot, U_quartic, W, vector in H. cbn in H. lra.
+Qed.
+
+(** The second derivative of the appendix, a plain second difference over one span, without and with a square. *)
+Theorem printed_d2_refuted : ~ forall P y, start_derivative 2 5 U 3 P y ->
+  y = 3 * 2 / knot U 3 1 * (P 2%nat - 2 * P 1%nat + P O).
+Proof.
+  intro H. specialize (H curved _ (start_derivative_is 2 5 U 3 curved U_ascending U_clamped ltac:(lia))).
+  rewrite end_derivatives, second_derivative in H by (auto using U_ascending, U_clamped).
+  destruct U_knots as [U1 U2]. rewrite U1, U2 in H. cbn in H. lra.
+Qed.
+
+Theorem printed_d2_squares_refuted : ~ forall P y, start_derivative 2 5 U 3 P y ->
+  y = 3 * 2 / knot U 3 1 ^ 2 * (P 2%nat - 2 * P 1%nat + P O).
+Proof.
+  intro H. specialize (H curved _ (start_derivative_is 2 5 U 3 curved U_ascending U_clamped ltac:(lia))).
+  rewrite end_derivatives, second_derivative in H by (auto using U_ascending, U_clamped).
+  destruct U_knots as [U1 U2]. rewrite U1, U2 in H. cbn in H. lra.
 Qed.

@@ -18,7 +18,22 @@ Proof.
   apply sum_ext. intros. ring.
 Qed.
 
-Hypotheses (up : ascending U) (upV : forall i, ascending (V i)) (Hp : (p <= m)%nat) (Hl : forall i, (l <= n i)%nat).
+Hypotheses (up : ascending U) (upV : forall i, ascending (V i)).
+
+(** A control point moves the surface on its own rectangle of knots alone. *)
+Theorem locality u v P Q i0 j0 : (forall i j, ~ (i = i0 /\ j = j0) -> P i j = Q i j) ->
+  u < U i0 \/ U (S (i0 + p)) <= u \/ v < V i0 j0 \/ V i0 (S (j0 + l)) <= v -> surface P u v = surface Q u v.
+Proof.
+  intros H Out. apply sum_ext. intros i _. apply sum_ext. intros j _.
+  destruct (Nat.eq_dec i i0) as [->|], (Nat.eq_dec j j0) as [->|]; [|rewrite H by tauto; ring..].
+  assert (Z : N (V i0) l j0 v * N U p i0 u = 0); [|rewrite Z; ring].
+  destruct Out as [O|[O|O]].
+  - rewrite (local_support U up p i0) by tauto. ring.
+  - rewrite (local_support U up p i0) by tauto. ring.
+  - rewrite (local_support (V i0) (upV i0) l j0) by tauto. ring.
+Qed.
+
+Hypotheses (Hp : (p <= m)%nat) (Hl : forall i, (l <= n i)%nat).
 Variables u v : R.
 Hypotheses (Hu : U p <= u < U (S m)) (Hv : forall i, V i l <= v < V i (S (n i))).
 
@@ -46,19 +61,6 @@ Proof.
   replace (surface P u v - a) with (surface (fun i j => 1 * P i j + - a) u v) by (rewrite affine_invariance; ring).
   apply sum_nonneg. intros i Hi. apply sum_nonneg. intros j Hj.
   apply Rmult_le_pos; [specialize (H i j ltac:(lia) ltac:(lia)); lra|apply weights_non_negative].
-Qed.
-
-(** A control point moves the surface on its own rectangle of knots alone. *)
-Theorem locality P Q i0 j0 : (forall i j, ~ (i = i0 /\ j = j0) -> P i j = Q i j) ->
-  u < U i0 \/ U (S (i0 + p)) <= u \/ v < V i0 j0 \/ V i0 (S (j0 + l)) <= v -> surface P u v = surface Q u v.
-Proof.
-  intros H Out. apply sum_ext. intros i _. apply sum_ext. intros j _.
-  destruct (Nat.eq_dec i i0) as [->|], (Nat.eq_dec j j0) as [->|]; [|rewrite H by tauto; ring..].
-  assert (Z : N (V i0) l j0 v * N U p i0 u = 0); [|rewrite Z; ring].
-  destruct Out as [O|[O|O]].
-  - rewrite (local_support U up p i0) by tauto. ring.
-  - rewrite (local_support U up p i0) by tauto. ring.
-  - rewrite (local_support (V i0) (upV i0) l j0) by tauto. ring.
 Qed.
 End Surface.
 

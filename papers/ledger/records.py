@@ -49,7 +49,8 @@ class Verdict(StrEnum):
 _VERDICT_TEXT = {
     Verdict.HOLDS: "true as printed, under the paper's own assumptions",
     Verdict.HOLDS_IF: "true only under a condition that the paper does not state and that its own setting (its orders, "
-    "its choice of knots) meets; with an exact instance on each side of the condition",
+    "its choice of knots) meets, or, where the condition is one on data that are not printed, may meet; with an exact "
+    "instance on each side of the condition",
     Verdict.FAILS: "false as printed, or false in the paper's own setting; with what it leaves, the smallest rational "
     "counterexample, what is right instead and the proof of that, and what the error does, where it can be measured",
     Verdict.AMBIGUOUS: "can be read in more than one way; each reading is decided",

@@ -1,3 +1,6 @@
+from .coq_bounds import least_over_a_box as least_over_a_box
+from .coq_bounds import minimiser as minimiser
+from .coq_bounds import rescaled as rescaled
 from .definition import Lets as Lets
 from .definition import basis_jets as basis_jets
 from .definition import basis_number as basis_number
@@ -25,6 +28,7 @@ from .exporting import rank as rank
 from .exporting import series as series
 from .files import require_folder as require_folder
 from .files import write_certificates as write_certificates
+from .kernel import kernel_checked as kernel_checked
 from .rechecking import Recheck as Recheck
 from .rechecking import exported as exported
 from .rechecking import rechecked as rechecked
@@ -33,6 +37,7 @@ from .statements import Export as Export
 from .statements import Identity as Identity
 from .statements import Statement as Statement
 from .statements import Term as Term
+from .statements import Theory as Theory
 from .texts import NotExpressibleError as NotExpressibleError
 from .texts import Text as Text
 from .texts import as_text as as_text

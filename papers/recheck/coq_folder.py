@@ -9,8 +9,9 @@ from functools import cache
 from importlib.resources import files
 from pathlib import Path
 
-from semispline.papers.recheck.coq_lemmas import NotForCoqError, lemma
+from semispline.papers.recheck.coq_lemmas import lemma, met
 from semispline.papers.recheck.gp import CONTROLS, statement_id
+from semispline.papers.recheck.roots import NotForCoqError
 from semispline.papers.recheck.statements import Export, Statement
 
 LIBRARY = "Semispline"
@@ -27,12 +28,21 @@ class Block:
     ----------
     ids : tuple of str
         The statements that it proves, which differ in nothing but their names.
-    name, text : str
+    names : tuple of str
+        Of the lemma, and of one that says that its premises can be fulfilled.
+    title, proved : str
     """
 
     ids: tuple[str, ...]
-    name: str
-    text: str
+    names: tuple[str, ...]
+    title: str
+    proved: str
+
+    @property
+    def text(self) -> str:
+        """What stands in the file: the statements that it proves, and the lemmas."""
+        also = ", ".join(identifier.partition(":")[0] for identifier in self.ids[1:])
+        return f"(* {_comment(self.title)}{'; also ' if also else ''}{_comment(also)} *)\n{self.proved}\n\n"
 
 
 @dataclass(frozen=True)
@@ -48,17 +58,20 @@ class CoqFile:
     blocks : tuple of Block
     cited : tuple of str
         Theorems of hand-written sources.
+    over_reals : bool
+        Whether the axioms of the library's real numbers are allowed.
     """
 
     name: str
     needed: tuple[str, ...]
     blocks: tuple[Block, ...] = ()
     cited: tuple[str, ...] = ()
+    over_reals: bool = False
 
     @property
     def asked(self) -> tuple[str, ...]:
         """Names whose assumptions are printed at the end, all at once."""
-        return (*(block.name for block in self.blocks), *self.cited)
+        return (*(name for block in self.blocks for name in block.names), *self.cited)
 
     @property
     def text(self) -> str:
@@ -69,7 +82,8 @@ class CoqFile:
 
     @property
     def _head(self) -> str:
-        return f"From {LIBRARY} Require Import {' '.join(self.needed)}.\nOpen Scope Q_scope.\n\n"
+        scope = "" if self.over_reals else "Open Scope Q_scope.\n"
+        return f"From {LIBRARY} Require Import {' '.join(self.needed)}.\n{scope}\n"
 
     def block_at(self, line: int) -> Block | None:
         """Return the block that a line stands in."""
@@ -117,7 +131,10 @@ def imports(text: str) -> tuple[str, ...]:
 
 
 def needed_sources(folder: CoqFolder) -> dict[str, str]:
-    """Return the hand-written sources that the files of a folder need, each after those that it imports."""
+    """Return the hand-written sources that the files of a folder need, each after those that it imports.
+
+    Where theorems of them are cited, all of them: those that none needs are instances and controls.
+    """
     every, found = hand_written(), dict[str, str]()
 
     def add(name: str) -> None:
@@ -127,7 +144,7 @@ def needed_sources(folder: CoqFolder) -> dict[str, str]:
             found[name] = every[name]
 
     for file in folder.files:
-        for name in file.needed:
+        for name in every if file.cited else file.needed:
             add(name)
     return found
 
@@ -152,9 +169,11 @@ def coq_folder(export: Export) -> CoqFolder:
         if known is not None:
             blocks[text] = replace(known, ids=(*known.ids, identifier))
         else:
-            title = f"(* {_comment(identifier)}{_flags(case)} *)\n"
-            blocks[text] = Block((identifier,), name, f"{title}Lemma {name} : {text}\n\n")
-    return CoqFolder((*_grouped(blocks.values()), *_citing(export)), without)
+            premises = met(case)
+            names = (name,) if premises is None else (name, f"{name}_met")
+            proved = [f"Lemma {name} : {text}", *([] if premises is None else [f"Lemma {name}_met : {premises}"])]
+            blocks[text] = Block((identifier,), names, identifier + _flags(case), "\n".join(proved))
+    return CoqFolder((*_grouped(blocks.values()), *_theories(export), *_citing(export)), without)
 
 
 def _grouped(blocks: Iterable[Block]) -> Iterator[CoqFile]:
@@ -171,11 +190,18 @@ def _grouped(blocks: Iterable[Block]) -> Iterator[CoqFile]:
             size += len(block.text)
 
 
+def _theories(export: Export) -> Iterator[CoqFile]:
+    """Yield a file for each theorem that is generated as a whole."""
+    for theory in export.theories:
+        block = Block((theory.title,), (theory.name,), theory.title, theory.text)
+        yield CoqFile(theory.name.capitalize(), theory.needed, (block,), over_reals=theory.over_reals)
+
+
 def _citing(export: Export) -> Iterator[CoqFile]:
     """Yield the file that asks what the cited theorems rest on."""
     cited = tuple(dict.fromkeys(name for names in export.theorems.values() for name in names))
     if cited:
-        yield CoqFile(CITED, tuple(dict.fromkeys(name.partition(".")[0] for name in cited)), (), cited)
+        yield CoqFile(CITED, tuple(dict.fromkeys(name.partition(".")[0] for name in cited)), (), cited, over_reals=True)
 
 
 def write_coq(folder: CoqFolder, place: Path) -> list[Path]:

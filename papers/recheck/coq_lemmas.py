@@ -11,10 +11,9 @@ from collections.abc import Callable, Iterable, Sequence
 from fractions import Fraction
 from typing import Any
 
-import numpy as np
-
 from semispline.papers.recheck.arithmetic import instance, value
 from semispline.papers.recheck.gp import term_text
+from semispline.papers.recheck.roots import NotForCoqError, Rows, whole_root
 from semispline.papers.recheck.statements import (
     Contained,
     Identity,
@@ -25,15 +24,6 @@ from semispline.papers.recheck.statements import (
     Statement,
     Term,
 )
-from semispline.solver.errors import InputError
-
-Rows = Sequence[Sequence[Fraction]]
-# How many bits a square root of a matrix may have.
-_BITS = range(8, 129, 8)
-
-
-class NotForCoqError(InputError):
-    """A statement for which no proof could be written."""
 
 
 def lemma(statement: Statement) -> str:
@@ -51,8 +41,29 @@ def lemma(statement: Statement) -> str:
       x/x == 1.
     Proof. rational. Qed.
     """
+    if statement.form not in _BY_FORM:
+        raise NotForCoqError(_WITHOUT[statement.form])
+    if isinstance(statement, Identity) and statement.roots:
+        raise NotForCoqError("a root: no rational number is one")
     stated, proof = _BY_FORM[statement.form](statement)
     return f"{stated}.\nProof. {proof} Qed."
+
+
+def met(statement: Statement) -> str | None:
+    """Return the lemma that numbers fulfil the premises of another lemma, so that it says something; None without any.
+
+    Examples
+    --------
+    >>> print(met(Identity(label="a", left="x/x", right="1", variables=("x",), nonzero=("x",), at=(("x", "2"),))))
+    exists (x : number), ~ x == 0.
+    Proof. exists (2#1). repeat split; by_numbers. Qed.
+    """
+    premises = [*_signs(statement), *_not_zero(statement)] if isinstance(statement, Positive) else _not_zero(statement)
+    if not premises or (isinstance(statement, Identity) and not statement.equal):
+        return None
+    numbers_ = ", ".join(number(Fraction(x)) for _, x in statement.at)
+    stated = f"exists ({' '.join(statement.variables)} : number), " + " /\\ ".join(premises)
+    return f"{stated}.\nProof. exists {numbers_}. repeat split; by_numbers. Qed."
 
 
 def _expression(text: str) -> str:
@@ -100,16 +111,19 @@ def _condition(condition: str) -> str:
 
 
 def _positive(statement: Positive) -> tuple[str, str]:
-    signs = [f"0 < {name}" for name in statement.positive if name in statement.variables]
-    signs += [f"0 <= {name}" for name in statement.nonnegative if name in statement.variables]
     sign = "<" if statement.strict else "<="
-    premises = _premises([*signs, *_not_zero(statement)])
+    premises = _premises([*_signs(statement), *_not_zero(statement)])
     stated = f"{_variables(statement)}{premises}{_lets(statement)}0 {sign} {_expression(statement.left)}"
     if not statement.variables:
         return stated, "by_numbers."
     rule, tactic = ("quotient_positive", "positive") if statement.strict else ("quotient_nonneg", "nonneg")
     over, under = (_sum(part) for part in (statement.over, statement.under))
     return stated, f"intros. apply ({rule} _ ({over}) ({under})); [rational|{tactic}|positive]."
+
+
+def _signs(statement: Positive) -> list[str]:
+    signs = [f"0 < {name}" for name in statement.positive if name in statement.variables]
+    return signs + [f"0 <= {name}" for name in statement.nonnegative if name in statement.variables]
 
 
 def _sum(terms: Sequence[Term]) -> str:
@@ -122,7 +136,7 @@ def _rank(statement: Rank) -> tuple[str, str]:
     entries = [[value(entry, at) for entry in row] for row in statement.matrix]
     minor = [[entries[i][j] for j in statement.columns] for i in statement.rows]
     inverse = _inverse(minor)
-    left = [[Fraction(0)] * rows for _ in range(statement.rank)]
+    left = [[Fraction(0)] * rows for _ in statement.rows]
     for row, line in zip(left, inverse, strict=True):
         for i, number_ in zip(statement.rows, line, strict=True):
             row[i] = number_
@@ -130,7 +144,7 @@ def _rank(statement: Rank) -> tuple[str, str]:
     combinations = _product(inverse, picked)
     stated = f"rank_is {rows} {columns} {numbers(entries)} {statement.rank}"
     indices = "[" + "; ".join(f"{j}%nat" for j in statement.columns) + "]"
-    proof = f"apply (rank_by _ _ _ _ {indices} {numbers(left)} {numbers(combinations)}). by_numbers."
+    proof = f"apply (rank_by _ _ _ _ {indices} {numbers(left)} {numbers(combinations)}); by_numbers."
     if not statement.variables:
         return stated, proof
     # A matrix of functions: the rank at the instance, and what sends its columns to zero everywhere.
@@ -161,37 +175,10 @@ def _contained(statement: Contained) -> tuple[str, str]:
 
 def _minimum(statement: Minimum) -> tuple[str, str]:
     entries = _numbers(statement.matrix)
-    scale, factor = _whole_factor(statement.label, entries)
+    scale, factor = whole_root(entries)
     whole = "[" + ";\n ".join("[" + "; ".join(f"({x})%Z" for x in row) + "]" for row in factor) + "]"
     stated = f"positive_definite {len(entries)} {numbers(entries)}"
     return stated, f"apply (definite_by _ {scale} _ {whole}). by_numbers."
-
-
-def _whole_factor(label: str, entries: Rows) -> tuple[int, list[list[int]]]:
-    """Return s and F with s A = F F^T + E, whose diagonal outweighs the rest of each row of E."""
-    a = np.array([[float(x) for x in row] for row in entries])
-    diagonal = np.diag(a)
-    if np.any(diagonal <= 0):
-        raise NotForCoqError(f"{label}: found a diagonal entry that is not positive")
-    scaled = a / np.sqrt(np.outer(diagonal, diagonal))
-    margin = float(np.linalg.eigvalsh(scaled)[0]) / 2
-    if margin <= 0:
-        raise NotForCoqError(f"{label}: found a least eigenvalue of {2 * margin}, expected a positive one")
-    lower = np.linalg.cholesky(a - margin * np.diag(diagonal))
-    for bits in _BITS:
-        factor = [[round(Fraction(float(x)) * 2**bits) for x in row[: i + 1]] for i, row in enumerate(lower)]
-        if _outweighs(entries, 4**bits, factor):
-            return 4**bits, factor
-    raise NotForCoqError(f"{label}: found no square root of whole numbers that is near enough")
-
-
-def _outweighs(entries: Rows, scale: int, factor: Sequence[Sequence[int]]) -> bool:
-    for i, row in enumerate(entries):
-        rest = [abs(scale * x - sum(map(int.__mul__, factor[i], factor[j]))) for j, x in enumerate(row)]
-        own = scale * row[i] - sum(x * x for x in factor[i])
-        if own <= sum(rest) - rest[i]:
-            return False
-    return True
 
 
 def _knots(statement: Knots) -> tuple[str, str]:
@@ -214,6 +201,13 @@ _BY_FORM: dict[str, Callable[[Any], tuple[str, str]]] = {
     "contained": _contained,
     "minimum": _minimum,
     "knots": _knots,
+}
+
+
+_WITHOUT = {
+    "matrices": "products and inverses of matrices",
+    "number": "a number of elementary functions, enclosed by intervals",
+    "coefficient": "a coefficient of a power series",
 }
 
 

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from semispline.papers.ledger import Claim, LedgerError, Paper, Part, mutants
-from semispline.papers.recheck.statements import Certificate, Export, Reading, Statement
+from semispline.papers.recheck.statements import Certificate, Export, Reading, Statement, Theory
 from semispline.papers.recheck.texts import NotExpressibleError
 from semispline.solver.errors import InputError
 
@@ -52,10 +52,15 @@ def export_of(
     drafts: Drafts,
     not_expressible: Mapping[str, str],
     controls: Callable[[], Iterable[Statement]] = tuple,
+    theorems: Mapping[str, tuple[str, ...]] | None = None,
+    theories: Callable[[], Iterable[Theory]] = tuple,
 ) -> Export:
     """Return the export of a paper.
 
     A decided record with neither a draft nor a reason gets what its checks export, or else `UNWRITTEN` for a reason.
+
+    `theorems` says which theorems of `derivations/coq` stand for a sentence that is believed, or prove a record;
+    `theories` are theorems that are generated as a whole.
 
     Raises
     ------
@@ -79,7 +84,8 @@ def export_of(
             reasons[claim.id] = str(error)
     places = {claim.id: n for n, claim in enumerate(paper.claims)}
     certificates.sort(key=lambda certificate: places[certificate.id])
-    return Export(paper.name, tuple(certificates), (*controls(), *_changed(exportable)), reasons)
+    every_control = (*controls(), *_changed(exportable))
+    return Export(paper.name, tuple(certificates), every_control, reasons, dict(theorems or {}), tuple(theories()))
 
 
 def _exports(claim: Claim) -> bool:

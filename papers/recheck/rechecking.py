@@ -10,13 +10,15 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 from semispline.papers.ledger import MistakeError, Paper, paper_module, placed
+from semispline.papers.recheck.coqc import require_coqc
 from semispline.papers.recheck.draft import export_of
 from semispline.papers.recheck.files import write_certificates
+from semispline.papers.recheck.kernel import KernelCheck
 from semispline.papers.recheck.statements import Export, Identity
 from semispline.solver.errors import ComputationError, OptionError
 from semispline.solver.workers import WorkerError, call
 
-SYSTEMS = ("pari",)
+SYSTEMS = ("pari", "coq")
 # Of processor time and memory; no paper that ships takes a tenth of the former, or a half of the latter.
 _SECONDS, _MEGABYTES = 600, 4096
 
@@ -32,16 +34,19 @@ class Recheck:
         Record -> statements with which it disagrees; None where it was not asked.
     verdicts : mapping
         Record -> the verdict that was made anew from its cases.
+    kernel : KernelCheck or None
+        What the kernel of Coq said; None where it was not asked.
     """
 
     export: Export
     refused: Mapping[str, tuple[str, ...]] | None = None
     verdicts: Mapping[str, str | None] | None = None
+    kernel: KernelCheck | None = None
 
     @property
     def agrees(self) -> bool:
         """Whether nothing was refused, and every verdict is the recorded one."""
-        return not self.refused and not self.changed
+        return not self.refused and not self.changed and not (self.kernel and self.kernel.problems)
 
     @property
     def changed(self) -> tuple[str, ...]:
@@ -61,6 +66,7 @@ class Recheck:
         recorded = {c.id: c.verdict for c in self.export.certificates}
         return (
             *refused,
+            *(self.kernel.problems if self.kernel else ()),
             *(f"recheck: {i}: the cases amount to {verdicts[i]}, recorded {recorded[i]}" for i in self.changed),
         )
 
@@ -104,6 +110,7 @@ class Recheck:
             "rechecked": sum(self.is_whole(c.id) for c in self.export.certificates),
             "not_expressible": len(self.export.not_expressible)
             + sum(bool(c.left_out) for c in self.export.certificates),
+            **(self.kernel.counts() if self.kernel else {}),
         }
 
     def reasons(self) -> dict[str, str]:
@@ -122,6 +129,7 @@ class Recheck:
             "whole": self.is_whole(identifier),
             "not_expressible": reason,
             "believed": list(found.believed) if found else [],
+            **({"kernel": self.kernel.record(identifier)} if self.kernel else {}),
         }
 
 
@@ -154,6 +162,9 @@ def require_system(system: str) -> None:
     """
     if system not in SYSTEMS:
         raise OptionError(f"--recheck: found {system!r}, expected one of {', '.join(SYSTEMS)}")
+    if system == "coq":
+        require_coqc()
+        return
     if importlib.util.find_spec("cypari") is None:
         raise OptionError("--recheck pari: found no cypari, expected it installed: pip install 'semispline[recheck]'")
 

@@ -373,6 +373,29 @@ class Certificate:
 
 
 @dataclass(frozen=True)
+class Theory:
+    """A theorem that is generated as a whole, with the lemmas that it needs.
+
+    Attributes
+    ----------
+    name, title : str
+        Of the theorem, and what it is about.
+    needed : tuple of str
+        Modules of `derivations/coq` that it imports.
+    text : str
+        In the language of Coq.
+    over_reals : bool
+        Whether it rests on the axioms of the real numbers.
+    """
+
+    name: str
+    title: str
+    needed: tuple[str, ...]
+    text: str
+    over_reals: bool = True
+
+
+@dataclass(frozen=True)
 class Export:
     """Everything of one paper.
 
@@ -386,6 +409,7 @@ class Export:
         Decided record -> why nothing of it is here.
     theorems : mapping
         What is believed, or a record -> theorems of the sources in `derivations/coq` that say so.
+    theories : tuple of Theory
     """
 
     paper: str
@@ -393,6 +417,7 @@ class Export:
     controls: tuple[Statement, ...] = ()
     not_expressible: Mapping[str, str] = field(default_factory=dict)
     theorems: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    theories: tuple[Theory, ...] = ()
 
 
 def as_record(statement: Statement) -> dict[str, Any]:

@@ -68,6 +68,23 @@ def test_checks_that_export_nothing_are_told(made_up_paper, tmp_path):
     assert (tmp_path / "c" / "check.gp").is_file()
 
 
+@pytest.mark.coq
+def test_the_kernel_of_coq_is_asked_and_what_it_says_is_told(tmp_path):
+    assert run("new-paper", tmp_path / "p").exit_code == 0
+    options = ("--json", tmp_path / "l.json", "--certificates", tmp_path / "c", "--recheck", "coq")
+    result = run("verify", tmp_path / "p", *options)
+    assert result.exit_code == 0, result.output
+    record = json.loads((tmp_path / "l.json").read_text())
+    found = [claim["recheck"]["kernel"] for claim in record["claims"]]
+    counts = record["counts"]
+    assert counts["kernel_checked"] == sum(one["whole"] for one in found) > 0
+    assert counts["kernel_inexpressible"] == sum(bool(one["inexpressible"]) for one in found)
+    said = next(line for line in result.output.splitlines() if line.startswith("Coq 8"))
+    assert f"{counts['kernel_checked']} records checked as a whole by its kernel" in said
+    done = subprocess.run(["sh", "check.sh"], cwd=tmp_path / "c/coq", capture_output=True, text=True, check=False)
+    assert (done.returncode, set(done.stdout.splitlines())) == (0, {"Closed under the global context"})
+
+
 def test_a_second_system_that_is_not_known(made_up_paper):
     result = run("verify", made_up_paper(), "--recheck", "maple")
     assert result.exit_code == 2

@@ -14,6 +14,7 @@ from semispline.papers.lin2014.certificates.contact import INDUCTION, induction
 from semispline.papers.lin2014.checks import energy, objective
 from semispline.papers.recheck import Draft, Statement, Term, Text, as_text, identity, minimum, positive
 
+UNROLLED = "the sums are unrolled for three pairs of counts; more terms are alike"
 NO_ENERGY = "the integral of a square vanishes only where the function does; basis functions are independent"
 
 
@@ -99,7 +100,7 @@ def normal_equation(order: int) -> Callable[[Claim], Draft]:
                 left, right = (interpret(side, Meaning(numbers, functions)) for side in relation.args)
                 label = f"{free} free and {known} known control points, row {r}: half the slope of the energy"
                 cases.append(identity(label, slope, left - right))
-        believed = (INDUCTION, NO_ENERGY, "the sums are unrolled for three pairs of counts; more terms are alike")
+        believed = (INDUCTION, NO_ENERGY, UNROLLED)
         return Draft([[*cases, *one_minimum(order)]], believed=believed)
 
     return draft

@@ -22,6 +22,8 @@ _CIRCLE = (("C", "(1 - t^2)/(1 + t^2)"), ("S", "2*t/(1 + t^2)"))
 # Hartmann's weight: A and B stand for (1-t)^(n+1) and t^(n+1).
 _F = Text("mu*A/(mu*A + nu*B)", 2)
 POWERS = "a derivative takes one power of t away from t^(n+1) g, g with derivatives of every order at 0"
+LIMIT = "a limit of slopes that are not positive is not"
+CIRCLE = "the leading coefficient of x^2 + y^2 is a^2 + b^2, positive for real a, b that are not both zero"
 NO_SINE = "no quotient of polynomials solves y'' = -y, as its degree falls by two"
 
 
@@ -197,8 +199,7 @@ def cylinders(_: Claim) -> Draft:
         positive("b alone", "b^2", positive=("b",), affirmed=False),
     ]
     line = total(bernstein(r, 3, Text("t")) * Text(f"{r}/3", 2) for r in range(4))
-    believed = "the leading coefficient of x^2 + y^2 is a^2 + b^2, positive for real a, b that are not both zero"
-    return Draft([circle, [identity("a line with four rows", line, Text("t"))]], believed=(believed,))
+    return Draft([circle, [identity("a line with four rows", line, Text("t"))]], believed=(CIRCLE,))
 
 
 def cone(_: Claim) -> Draft:
@@ -283,9 +284,7 @@ def inference(claim: Claim) -> Draft:
             meets=False,
         )
     )
-    return Draft(
-        [[*hull(), *directions(formulas)], convex], believed=(POWERS, "a limit of slopes that are not positive is not")
-    )
+    return Draft([[*hull(), *directions(formulas)], convex], believed=(POWERS, LIMIT))
 
 
 DRAFTS: dict[str, Callable[[Claim], Draft]] = {

@@ -38,6 +38,8 @@ from semispline.papers.recheck import (
     total,
 )
 
+SLOPE = "((t + g)/g)^p has the slope p/g where t is 0"
+
 
 def convex_hull(_: Claim) -> Draft:
     """Return that the weights are not negative and sum to 1."""
@@ -176,7 +178,7 @@ def continuity_control(_: Claim) -> Draft:
                 where=[*lets.pairs, *other.pairs],
             )
         )
-    return Draft([cases], believed=(INDUCTION, "((t + g)/g)^p has the slope p/g where t is 0"))
+    return Draft([cases], believed=(INDUCTION, SLOPE))
 
 
 def row_differences(_: Claim) -> Draft:
