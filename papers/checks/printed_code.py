@@ -72,7 +72,7 @@ class Code(sp.Basic):
         return super().__new__(cls, *words)
 
     def __getnewargs__(self) -> tuple[Any, ...]:
-        """What it is made from, for a process that gets it from another one."""
+        """Return what it is made from, for a process that gets it from another one."""
         return self.text, self.call, self.replaced, self.note
 
     @property
