@@ -131,13 +131,17 @@ class Rewriting:
             self.roots.append(Root(letter, radicand, degree))
         return self._letters[key]
 
-    def _power(self, base: Any, exponent: Any) -> Any:
+    def _power(self, base: Any, exponent: Any) -> Any:  # noqa: PLR0911  # one for each kind of power
         if exponent.is_Integer:
             return self.rational(base) ** exponent
         if exponent.is_Rational:
             if base is sp.E:
                 base = self._letter(sp.E, sp.E)
                 return self._root(sp.E ** sp.Rational(1, exponent.q), base, int(exponent.q)) ** exponent.p
+            if base.is_Rational and base > 1 and not sp.isprime(base):
+                # The root of 6 is that of 2 times that of 3.
+                primes = sp.factorrat(base).items()
+                return sp.Mul(*(self._power(sp.Integer(prime), n * exponent) for prime, n in primes))
             radicand = self.rational(base)
             return self._root(base ** sp.Rational(1, exponent.q), radicand, int(exponent.q)) ** exponent.p
         if exponent.is_integer and base.is_Mul:

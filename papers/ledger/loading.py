@@ -114,16 +114,7 @@ def collected(name: str) -> Paper:
         There is no such paper, a module does not run or has no CLAIMS, or an id occurs twice.
     """
     folder, package = paper_folder(name), _package(name)
-    claims: list[Claim] = []
-    files = [path for pattern in RECORDS for path in folder.glob(pattern)]
-    for path in sorted(files, key=lambda path: natural_key(str(path))):
-        with placed(folder):
-            module = importlib.import_module(".".join((package.__name__, *_module_parts(path, folder))))
-        found = getattr(module, "CLAIMS", None)
-        if not isinstance(found, tuple) or not all(isinstance(c, Claim) for c in found):
-            what = f"a {type(found).__name__}" if found is not None else "nothing"
-            raise MistakeError(f"{path}: CLAIMS is {what}, expected a tuple of Claim")
-        claims += found
+    claims = [claim for file in record_files(name) for claim in claims_of(name, file)]
     if not claims:
         raise LedgerError(f"{folder}: no claims.py and no claims/ with records, expected at least one")
     twice = same_ids(claims)
@@ -136,6 +127,32 @@ def collected(name: str) -> Paper:
     notation = _named(name, folder, "notation", "NOTATION", _is_notation, "dict of functions")
     title = " ".join(title.split()).rstrip(".")
     return Paper(name, title, legend, tuple(claims), causes or (), folder, notation or {})
+
+
+def record_files(name: str) -> list[str]:
+    """Return the files with records, within the folder of a paper, as they sort by name."""
+    folder = paper_folder(name)
+    files = [path.relative_to(folder).as_posix() for pattern in RECORDS for path in folder.glob(pattern)]
+    return sorted(files, key=natural_key)
+
+
+def claims_of(name: str, file: str) -> tuple[Claim, ...]:
+    """Return the records of one file; they are not checked.
+
+    Raises
+    ------
+    MistakeError
+        It does not run, or has no CLAIMS.
+    """
+    folder, package = paper_folder(name), _package(name)
+    path = folder / file
+    with placed(folder):
+        module = importlib.import_module(".".join((package.__name__, *_module_parts(path, folder))))
+    found = getattr(module, "CLAIMS", None)
+    if not isinstance(found, tuple) or not all(isinstance(c, Claim) for c in found):
+        what = f"a {type(found).__name__}" if found is not None else "nothing"
+        raise MistakeError(f"{path}: CLAIMS is {what}, expected a tuple of Claim")
+    return found
 
 
 def _check(paper: Paper, check: Callable[[Claim], None], claims: Iterable[Claim]) -> None:

@@ -201,6 +201,9 @@ def _tried(check: Check, formula: Formula, original: list[Case] | None) -> Mutat
         {text: why for text, why in reasons.items() if why.strip()}
         for reasons in (formula.equivalent, formula.undecidable)
     )
+    if formula.equivalent_if:
+        by_rule = {m.text: formula.equivalent_if(m) for m in survivors if m.text not in same}
+        same |= {text: why for text, why in by_rule.items() if why.strip()}
     return MutationResult(
         kinds,
         tuple(f"{m.kind}: {m.text}" for m in survivors if m.text not in same and m.text not in open_),

@@ -49,7 +49,8 @@ class Verdict(StrEnum):
 _VERDICT_TEXT = {
     Verdict.HOLDS: "true as printed, under the paper's own assumptions",
     Verdict.HOLDS_IF: "true only under a condition that the paper does not state and that its own setting (its orders, "
-    "its choice of knots) meets; with an exact instance on each side of the condition",
+    "its choice of knots) meets, or, where the condition is one on data that are not printed, may meet; with an exact "
+    "instance on each side of the condition",
     Verdict.FAILS: "false as printed, or false in the paper's own setting; with what it leaves, the smallest rational "
     "counterexample, what is right instead and the proof of that, and what the error does, where it can be measured",
     Verdict.AMBIGUOUS: "can be read in more than one way; each reading is decided",
@@ -111,6 +112,8 @@ class Formula:
     undecidable : mapping
         Text of a mutant -> why nothing printed can tell it from the formula; for printed data, such as a number that
         nothing else of the paper depends on.
+    equivalent_if : callable, optional
+        Mutant -> why it says the same as the formula, empty where it does not; asked of those that survive.
     """
 
     relation: Any
@@ -119,6 +122,7 @@ class Formula:
     neighbours: tuple[tuple[Any, ...], ...] = ()
     equivalent: Mapping[str, str] = field(default_factory=dict)
     undecidable: Mapping[str, str] = field(default_factory=dict)
+    equivalent_if: Callable[[Any], str] | None = None
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,9 @@ from math import isfinite
 from pathlib import Path
 from typing import Any, Protocol, TypeAlias, TypeVar
 
-from semispline.papers.ledger.loading import RECORDS, collected, load_paper
+from sympy import preorder_traversal
+
+from semispline.papers.ledger.loading import RECORDS, claims_of, load_paper, paper_folder, record_files
 from semispline.papers.ledger.mistakes import found_text, place_of_error, place_of_text
 from semispline.papers.ledger.mutation import MutationResult, try_mutants
 from semispline.papers.ledger.records import (
@@ -460,10 +462,15 @@ def _found(find: Callable[[Claim, Path], _T], paper: Paper, workers: int) -> Gen
     if workers == 1:
         yield from (find(claim, paper.folder) for claim in paper.claims)
         return
-    # Neighbours share oracles, which each worker derives for itself: so they go to one worker.
-    ids = [claim.id for claim in paper.claims]
-    groups = [ids[start : start + _GROUP] for start in range(0, len(ids), _GROUP)]
-    tasks = [partial(_found_of_ids, find, paper.name, group) for group in groups]
+    # Neighbours share oracles, which each worker derives for itself: so they go to one worker. The largest come first.
+    groups = [
+        (file, claims[start : start + _GROUP])
+        for file in record_files(paper.name)
+        for claims in [claims_of(paper.name, file)]
+        for start in range(0, len(claims), _GROUP)
+    ]
+    groups.sort(key=lambda group: -sum(map(_size, group[1])))
+    tasks = [partial(_found_of_ids, find, paper.name, file, [c.id for c in claims]) for file, claims in groups]
     with closing(in_pool(tasks, workers, 2 * _GROUP * TIME_LIMIT, _MEGABYTES)) as results:
         for _, found in results:
             yield from found
@@ -474,7 +481,14 @@ _GROUP = 6
 _MEGABYTES = 4096
 
 
-def _found_of_ids(find: Callable[[Claim, Path], _T], name: str, identifiers: list[str]) -> list[_T]:
-    """Work on some records in a worker, which imports the paper once: checks are functions and do not travel."""
-    paper = collected(name)
-    return [find(paper.claim(identifier), paper.folder) for identifier in identifiers]
+def _size(claim: Claim) -> int:
+    """Return how much there is to change in the formulas of a record: what mutants take goes with its square."""
+    formulas = claim.formulas + claim.corrected_formulas
+    return sum(sum(1 for _ in preorder_traversal(formula.relation)) ** 2 for formula in formulas)
+
+
+def _found_of_ids(find: Callable[[Claim, Path], _T], name: str, file: str, identifiers: list[str]) -> list[_T]:
+    """Work on some records in a worker, which imports their file: checks are functions and do not travel."""
+    folder = paper_folder(name)
+    claims = {claim.id: claim for claim in claims_of(name, file)}
+    return [find(claims[identifier], folder) for identifier in identifiers]

@@ -10,6 +10,7 @@ from typing import Any
 from semispline.papers.ledger import Ledger, LedgerError, Verdict
 from semispline.papers.lin2014 import erratum_strip as strip
 from semispline.papers.lin2014 import printed as pr
+from semispline.papers.lin2014.certificates.export import written_as_a_whole
 from semispline.papers.lin2014.claims.section_3_conditions import TRUE_3_1, TRUE_3_2
 from semispline.papers.lin2014.notation import NOTATION
 from semispline.papers.lin2014.printed import CUBIC
@@ -55,6 +56,7 @@ def _of_the_ledger(ledger: Ledger) -> dict[str, Any]:
         "changed": f"\n**Not as recorded in this run: {', '.join(changed)}.**\n" if changed else "",
         "printed": counts["printed"],
         "decided": counts["decided"],
+        "repeated": len(written_as_a_whole(ledger.paper)),
         "holds": counts[Verdict.HOLDS],
         "others": others,
         "caused": caused,
@@ -90,7 +92,8 @@ def _measures(ledger: Ledger) -> dict[str, Any]:
     none, one = (next(v for key, v in few.items() if f"C2, {m} middle curves" in key) for m in (0, 1))
     turn = _measured(ledger, "sec-A.17-gives-2.1")["turn of the normal across the contact [degrees]"]
     facing = _measured(ledger, "sec-4.facing")
-    spared = _measured(ledger, "sec-A.special-choice").values()
+    spared = _measured(ledger, "sec-A.special-choice")
+    numbers, functions = ([x for name, x in spared.items() if ("functions" in name) is free] for free in (False, True))
     share = facing["share of exit angles below 90 degrees, 1 middle curves"]
     crease = facing["crease at alpha = 0 between plates at 74 and 37 degrees [degrees]"]
     gap = _measured(ledger, "fig-10.seam")["gap at the seam, 1 middle curves [radius of the first cylinder]"]
@@ -103,7 +106,8 @@ def _measures(ledger: Ledger) -> dict[str, Any]:
         "turn": f"{turn:.0f}",
         "share": f"{100 * share:.0f}",
         "crease": f"{crease:.0f}",
-        "spared": f"{min(spared):.1g} to {max(spared):.1g}",
+        "spared": f"{max(numbers):.1g}",
+        "spared_by_functions": f"{min(functions):.0f} to {max(functions):.0f}",
         "none": f"{none:.3g}",
         "one": f"{one:.3g}",
         "gap": f"{gap:.1g}",

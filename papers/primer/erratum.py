@@ -6,7 +6,6 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from semispline.papers.ledger import Claim, Decision, Ledger, Verdict
-from semispline.papers.primer.printed import blocks
 from semispline.papers.report import Erratum
 
 
@@ -17,9 +16,7 @@ def erratum(ledger: Ledger, version: str) -> Erratum:
 
 def _lines(ledger: Ledger, version: str) -> Iterator[str]:
     counts = ledger.counts()
-    order = list(blocks())
-    pairs = sorted(zip(ledger.paper.claims, ledger.decisions, strict=True), key=lambda pair: order.index(pair[0].id))
-    fails = [(c, d) for c, d in pairs if d.verdict is Verdict.FAILS]
+    pairs = {decision.id: (c, decision) for c, decision in zip(ledger.paper.claims, ledger.decisions, strict=True)}
     yield from (f"# Errata of: {ledger.paper.title}", "")
     yield (
         f"semispline {version}. Displays are numbered by chapter, in the order of printing. Of {counts['printed']} "
@@ -32,16 +29,18 @@ def _lines(ledger: Ledger, version: str) -> Iterator[str]:
     changed = [d.id for d in ledger.decisions if d.verdict is not d.recorded]
     if changed:
         yield from ("", f"**Not as recorded in this run: {', '.join(changed)}.**")
-    for title, chosen in (("What moves a curve", True), ("What does not, or breaks at once", False)):
-        yield from ("", f"## {title}", "")
-        told: dict[str, str] = {}
-        for claim, decision in fails:
-            if (decision.consequence is not None) is chosen:
-                yield f"- **{claim.id}** {_failure(claim, decision, told)}"
-    yield from ("", "## Right only under a condition, or in one reading", "")
-    for claim, decision in pairs:
+    told: dict[str, str] = {}
+    for number, (cause, decisions) in enumerate(ledger.causes(), start=1):
+        yield from ("", f"**{number}. {cause.title}.** {cause.text}", "")
+        for decision in decisions:
+            yield f"- **{decision.id}** {_failure(*pairs[decision.id], told)}"
+    yield from ("", "**Right only under a condition, or in one reading**", "")
+    conditions: dict[str, list[str]] = {}
+    for decision in ledger.decisions:
         if decision.verdict in (Verdict.HOLDS_IF, Verdict.AMBIGUOUS):
-            yield f"- **{claim.id}** {_condition(decision)}"
+            conditions.setdefault(_condition(decision), []).append(decision.id)
+    for condition, identifiers in conditions.items():
+        yield f"- **{', '.join(identifiers)}** {condition}"
 
 
 def _failure(claim: Claim, decision: Decision, told: dict[str, str]) -> str:

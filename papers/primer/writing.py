@@ -10,6 +10,7 @@ import sympy as sp
 
 from semispline.papers import ledger
 from semispline.papers.ledger import Claim, Formula, LedgerError, Part, Reading
+from semispline.papers.primer.causes import cause_of
 from semispline.papers.primer.printed import printed, steps
 
 
@@ -67,7 +68,8 @@ def holds_if(identifier: str, statement: str, condition: str, *parts: Part, **mo
 
 def fails(identifier: str, statement: str, *parts: Part, **more: Any) -> Claim:
     """Return a record that fails."""
-    return ledger.fails(identifier, _where(identifier), statement, *parts, printed=printed(identifier), **more)
+    where, cause = _where(identifier), cause_of(identifier)
+    return ledger.fails(identifier, where, statement, *parts, printed=printed(identifier), cause=cause, **more)
 
 
 def ambiguous(identifier: str, statement: str, *readings: Reading, **more: Any) -> Claim:

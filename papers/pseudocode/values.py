@@ -281,6 +281,11 @@ def _sign_of(a: Any, b: Any) -> int:
         It depends on letters, or cannot be told.
     """
     apart = sp.expand(_symbolic(a) - _symbolic(b))
+    if apart.is_number and apart.is_real:
+        # What is far from 0 is told at once; only what may be 0 asks for algebra.
+        digits = apart.evalf(_DIGITS)
+        if digits.is_Float and abs(digits) > _FAR:
+            return 1 if digits > 0 else -1
     if apart.is_zero or (apart.is_number and apart.equals(0)):
         return 0
     if apart.is_positive or (apart.is_number and apart.is_real and (apart > 0) is sp.true):
@@ -290,6 +295,10 @@ def _sign_of(a: Any, b: Any) -> int:
     raise OpenConditionError(
         f"found the condition on {shown(a)} and {shown(b)}, which letters leave open; expected numbers"
     )
+
+
+# Of a number whose sign is asked for, and from where on they show it.
+_DIGITS, _FAR = 30, 1e-15
 
 
 def _of_vectors(sign: str, values: list[Any], limits: Limits) -> Any:

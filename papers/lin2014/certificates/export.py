@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from semispline.papers.ledger import Paper
+from collections.abc import Callable
+
+from semispline.papers.ledger import Claim, Paper
 from semispline.papers.lin2014.certificates import (
     bezier,
     conditions,
@@ -32,7 +34,7 @@ from semispline.papers.lin2014.certificates import (
     untouched_bases,
     written_anew,
 )
-from semispline.papers.recheck import Export, export_of
+from semispline.papers.recheck import Draft, Export, export_of
 
 MODULES = (
     sums,
@@ -64,7 +66,17 @@ MODULES = (
 
 def export(paper: Paper) -> Export:
     """Return the certificates of all decided records, reasons for those that have none, and theorems they cite."""
-    drafts = {identifier: draft for module in MODULES for identifier, draft in module.DRAFTS.items()}
     return export_of(
-        paper, drafts, others.NOT_EXPRESSIBLE, controls.controls, theorems.THEOREMS, least_energy_theorems.theories
+        paper, drafts(), others.NOT_EXPRESSIBLE, controls.controls, theorems.THEOREMS, least_energy_theorems.theories
     )
+
+
+def drafts() -> dict[str, Callable[[Claim], Draft]]:
+    """Return the drafts of all records that have one."""
+    return {identifier: draft for module in MODULES for identifier, draft in module.DRAFTS.items()}
+
+
+def written_as_a_whole(paper: Paper) -> tuple[str, ...]:
+    """Return the records of which nothing is left out: those that a second system repeats as a whole if it agrees."""
+    written = drafts()
+    return tuple(claim.id for claim in paper.claims if claim.id in written and claim.id not in figures.IN_PART)

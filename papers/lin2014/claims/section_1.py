@@ -91,10 +91,10 @@ CLAIMS: tuple[Claim, ...] = (
               "adds.",
               Reading((part(Check(converted.saved_cases, Strength.GENERAL, "control points counted for every "
                                   "order and number of knots", proof=True), converted.SAVED_OWN),),
-                      label="as a semi-structured surface, rows on their own knots"),
+                      label="a semi-structured surface, rows on their own knots"),
               Reading((part(Check(converted.no_more_cases, Strength.RATIONAL, "inner knots of all rows and of both "
                                   "contact curves, printed knots: one counterexample is enough", proof=True)),),
-                      label="as a classical surface, once it is converted"),
+                      label="a classical surface, once it is converted"),
               correction=Correction("With a middle curve the converted blend has one inner knot more than both contact "
                                     "curves together for each pair of the rule: more as soon as there are two "
                                     "different inner knots, whether knots are shared or the vectors equal. Without one "

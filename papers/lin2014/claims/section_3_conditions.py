@@ -297,7 +297,7 @@ CLAIMS = (
           "as the paper says of knot insertion: w_{k_r} - w_s becomes smaller, and row 2 moves."),
     Claim("sec-3.sufficient-g2", _WHERE, "(1.1) to (3.2) together suffice for G2.", Verdict.FAILS,
           (Reading((*_PRINTED_FIRST_ROWS, _normal_part("start", pr.COND_3_1), _normal_part("end", pr.COND_3_2)),
-                   label="as printed"),
+                   label="all six as they are printed"),
            Reading((*_PRINTED_FIRST_ROWS, _normal_part("start", pr.COND_3_1_SQUARES),
                     _normal_part("end", pr.COND_3_2_SQUARES)),
                    label="(3.1) and (3.2) with both distances squared, if the scan lost that")),

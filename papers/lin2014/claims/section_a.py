@@ -203,15 +203,16 @@ CLAIMS = (
               "(15) and (16) come to (17) and (18), with p_1 = -alpha^2, alpha constant and q_1 = p_2 = q_2 = 0.",
               Reading((part(proved(partial(special_contact_cases, 2), "tangent planes and second fundamental forms for "
                                    "any regular base, alpha not zero")),),
-                      label="as one choice that suffices"),
+                      label="one choice that suffices"),
               Reading((part(proved(special.only_special_cases, "blends with contact of order 2, judged by the implicit "
                                    "equation of the base: one counterexample is enough", Strength.RATIONAL)),),
-                      label="as all that they allow"),
+                      label="all that they allow"),
               consequence=special.special_choice_cost,
-              remark="The paper calls its conditions sufficient, and says no more. What the choice leaves out: p_1 and "
-              "q_1 that vary along the contact, where alpha, beta are two numbers, and p_2, a free function that moves "
-              "row 2 along R_w. By (11) a constant p_2, or alpha^2 and beta^2 linear in v, save little; by the "
-              "fairness of the shape p_2 is worth more, and the default of this package searches it."),
+              remark="The paper calls its conditions sufficient, and says no more. What the choice leaves out: a p_1 "
+              "that varies along the contact, where alpha, beta are two numbers, and functions p_2, q_2, which move "
+              "row 2 along R_w and R_v; q_1 is not free where cubic bases have inner knots along the contact, since "
+              "P_uu then holds R_vv, which has kinks there. Numbers alone, or alpha^2 and beta^2 linear in v, save "
+              "little of (11); functions save up to a fifth, for rows of higher degree with more knots."),
     holds("sec-A.substitution", _WHERE, "p_1 = alpha^2, q_1 = p_2 = q_2 = 0 turn (15), (16) into (17), (18).",
           part(Check(partial(substitution_cases, 1), Strength.GENERAL, "substitution", proof=True), pr.EQ_17),
           part(Check(partial(substitution_cases, 2), Strength.GENERAL, "substitution", proof=True), pr.EQ_18),

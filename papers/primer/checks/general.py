@@ -10,7 +10,7 @@ from typing import Any
 import sympy as sp
 
 from semispline.papers.checks import identity
-from semispline.papers.ledger import Case, Check, Formula, mutants
+from semispline.papers.ledger import Case, Check, Formula
 
 
 def in_general(where: Mapping[Any, Any], *tried: Mapping[Any, int]) -> Check:
@@ -46,8 +46,12 @@ def with_empty_terms(formula: Formula, basis: Any) -> Formula:
     basis : sympy.Function
         Of index, order and parameter: zero where the index is below 0 or above the order.
     """
-    found = [m.text for m in mutants(formula) if m.kind == "limit" and _lost(formula.relation, m.relation, basis) == 0]
-    return replace(formula, equivalent=dict.fromkeys(found, "the term that is lost is zero"))
+
+    def reason(mutant: Any) -> str:
+        lost = mutant.kind == "limit" and _lost(formula.relation, mutant.relation, basis) == 0
+        return "the term that is lost is zero" if lost else ""
+
+    return replace(formula, equivalent_if=reason)
 
 
 def said_again(formula: Formula, at: Mapping[Any, Any], reason: str) -> Formula:
@@ -69,8 +73,8 @@ def said_again(formula: Formula, at: Mapping[Any, Any], reason: str) -> Formula:
     def again(relation: Any) -> bool:
         return all(a == b or same(a, b) for a, b in zip(relation.args, formula.relation.args, strict=True))
 
-    found = [m.text for m in mutants(formula) if m.kind in ("sign", "factor", "entry") and again(m.relation)]
-    return replace(formula, equivalent=dict.fromkeys(found, reason))
+    kinds = ("sign", "factor", "entry")
+    return replace(formula, equivalent_if=lambda m: reason if m.kind in kinds and again(m.relation) else "")
 
 
 def _lost(printed: Any, changed: Any, basis: Any) -> Any:

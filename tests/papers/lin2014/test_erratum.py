@@ -29,6 +29,7 @@ def made_ledger(verdicts=()):
         def items(self):
             found = {f"energy (11), C2, {m} middle curves, 45 control points": 2.0 for m in (0, 1)}
             kinds = ("own knots", "knots of both", "converted (dropped)", "converted (kept)")
+            found |= {"(11) saved by functions p_2 [%]": 0.5}
             return (found | {f"Fig. {n}, {kind}": 40 for n in (5, 6, 8, 9, 10) for kind in kinds}).items()
 
         def values(self):

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 from typing import Any
 
 import sympy as sp
 
 from semispline.papers.checks import code
-from semispline.papers.ledger import Formula, formula, mutants, part
-from semispline.papers.primer.checks.running import code_of, open_is_false
+from semispline.papers.ledger import Formula, formula, part
+from semispline.papers.primer.checks.running import code_of, decided_elsewhere, open_is_false
 from semispline.papers.primer.writing import holds
 
 _NAMES = ("x1", "y1", "x2", "y2", "x3", "y3", "x4", "y4")
@@ -49,9 +48,7 @@ _CROSSED = "line 5, column 8: 1 for 0"
 def _compared(expected: Any, call: str) -> Formula:
     """Return that the code gives something; which of its changes do not show there is left to the other lines."""
     found = formula(sp.Eq(expected, code_of("intersections.1", call), evaluate=False))
-    mark = _CROSSED if call == _CALL else ", line "
-    same = [mutant.text for mutant in mutants(found) if mark in mutant.text]
-    return replace(found, equivalent=dict.fromkeys(same, "decided by the other lines that the code is run for"))
+    return decided_elsewhere(found, "the other lines that the code is run for", *([_CROSSED] if call == _CALL else []))
 
 
 CLAIMS = (

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from math import comb
+from typing import Any
+
 import sympy as sp
 
-from semispline.papers.checks import identity
-from semispline.papers.ledger import formula, part, parts
-from semispline.papers.primer.checks.curves import basis, row
+from semispline.papers.checks import code, identity
+from semispline.papers.ledger import Formula, corrected, formula, part, parts
+from semispline.papers.primer.checks.curves import ORDERS, basis, row
+from semispline.papers.primer.checks.running import code_of
 from semispline.papers.primer.printed import letter, terms_of
-from semispline.papers.primer.writing import definition, equations, holds
+from semispline.papers.primer.writing import definition, equations, fails, holds
 
 _T = letter("explanation.6", "t")
 _A, _B = (letter("explanation.8", name) for name in "ab")
@@ -35,6 +39,29 @@ _PRODUCTS = tuple(
     formula(sp.Eq(row(*(_A ** (n - i) * _B**i for i in range(n + 1))), row(*terms), evaluate=False))
     for n, terms in enumerate(terms_of("explanation.8"), 1)
 )
+
+_n, _t = letter("explanation.9", "n"), letter("explanation.9", "t")
+_k = sp.Symbol("k", integer=True, nonnegative=True)
+_SUM = equations("explanation.9")[0].relation.rhs
+_CALL = "Bezier(n, t)"
+
+
+def _is_sum(identifier: str, **more: Any) -> Formula:
+    return formula(sp.Eq(_SUM, code_of(identifier, _CALL, **more), evaluate=False))
+
+
+def _chosen(n: Any, k: Any) -> int:
+    """Return how many ways there are to choose k of n, for code that uses a table of them."""
+    return comb(int(n), int(k))
+
+
+_RUN = code(each={_n: (0, *ORDERS)}, given={"binomial": _chosen})
+_LONGER_ROW = {
+    "Eq(binomial(n, k), code(binomial(n, k), line 11, column 32: 2 for 1))": "a place more at the end of a row, which "
+    "is never read"
+}
+# Three rows more than the table has.
+_ALL_CHOICES = [{_n: n, _k: k} for n in range(10) for k in range(n + 1)]
 
 CLAIMS = (
     definition("explanation.1", "f is the cosine.", "a function of one number, as an example"),
@@ -73,5 +100,30 @@ CLAIMS = (
         "explanation.9",
         "The sum over i from 0 to n of binomial, power of 1 - t and power of t.",
         "the function of order n of which the curves are made",
+    ),
+    fails(
+        "explanation.10",
+        "Code for that sum.",
+        part(_RUN, _is_sum("explanation.10")),
+        correction=corrected(
+            "the loop goes on while k <= n", part(_RUN, _is_sum("explanation.10", instead={"k<n": "k<=n"}))
+        ),
+    ),
+    holds(
+        "explanation.11",
+        "Code for binomials: a table with the rows 0 to 6 that grows by the rows that are asked for.",
+        part(
+            code(each=_ALL_CHOICES, method="the printed code, run for all binomials of the rows 0 to 9"),
+            formula(
+                sp.Eq(sp.binomial(_n, _k), code_of("explanation.11", "binomial(n, k)"), evaluate=False),
+                equivalent=_LONGER_ROW,
+            ),
+        ),
+    ),
+    holds("explanation.12", "Code for that sum, with the table of binomials.", part(_RUN, _is_sum("explanation.12"))),
+    holds(
+        "explanation.13",
+        "Code for the orders 2 and 3 alone, without a loop.",
+        part(code(each={_n: (2, 3)}, complete=True), _is_sum("explanation.13")),
     ),
 )

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from itertools import pairwise
 from typing import Any
 
 import sympy as sp
 
 from semispline.derivations.bezier import de_casteljau
-from semispline.papers.checks import identity
+from semispline.papers.checks import code, identity
 from semispline.papers.ledger import formula, part, parts, unconditional
+from semispline.papers.primer.checks.cubic_roots import KNOWN, power_sums, real_zeros_meet
 from semispline.papers.primer.checks.curves import basis
+from semispline.papers.primer.checks.running import code_of
 from semispline.papers.primer.printed import letter, steps
 from semispline.papers.primer.writing import definition, equations, holds, holds_if
 
@@ -54,6 +57,62 @@ def _newton() -> Any:
     return formula(sp.Eq(step.left, step.right.doit(), evaluate=False), sp.Ne(_slope, 0))
 
 
+_m = sp.Symbol("m", integer=True, nonnegative=True)
+_SUMS = sp.symbols("count s1 s2 s3", real=True)
+_CALL = """\
+found = getCubicRoots(pa, pb, pc, pd)
+one = 0
+two = 0
+three = 0
+for each z in found:
+  one += z
+  two += z^2
+  three += z^3
+[found.length, one, two, three]"""
+
+
+def _points_given(instance: Mapping[Any, Any]) -> Mapping[str, Any]:
+    points = dict(zip(("pa", "pb", "pc", "pd"), KNOWN[int(instance[_m])].points, strict=True))
+    return {**points, "approximately": lambda one, other: one == other}
+
+
+def _sums_found(instance: Mapping[Any, Any]) -> Mapping[Any, Any]:
+    sums = power_sums(KNOWN[int(instance[_m])].zeros)
+    return {letter: sums[str(letter)] for letter in _SUMS}
+
+
+_LINES = {
+    "line 7, column 7: <= for <": "the cube root of 0 is 0 both ways",
+    "line 60, column 13: <= for <": "the cube root of 0 is 0 both ways",
+    "line 60, column 15: 1 for 0": "the cube root of -x is that of x with the other sign",
+    **dict.fromkeys(
+        (
+            "line 49, column 15: <= for <",
+            "line 49, column 17: 2 for 1",
+            "line 49, column 21: + for -",
+            "line 49, column 22: 2 for 1",
+            "line 49, column 27: >= for >",
+            "line 49, column 28: 2 for 1",
+            "line 49, column 32: 2 for 1",
+        ),
+        "where there are three roots t is between -1 and 1; the conditions only guard against rounding",
+    ),
+}
+_SAME = {
+    f"Eq((count, s1, s2, s3), code([found.length, one, two, three], {place}))": why for place, why in _LINES.items()
+}
+_FINDS_ROOTS = real_zeros_meet(
+    code(
+        each={_m: range(len(KNOWN))},
+        given=_points_given,
+        where=_sums_found,
+        method="the printed code, run exactly, for polynomials made of their zeros, some for each branch: how many it "
+        "finds, and the sums of their first three powers; `approximately` is =",
+    ),
+    frozenset(f"m = {m}" for m, known in enumerate(KNOWN) if not known.real),
+)
+
+
 CLAIMS = (
     holds_if(
         "extremities.1",
@@ -88,6 +147,18 @@ CLAIMS = (
         "extremities.6",
         "A cubic equation with all its coefficients, and one without second power and with 1 before the third.",
         "the general cubic equation, and the form to which it is brought",
+    ),
+    holds_if(
+        "extremities.7",
+        "Code for the real zeros between 0 and 1 of a polynomial of degree 3 at most that is given by its points.",
+        "it is not quadratic without real zeros",
+        part(
+            _FINDS_ROOTS,
+            formula(sp.Eq(sp.Tuple(*_SUMS), code_of("extremities.7", _CALL), evaluate=False), equivalent=_SAME),
+        ),
+        remark="The quadratic branch takes the root of a negative number; where that is a value which no comparison "
+        "accepts, as in some languages, nothing is returned, and that is right. A zero of order three, and a double "
+        "one of a quadratic polynomial, is returned twice.",
     ),
     holds(
         "extremities.8",
