@@ -44,7 +44,7 @@ def _over_the_box(figure: int, result: BlendResult) -> Theory:
     box = tuple((Fraction(low), Fraction(high)) for low, high in proof.box)
     x, y = ((Fraction(at) * 2 - low - high) / (high - low) for at, (low, high) in zip(proof.point, box, strict=True))
     table = rescaled([[Fraction(c) for c in row] for row in proof.coefficients.tolist()], (box[0], box[1]))
-    a, b = ((Fraction(low), Fraction(high)) for low, high in bounds)  # type: ignore[misc]  # None is refused above
+    a, b = map(_ends, bounds)
     title = f"Fig. {figure}: no alpha^2, beta^2 of the box has less energy"
     return least_over_a_box(f"figure_{figure}_least", title, table, (a, b), (x, y), GAP)
 
@@ -68,6 +68,12 @@ def _middle_row(figure: int, result: BlendResult) -> Iterator[Theory]:
         if any(right):
             title = f"Fig. {figure}: the middle row has the least energy, coordinate {letter}"
             yield minimiser(f"figure_{figure}_{letter}", title, entries, right)
+
+
+def _ends(bounds: Any) -> tuple[Fraction, Fraction]:
+    """Return the ends of a range of one number; of what is linear in v each end is a pair, which is no fraction."""
+    low, high = bounds
+    return Fraction(low), Fraction(high)
 
 
 def _exact_basis(degree: int, knots: Any) -> Basis:
