@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from fractions import Fraction
 from typing import Any
 
-from semispline.papers.recheck.arithmetic import instance, satisfied, value
+from semispline.papers.recheck.arithmetic import determinant, instance, satisfied, value
 from semispline.papers.recheck.by_intervals import enclosed
 from semispline.papers.recheck.by_series import series_of
 from semispline.papers.recheck.rooted import equal_with_roots
@@ -86,7 +86,7 @@ def _rank(statement: Rank, at: dict[str, Fraction]) -> bool:
     return (
         len(minor) == statement.rank
         and missing == len(full[0]) - statement.rank
-        and (not minor or _determinant(minor) != 0)
+        and (not minor or determinant(minor) != 0)
         and (not missing or ([kernel[i] for i in statement.free] == unit and not any(map(any, _product(full, kernel)))))
     )
 
@@ -218,23 +218,6 @@ def _numbers(rows: Sequence[Sequence[str]]) -> _Rows:
 def _product(one: _Rows, other: _Rows) -> _Rows:
     columns = list(zip(*other, strict=True))
     return [[sum((a * b for a, b in zip(row, column, strict=True)), Fraction(0)) for column in columns] for row in one]
-
-
-def _determinant(rows: _Rows) -> Fraction:
-    rows = [list(row) for row in rows]
-    total = Fraction(1)
-    for n in range(len(rows)):
-        pivot = next((r for r in range(n, len(rows)) if rows[r][n] != 0), None)
-        if pivot is None:
-            return Fraction(0)
-        if pivot != n:
-            rows[n], rows[pivot] = rows[pivot], rows[n]
-            total = -total
-        total *= rows[n][n]
-        for r in range(n + 1, len(rows)):
-            factor = rows[r][n] / rows[n][n]
-            rows[r] = [a - factor * b for a, b in zip(rows[r], rows[n], strict=True)]
-    return total
 
 
 _BY_FORM: dict[str, Callable[[Any, dict[str, Fraction]], bool]] = {

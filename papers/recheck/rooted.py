@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from itertools import product
 from typing import Any
 
-from semispline.papers.recheck.arithmetic import value
+from semispline.papers.recheck.arithmetic import determinant, value
 
 # Powers of the roots -> coefficient.
 Terms = dict[tuple[int, ...], Fraction]
@@ -59,10 +60,10 @@ class Rooted:
 
     def __pow__(self, power: int) -> Rooted:
         base = self if power >= 0 else Rooted(self.under, self.over)
-        product = _rooted(Fraction(1), self)
+        found = _rooted(Fraction(1), self)
         for _ in range(abs(power)):
-            product = product * base
-        return product
+            found = found * base
+        return found
 
 
 def _rooted(number: Any, like: Rooted) -> Rooted:
@@ -98,7 +99,7 @@ def equal_with_roots(left: str, right: str, roots: Sequence[tuple[str, str, int]
     """
     sides = _values(left, right, roots, at)
     every = _every(roots, at)
-    if any(not _reduced(side.under, roots, every) for side in sides):
+    if not all(_never_zero(side.under, roots, every) for side in sides):
         return False
     return not _reduced((sides[0] - sides[1]).over, roots, every)
 
@@ -106,7 +107,7 @@ def equal_with_roots(left: str, right: str, roots: Sequence[tuple[str, str, int]
 def defined_with_roots(
     left: str, right: str, roots: Sequence[tuple[str, str, int]], at: Mapping[str, Fraction]
 ) -> bool:
-    """Tell whether nothing in two texts is divided by zero at an instance, the roots being what they are there.
+    """Tell whether nothing in two texts is divided by zero at an instance, whichever roots are taken.
 
     Examples
     --------
@@ -114,7 +115,7 @@ def defined_with_roots(
     [False, True]
     """
     every = _every(roots, at)
-    return all(_reduced(side.under, roots, every) for side in _values(left, right, roots, at))
+    return all(_never_zero(side.under, roots, every) for side in _values(left, right, roots, at))
 
 
 def _every(roots: Sequence[tuple[str, str, int]], at: Mapping[str, Fraction]) -> dict[str, Any]:
@@ -131,6 +132,17 @@ def _values(left: str, right: str, roots: Sequence[tuple[str, str, int]], at: Ma
     every = _every(roots, at)
     # A number among roots, so that all that is computed is one of them.
     return [_rooted(0, every[roots[0][0]]) + value(side, every) for side in (left, right)]
+
+
+def _never_zero(terms: Terms, roots: Sequence[tuple[str, str, int]], at: Mapping[str, Any]) -> bool:
+    """Tell whether a sum of products of roots is zero for no choice of the roots.
+
+    Then and only then multiplying by it is a map with an inverse: r, where r^2 is 0, and r - 2, where it is 4, are not
+    zero as they stand, but have none.
+    """
+    basis = list(product(*(range(degree) for *_, degree in roots)))
+    images = [_reduced(_product(terms, {powers: Fraction(1)}), roots, at) for powers in basis]
+    return determinant([[image.get(powers, Fraction(0)) for powers in basis] for image in images]) != 0
 
 
 def _reduced(terms: Terms, roots: Sequence[tuple[str, str, int]], at: Mapping[str, Any]) -> Terms:

@@ -52,6 +52,15 @@ def test_roots_are_put_in_whatever_they_are():
     assert not equal_with_roots("r", "x", [("r", "x", 2)], at)
     # Nothing is divided by a root that is zero.
     assert not equal_with_roots("1/(r^2 - x)", "1", [("r", "x", 2)], at)
+    assert not equal_with_roots("1/r", "1/r", [("r", "1 - x", 2)], {"x": Fraction(1)})
+    # One of the two roots of 4 is 2; with the other, -2, the root s of r + 2 is zero.
+    four, root = {"x": Fraction(4)}, [("r", "x", 2)]
+    assert not equal_with_roots("1/(r - 2)", "(r + 2)/(x - 4)", root, four)
+    assert equal_with_roots("1/(r - 3)", "(r + 3)/(x - 9)", root, four)
+    nested = [("r", "x", 2), ("s", "r + 2", 2)]
+    assert equal_with_roots("s^2/(s^2 - 3)", "(r + 2)/(r - 1)", nested, four)
+    assert not equal_with_roots("s/s", "1", nested, four)
+    assert equal_with_roots("s/s", "1", nested, {"x": Fraction(5)})
 
 
 @pytest.mark.parametrize(
