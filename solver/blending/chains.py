@@ -124,7 +124,7 @@ class Chain:
         shown, surface = (self._surface(jets, along, width) for width in (high - low, wide))
         cuts = np.concatenate([[0.0], np.cumsum(joined.spans)])
         joints = tuple(joint if joint is None else joint.moved_by(self.origin) for joint in joined.joints)
-        return Strip(surface, shown, self.edges, self.turned, joined.spans, tuple(cuts.tolist()), joints)
+        return Strip(surface, shown, self.edges, self.turned, joined.spans, tuple(cuts.tolist()), joints, begins=0)
 
     def _surface(self, jets: FloatArray, along: Basis, width: float) -> BSplineSurface:
         rows, width = positive_rows(jets, along, width)
@@ -164,7 +164,7 @@ class Strip:
     spans: FloatArray
     cuts: tuple[float, ...]
     joints: tuple[Joint | None, ...]
-    begins: int = 0
+    begins: int
 
     def with_joints(self, joints: Sequence[Joint], origin: FloatArray) -> Strip:
         """Return the strip with joints more, that lie inside of its pieces; counted from `origin`."""
