@@ -142,7 +142,7 @@ def compared():
     return get
 
 
-@pytest.mark.parametrize("figure", first_ones(1, EACH_FIGURE))
+@pytest.mark.parametrize("figure", first_ones(1, FIGURES))
 def test_numbers_and_contact(figure, compared):
     rows = compared(figure)
     reasons = {name for name, row in rows.items() if row.reason}
