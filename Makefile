@@ -6,8 +6,10 @@ STAMP := $(VENV)/.installed
 # What is compiled is kept, whatever the environment says: tests start a hundred processes that import all of it.
 export PYTHONDONTWRITEBYTECODE :=
 LEFT_OUT := compiler or browser or coq or slow
-# Half of the files each, so that what a file shares is made once; who is done first takes from the other.
-PYTEST := $(BIN)/python -m pytest -n 2 --dist worksteal --quiet
+# Two to eight processes, as there are cores. A share of the files each, so that what a file shares is made once; who is
+# done first takes from another.
+CORES := $(shell n=$$(nproc 2>/dev/null || echo 2); echo $$((n < 2 ? 2 : n > 8 ? 8 : n)))
+PYTEST := $(BIN)/python -m pytest -n $(CORES) --dist worksteal --quiet
 # Rooms whose tests take about a minute on two cores, less the files that take ten seconds and more each; not derivations,
 # pictures, commands, and papers but their engine.
 LONG := io/test_io_foreign io/test_face_boundary io/test_io_cad judge/test_de_boor \
