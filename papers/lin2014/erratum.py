@@ -59,7 +59,9 @@ def _of_the_ledger(ledger: Ledger) -> dict[str, Any]:
         "repeated": len(written_as_a_whole(ledger.paper)),
         "holds": counts[Verdict.HOLDS],
         "others": others,
-        "caused": caused,
+        "fails": counts[Verdict.FAILS],
+        "misprinted": sum(d.verdict is Verdict.FAILS for c, found in ledger.causes() if c.misprint for d in found),
+        "partly": others - counts[Verdict.FAILS],
         "alone": others - caused,
         "consistent": counts["consistent"],
     }

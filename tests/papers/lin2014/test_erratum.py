@@ -123,6 +123,11 @@ def test_a_cause_that_the_text_does_not_tell_is_refused():
         written.erratum(ledger, "1")
 
 
+def test_what_fails_has_a_cause():
+    """The text says that none of the single remarks fails."""
+    assert all(claim.cause for claim in collected("lin2014").claims if claim.verdict is Verdict.FAILS)
+
+
 def test_the_version_to_quote_is_that_of_the_program():
     citation = (ROOT / "CITATION.cff").read_text(encoding="utf-8")
     assert re.search(r'^version: "(.+)"$', citation, re.MULTILINE)[1] == semispline.__version__
