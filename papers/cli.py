@@ -199,7 +199,7 @@ def new_paper_command(
     title: Annotated[str, typer.Option(metavar="TEXT", help="Title of the paper.")] = "",
     doi: Annotated[str, typer.Option(metavar="DOI", help="Where it is published.")] = "",
 ) -> None:
-    """Write a small working paper of three claims to begin with: one holds, one fails, one is ambiguous."""
+    """Write a small working paper of four claims to begin with: two hold, one fails, one is ambiguous."""
     from semispline.papers.new_paper import write_paper
     from semispline.solver.io import shown
 

@@ -7,10 +7,11 @@ of polynomials are taken; letters and functions of the paper get their meaning.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from functools import cached_property
 from typing import Any, TypeAlias
 
 import sympy as sp
-from sympy.core.function import AppliedUndef
+from sympy.core.function import AppliedUndef, UndefinedFunction
 
 from semispline.papers.ledger import UndefinedError
 from semispline.solver.errors import InputError
@@ -60,6 +61,23 @@ class _Carrying:
     def __init__(self, where: Where) -> None:
         self.where = where
 
+    @cached_property
+    def _named(self) -> dict[str, Any]:
+        """Functions and indexed letters of which something is said, by name."""
+        for key in self.where:
+            if isinstance(key, str):
+                raise UnsuitableError(f"where: found the text {key!r}, expected the letter or the function itself")
+        return {key.name: key for key in self.where if isinstance(key, UndefinedFunction | sp.IndexedBase)}
+
+    def _refuse_namesake(self, part: Any) -> None:
+        """Refuse a function or indexed letter of which nothing is said, while it is of another of its name."""
+        other = self._named.get(part.name) if self.where else None
+        if other is not None and type(other) is type(part):
+            raise UnsuitableError(
+                f"where: found a meaning of {other} ({_assumed(other)}), expected one of the {part} of the formula "
+                f"({_assumed(part)}); what is assumed of it belongs to it"
+            )
+
     def out(self, e: Any) -> Any:
         if e in self.where:
             return carried_out(self.where[e])
@@ -100,6 +118,8 @@ class _Carrying:
     def _indexed(self, e: Any) -> Any:
         indices = [self.out(i) for i in e.indices]
         meaning = self.where.get(e.base)
+        if meaning is None:
+            self._refuse_namesake(e.base)
         made = meaning(*indices) if meaning is not None else e.base[tuple(indices)]
         return carried_out(made) if meaning is not None else self.where.get(made, made)
 
@@ -108,6 +128,7 @@ class _Carrying:
         meaning = self.where.get(e.func)
         if meaning is not None:
             return carried_out(meaning(*arguments))
+        self._refuse_namesake(e.func)
         made = e.func(*arguments)
         return carried_out(self.where[made]) if made in self.where else made
 
@@ -184,6 +205,15 @@ class _Carrying:
         sp.Transpose: _transpose,
         sp.Identity: _identity_matrix,
     }
+
+
+def _assumed(key: Any) -> str:
+    """Return what is assumed of a function or indexed letter, about as it was written."""
+    of = key.label if isinstance(key, sp.IndexedBase) else key
+    found = [name for name in ("integer", "positive", "nonnegative", "real") if getattr(of, f"is_{name}", None) is True]
+    implied = {"integer": ["real"], "positive": ["nonnegative", "real"], "nonnegative": ["real"]}
+    left_out = [name for one in found for name in implied.get(one, [])]
+    return ", ".join(f"{name}=True" for name in found if name not in left_out) or "nothing assumed"
 
 
 def _number_in(value: Any) -> Any:

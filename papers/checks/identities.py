@@ -10,6 +10,7 @@ from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
 import sympy as sp
+from sympy.core.function import AppliedUndef
 
 from semispline.papers.checks.carrying_out import UnsuitableError, carried_out
 from semispline.papers.checks.counterexamples import smallest_difference
@@ -162,6 +163,14 @@ class _Rules:
                 if found.zero:
                     continue
                 if not found.decided and smallest_difference(one, other, formula.assumptions, instance) is None:
+                    # No number stands for the derivative of a function of which nothing is said.
+                    derived = found.residual.atoms(sp.Derivative, sp.Subs)
+                    unknown = sorted({str(f.func) for part in derived for f in part.atoms(AppliedUndef)})
+                    if unknown:
+                        raise UnsuitableError(
+                            f"{label}{place}: neither proved nor refuted; what is left, {found.residual}, has "
+                            f"derivatives of {', '.join(unknown)}; say what it is (where=...)"
+                        )
                     raise CheckFailedError(
                         f"{label}{place}: neither proved nor refuted; what is left, {found.residual}, is zero at all "
                         "numbers that were tried; compare squares, or say what letters stand for (where=...)"

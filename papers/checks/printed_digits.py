@@ -50,8 +50,10 @@ class Digits(sp.Basic):
 
     def __new__(cls, text: str | Any) -> Digits:
         """Return the number with this text."""
-        text = str(text)
-        if not _NUMERAL.fullmatch(text):
+        # A float has lost which of its zeros were printed.
+        lost = isinstance(text, float | sp.Float)
+        text = text if lost else str(text)
+        if lost or not _NUMERAL.fullmatch(text):
             raise UnsuitableError(f"Digits({text!r}): expected a decimal number as text, such as '0.55228' or '2.7e-4'")
         return super().__new__(cls, sp.core.symbol.Str(text))
 

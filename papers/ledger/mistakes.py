@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import re
 import traceback
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -23,6 +24,7 @@ _EXPECTED = {
     ImportError: "a module that exists, and names that are in it",
     AttributeError: "a name that the object has",
     TypeError: "arguments of the number and kind that the call takes",
+    ValueError: "values that the call takes, and as many as there are names for them",
     KeyError: "a key that is there",
     IndexError: "an index that is there",
     ZeroDivisionError: "a divisor other than 0",
@@ -87,7 +89,9 @@ def found_text(error: BaseException) -> str:
     # What Python prints last, with its guess at a name that was meant.
     said = traceback.TracebackException.from_exception(error).format_exception_only()
     expected = next((text for kind, text in _EXPECTED.items() if isinstance(error, kind)), "no error")
-    return f"found {' '.join(list(said)[-1].split())}; expected {expected}"
+    # Modules of a folder have a name of ours in front.
+    what = re.sub(r"\b_semispline_paper_\w+_[0-9a-f]{12}\.", "", " ".join(list(said)[-1].split()))
+    return f"found {what}; expected {expected}"
 
 
 def _within(file: str | Path, folder: Path) -> bool:

@@ -119,7 +119,10 @@ def _check_problems(check: Check) -> Iterator[str]:
 def _formula_problems(formula: Formula) -> Iterator[str]:
     relation = formula.relation
     if not isinstance(relation, sp.core.relational.Relational):
-        yield f"formula is {relation!r} ({type(relation).__name__}), expected a relation such as Eq"
+        yield (
+            f"formula is {relation!r} ({type(relation).__name__}), expected a relation such as "
+            "Eq(left, right, evaluate=False)"
+        )
         return
     used = {s for part in (relation, *formula.assumptions) for s in part.free_symbols if isinstance(s, sp.Symbol)}
     declared = set(formula.variables)

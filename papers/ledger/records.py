@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from enum import IntEnum, StrEnum
 from pathlib import Path
+from types import NoneType
 from typing import Any, TypeAlias
 
 import sympy as sp
@@ -48,9 +49,9 @@ class Verdict(StrEnum):
 
 _VERDICT_TEXT = {
     Verdict.HOLDS: "true as printed, under the paper's own assumptions",
-    Verdict.HOLDS_IF: "true only under a condition that the paper does not state and that its own setting (its orders, "
-    "its choice of knots) meets, or, where the condition is one on data that are not printed, may meet; with an exact "
-    "instance on each side of the condition",
+    Verdict.HOLDS_IF: "true only under a condition that the paper does not state and that its own setting meets, or, "
+    "where the condition is one on data that are not printed, may meet; with an exact instance on each side of the "
+    "condition",
     Verdict.FAILS: "false as printed, or false in the paper's own setting; with what it leaves, the smallest rational "
     "counterexample, what is right instead and the proof of that, and what the error does, where it can be measured",
     Verdict.AMBIGUOUS: "can be read in more than one way; each reading is decided",
@@ -185,12 +186,35 @@ class Check:
     believed: str = ""
 
 
+_A_FORMULA = "formula(Eq(left, right, evaluate=False))"
+_A_PART = "part(check, formula)"
+
+
+def _require(whose: str, name: str, found: Any, kinds: Any, expected: str) -> None:
+    """Refuse what is of another kind where it is written: there the line is known."""
+    if not isinstance(found, kinds):
+        kind = type(found).__name__
+        shown = f"{found!r:.200} ({kind})" if isinstance(found, str | int | float | sp.Basic) else f"a {kind}"
+        raise LedgerError(f"{whose}: {name} is {shown}, expected {expected}")
+
+
+def _require_each(whose: str, found: Any, kind: type, expected: str) -> None:
+    name = kind.__name__.lower()
+    _require(whose, f"{name}s", found, tuple, "a tuple")
+    for one in found:
+        _require(whose, f"a {name}", one, kind, expected)
+
+
 @dataclass(frozen=True)
 class Part:
     """One formula (or question) and the check that decides it."""
 
     check: Check
     formula: Formula | None = None
+
+    def __post_init__(self) -> None:
+        _require("part", "check", self.check, Check, "a check such as identity()")
+        _require("part", "formula", self.formula, (Formula, NoneType), _A_FORMULA)
 
 
 @dataclass(frozen=True)
@@ -210,6 +234,11 @@ class Reading:
     label: str = ""
     condition: str = ""
 
+    def __post_init__(self) -> None:
+        _require("reading", "label", self.label, str, "a text")
+        _require("reading", "condition", self.condition, str, "a text")
+        _require_each("reading", self.parts, Part, _A_PART)
+
 
 @dataclass(frozen=True)
 class Correction:
@@ -217,6 +246,10 @@ class Correction:
 
     statement: str
     parts: tuple[Part, ...]
+
+    def __post_init__(self) -> None:
+        _require("corrected", "statement", self.statement, str, "a text")
+        _require_each("corrected", self.parts, Part, _A_PART)
 
 
 @dataclass(frozen=True)
@@ -359,6 +392,20 @@ class Claim:
     remark: str = ""
     cause: str = ""
     printed: Print | None = None
+
+    def __post_init__(self) -> None:
+        whose = f"claim {self.id}"
+        for name in ("id", "where", "statement", "reason", "remark", "cause"):
+            _require(whose, name, getattr(self, name), str, "a text")
+        _require_each(whose, self.readings, Reading, "reading(label, part(check, formula), ..)")
+        _require(
+            whose, "correction", self.correction, (Correction, NoneType), "corrected(text, part(check, formula), ..)"
+        )
+        _require(whose, "printed", self.printed, (Print, NoneType), "Print(text, echo(..))")
+        for name in ("counterexample", "consequence"):
+            found = getattr(self, name)
+            if found is not None and not callable(found):
+                raise LedgerError(f"{whose}: {name} {found!r}, expected a function without arguments")
 
     @property
     def formulas(self) -> tuple[Formula, ...]:

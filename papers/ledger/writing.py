@@ -50,7 +50,18 @@ def formula(relation: Any, *assumptions: Any, **more: Any) -> Formula:
     >>> n, T = sp.symbols("n T")
     >>> formula(sp.Eq(T, n**2), n >= 1).variables
     (T, n)
+
+    Raises
+    ------
+    LedgerError
+        It is no relation of SymPy, such as what `==` gives.
     """
+    for found in (relation, *assumptions):
+        if not hasattr(found, "free_symbols"):
+            raise LedgerError(
+                f"formula: found {found!r:.200} ({type(found).__name__}), expected a relation such as "
+                "Eq(left, right, evaluate=False)"
+            )
     used = {s for expression in (relation, *assumptions) for s in expression.free_symbols if isinstance(s, sp.Symbol)}
     variables = tuple(sorted(used, key=str))
     more.setdefault("neighbours", _numbered(variables))

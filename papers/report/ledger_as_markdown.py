@@ -105,16 +105,18 @@ def _row(*cells: str) -> str:
 
 
 def _survivors(ledger: Ledger) -> Iterator[str]:
-    """Yield the mutants that no check tells from their formula, counted by reason."""
-    yield from ("## Changes that no check can see, and why", "")
-    for decision in ledger.decisions:
+    """Yield the mutants that no check tells from their formula, counted by reason; nothing where there are none."""
+    lines = [
+        f"- **{decision.id}**: {count} {what}: {reason}."
+        for decision in ledger.decisions
         for survivors, what in (
             (decision.mutation.equivalent, "say the same"),
             (decision.mutation.undecidable, "cannot be told from what is printed"),
-        ):
-            for reason, count in Counter(reason for _, reason in survivors).items():
-                yield f"- **{decision.id}**: {count} {what}: {reason}."
-    yield ""
+        )
+        for reason, count in Counter(reason for _, reason in survivors).items()
+    ]
+    if lines:
+        yield from ("## Changes that no check can see, and why", "", *lines, "")
 
 
 def _cell(text: str) -> str:

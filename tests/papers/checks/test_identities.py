@@ -104,6 +104,30 @@ def test_letters_and_functions_have_the_meaning_that_is_said():
 
 
 @pytest.mark.parametrize(
+    ("said", "printed"),
+    [
+        (sp.Function("P"), sp.Function("P", real=True)(2, x)),
+        (sp.IndexedBase("w"), sp.IndexedBase("w", real=True)[2]),
+    ],
+)
+def test_what_is_said_of_a_namesake_is_refused_and_no_verdict(said, printed):
+    """Such as of the P of a page, where the formula was read from LaTeX and its P is real."""
+    with pytest.raises(UnsuitableError, match=r"found a meaning of . \(nothing assumed\), .* formula \(real=True\)"):
+        truths(identity(where={said: lambda *_: 2 * x}), printed, 2 * x)
+
+
+def test_a_name_as_a_text_is_refused():
+    with pytest.raises(UnsuitableError, match="where: found the text 'P', expected the letter or the function"):
+        truths(identity(where={"P": sp.legendre}), P(2, x), x)
+
+
+def test_derivatives_of_what_nothing_is_said_of_are_named():
+    r = sp.Symbol("r", real=True)
+    with pytest.raises(UnsuitableError, match=r"has derivatives of P; say what it is"):
+        truths(identity(), P(1, r), sp.Derivative(P(2, r), r))
+
+
+@pytest.mark.parametrize(
     ("left", "right", "problem"),
     [
         (1 / (x - x), x, "undefined"),

@@ -28,6 +28,14 @@ def line_of(path, text):
         ("claims.py", '"The sum is n^2/2."', '" "', '"eq-2"', "claim eq-2: statement or place is empty"),
         ("claims.py", "Verdict.FAILS", "None", '"eq-2"', "claim eq-2: no verdict, expected one of holds"),
         ("printed.py", "(n, total), (n >= 1,))\nW", "(n,), (n >= 1,))\nW", '"eq-1"', r"undeclared \['T'\]"),
+        (
+            "printed.py",
+            "RIGHT =",
+            "(STEP,) = ()\nRIGHT =",
+            "(STEP,) =",
+            "values that .* as many as there are names",
+        ),
+        ("claims.py", "pr.RIGHT", "pr.RIHGT", "pr.RIHGT", "module 'printed' has no attribute 'RIHGT'"),
     ],
 )
 def test_a_paper_that_does_not_load_says_where(made_up_paper, file, old, new, at, message):
@@ -78,3 +86,48 @@ def test_a_folder_that_was_mended_is_read_again(made_up_paper):
         load_paper(str(folder))
     (folder / "__init__.py").write_text('"""A title."""\n')
     assert load_paper(str(folder)).title == "A title"
+
+
+PRINTED = """from sympy import Eq, symbols
+from semispline.papers.checks import Digits
+from semispline.papers.ledger import formula
+x = symbols("x")
+RELATION = Eq(x + x, 2 * x, evaluate=False)
+DOUBLE = formula(RELATION)
+"""
+CLAIMS = """from semispline.papers.checks import identity
+from semispline.papers.ledger import corrected, fails, formula, holds, part, reading
+from . import printed as pr
+CLAIMS = (
+    {},
+)
+"""
+
+
+@pytest.mark.parametrize(
+    ("record", "message"),
+    [
+        ('holds("eq-1", "here", "so", pr.DOUBLE)', r"a part is a Formula, expected part\(check, formula\)"),
+        ('holds("eq-1", "here", "so", identity())', r"a part is a Check, expected part\(check, formula\)"),
+        ('holds("eq-1", "here", "so", part(pr.DOUBLE, identity()))', r"check is a Formula, expected a check"),
+        ('holds("eq-1", "here", "so", part(identity, pr.DOUBLE))', r"check is a function, expected a check"),
+        ('holds("eq-1", "here", "so", part(identity(), pr.RELATION))', r"formula is .*Equality.*expected formula\(Eq"),
+        ('holds(1, "here", "so")', r"id is 1 \(int\), expected a text"),
+        ('holds("eq-1", "here", "so", printed="2x")', r"printed is '2x' \(str\), expected Print"),
+        ('fails("eq-1", "here", "so", correction="x")', r"correction is 'x' \(str\), expected corrected"),
+        ('fails("eq-1", "here", "so", correction=corrected("x", pr.DOUBLE))', r"corrected: a part is a Formula"),
+        ('fails("eq-1", "here", "so", consequence=3)', r"consequence 3, expected a function without arguments"),
+        ("reading(part(identity(), pr.DOUBLE))", r"label is a Part, expected a text"),
+        ("formula(pr.x == 2)", r"found False \(bool\), expected a relation such as Eq"),
+        ("pr.Digits(0.5500)", r"Digits\(0.55\): expected a decimal number as text"),
+    ],
+)
+def test_what_is_of_another_kind_is_told_where_it_is_written(tmp_path, record, message):
+    """It is a mistake in the files: it neither reads as a fault of the engine nor goes unnoticed."""
+    folder = tmp_path / "paper"
+    folder.mkdir()
+    (folder / "printed.py").write_text(PRINTED)
+    (folder / "claims.py").write_text(CLAIMS.format(record))
+    with pytest.raises(MistakeError, match=message) as error:
+        load_paper(str(folder))
+    assert str(error.value).startswith(f"{folder / 'claims.py'}:5: ")
