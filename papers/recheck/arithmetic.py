@@ -129,21 +129,3 @@ _RELATIONS: dict[str, Callable[[Any, Any], Any]] = {
     ">": operator.gt,
     "<": operator.lt,
 }
-
-
-def determinant(matrix: Sequence[Sequence[Fraction]]) -> Fraction:
-    """Return the determinant of a square matrix, by elimination."""
-    rows = [list(row) for row in matrix]
-    total = Fraction(1)
-    for n in range(len(rows)):
-        pivot = next((r for r in range(n, len(rows)) if rows[r][n] != 0), None)
-        if pivot is None:
-            return Fraction(0)
-        if pivot != n:
-            rows[n], rows[pivot] = rows[pivot], rows[n]
-            total = -total
-        total *= rows[n][n]
-        for r in range(n + 1, len(rows)):
-            factor = rows[r][n] / rows[n][n]
-            rows[r] = [a - factor * b for a, b in zip(rows[r], rows[n], strict=True)]
-    return total

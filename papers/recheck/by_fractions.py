@@ -6,9 +6,10 @@ from collections.abc import Callable, Sequence
 from fractions import Fraction
 from typing import Any
 
-from semispline.papers.recheck.arithmetic import determinant, instance, satisfied, value
+from semispline.papers.recheck.arithmetic import instance, satisfied, value
 from semispline.papers.recheck.by_intervals import enclosed
 from semispline.papers.recheck.by_series import series_of
+from semispline.papers.recheck.fraction_matrices import determinant, inverse, product
 from semispline.papers.recheck.rooted import equal_with_roots
 from semispline.papers.recheck.statements import (
     Coefficient,
@@ -87,16 +88,16 @@ def _rank(statement: Rank, at: dict[str, Fraction]) -> bool:
         len(minor) == statement.rank
         and missing == len(full[0]) - statement.rank
         and (not minor or determinant(minor) != 0)
-        and (not missing or ([kernel[i] for i in statement.free] == unit and not any(map(any, _product(full, kernel)))))
+        and (not missing or ([kernel[i] for i in statement.free] == unit and not any(map(any, product(full, kernel)))))
     )
 
 
 def _contained(statement: Contained, _: dict[str, Fraction]) -> bool:
     outer, inner = _numbers(statement.outer), _numbers(statement.inner)
     if statement.solution:
-        return _product(outer, _numbers(statement.solution)) == inner
+        return product(outer, _numbers(statement.solution)) == inner
     row = [[Fraction(x) for x in statement.separator]]
-    return not any(_product(row, outer)[0]) and any(_product(row, inner)[0])
+    return not any(product(row, outer)[0]) and any(product(row, inner)[0])
 
 
 def _minimum(statement: Minimum, _: dict[str, Fraction]) -> bool:
@@ -106,7 +107,7 @@ def _minimum(statement: Minimum, _: dict[str, Fraction]) -> bool:
     triangular = all(lower[i][j] == (i == j) for i in range(size) for j in range(i, size))
     scaled = [[lower[i][j] * pivots[j] for j in range(size)] for i in range(size)]
     back = [list(row) for row in zip(*lower, strict=True)]
-    return triangular and all(pivot > 0 for pivot in pivots) and _product(scaled, back) == full
+    return triangular and all(pivot > 0 for pivot in pivots) and product(scaled, back) == full
 
 
 def _knots(statement: Knots, _: dict[str, Fraction]) -> bool:
@@ -159,7 +160,7 @@ class Square:
 
     def __mul__(self, other: Square | Fraction) -> Square:
         if isinstance(other, Square):
-            return Square(_product(self.rows, other.rows))
+            return Square(product(self.rows, other.rows))
         return Square([[a * other for a in row] for row in self.rows])
 
     def __rmul__(self, number: Fraction) -> Square:
@@ -168,32 +169,10 @@ class Square:
     def __pow__(self, power: int) -> Square:
         size = len(self.rows)
         product = Square([[Fraction(int(i == j)) for j in range(size)] for i in range(size)])
-        base = self if power >= 0 else Square(_inverse(self.rows))
+        base = self if power >= 0 else Square(inverse(self.rows))
         for _ in range(abs(power)):
             product = product * base
         return product
-
-
-def _inverse(rows: _Rows) -> _Rows:
-    """Return the inverse by elimination.
-
-    Raises
-    ------
-    ZeroDivisionError
-        There is none.
-    """
-    size = len(rows)
-    work = [[*row, *(Fraction(int(i == j)) for j in range(size))] for i, row in enumerate(rows)]
-    for n in range(size):
-        pivot = next((r for r in range(n, size) if work[r][n] != 0), None)
-        if pivot is None:
-            raise ZeroDivisionError("a matrix without an inverse")
-        work[n], work[pivot] = work[pivot], work[n]
-        work[n] = [a / work[n][n] for a in work[n]]
-        for r in range(size):
-            if r != n:
-                work[r] = [a - work[r][n] * b for a, b in zip(work[r], work[n], strict=True)]
-    return [row[size:] for row in work]
 
 
 def _number(statement: Number, _: dict[str, Fraction]) -> bool:
@@ -213,11 +192,6 @@ def _coefficient(statement: Coefficient, at: dict[str, Fraction]) -> bool:
 
 def _numbers(rows: Sequence[Sequence[str]]) -> _Rows:
     return [[Fraction(entry) for entry in row] for row in rows]
-
-
-def _product(one: _Rows, other: _Rows) -> _Rows:
-    columns = list(zip(*other, strict=True))
-    return [[sum((a * b for a, b in zip(row, column, strict=True)), Fraction(0)) for column in columns] for row in one]
 
 
 _BY_FORM: dict[str, Callable[[Any, dict[str, Fraction]], bool]] = {

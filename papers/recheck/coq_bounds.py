@@ -12,7 +12,7 @@ from math import comb, lcm
 from flint import fmpq, fmpq_mat
 
 from semispline.papers.recheck.coq_lemmas import numbers
-from semispline.papers.recheck.roots import NotForCoqError, remainder, whole_root
+from semispline.papers.recheck.coq_roots import NotForCoqError, remainder, whole_root
 from semispline.papers.recheck.statements import Theory
 from semispline.solver.proof import NoSquares, gram_matrices
 

@@ -10,8 +10,8 @@ from importlib.resources import files
 from pathlib import Path
 
 from semispline.papers.recheck.coq_lemmas import lemma, met
+from semispline.papers.recheck.coq_roots import NotForCoqError
 from semispline.papers.recheck.gp import CONTROLS, statement_id
-from semispline.papers.recheck.roots import NotForCoqError
 from semispline.papers.recheck.statements import Export, Statement
 
 LIBRARY = "Semispline"

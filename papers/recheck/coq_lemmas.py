@@ -12,8 +12,9 @@ from fractions import Fraction
 from typing import Any
 
 from semispline.papers.recheck.arithmetic import instance, value
+from semispline.papers.recheck.coq_roots import NotForCoqError, whole_root
+from semispline.papers.recheck.fraction_matrices import Rows, inverse, product
 from semispline.papers.recheck.gp import term_text
-from semispline.papers.recheck.roots import NotForCoqError, Rows, whole_root
 from semispline.papers.recheck.statements import (
     Contained,
     Identity,
@@ -135,13 +136,16 @@ def _rank(statement: Rank) -> tuple[str, str]:
     at = instance(statement.at, statement.where)
     entries = [[value(entry, at) for entry in row] for row in statement.matrix]
     minor = [[entries[i][j] for j in statement.columns] for i in statement.rows]
-    inverse = _inverse(minor)
+    try:
+        undone = inverse(minor)
+    except ZeroDivisionError:
+        raise NotForCoqError("rank: found a minor that is zero") from None
     left = [[Fraction(0)] * rows for _ in statement.rows]
-    for row, line in zip(left, inverse, strict=True):
+    for row, line in zip(left, undone, strict=True):
         for i, number_ in zip(statement.rows, line, strict=True):
             row[i] = number_
     picked = [[entries[i][j] for j in range(columns)] for i in statement.rows]
-    combinations = _product(inverse, picked)
+    combinations = product(undone, picked)
     stated = f"rank_is {rows} {columns} {numbers(entries)} {statement.rank}"
     indices = "[" + "; ".join(f"{j}%nat" for j in statement.columns) + "]"
     proof = f"apply (rank_by _ _ _ _ {indices} {numbers(left)} {numbers(combinations)}); by_numbers."
@@ -165,7 +169,7 @@ def _contained(statement: Contained) -> tuple[str, str]:
     if statement.solution:
         return stated, f"apply (contained_by _ _ _ _ _ {numbers(_numbers(statement.solution))}). by_numbers."
     row = [Fraction(x) for x in statement.separator]
-    found = _product([row], inner)[0]
+    found = product([row], inner)[0]
     column = next((j for j, x in enumerate(found) if x), None)
     if column is None:
         raise NotForCoqError(f"{statement.label}: found no column that the separator tells apart, expected one")
@@ -230,30 +234,3 @@ def _short(x: Fraction) -> str:
 
 def _numbers(rows: Sequence[Sequence[str]]) -> list[list[Fraction]]:
     return [[Fraction(entry) for entry in row] for row in rows]
-
-
-def _product(one: Rows, other: Rows) -> list[list[Fraction]]:
-    columns = list(zip(*other, strict=True))
-    return [[sum((a * b for a, b in zip(row, column, strict=True)), Fraction(0)) for column in columns] for row in one]
-
-
-def _inverse(rows: Rows) -> list[list[Fraction]]:
-    """Return the inverse of a regular matrix.
-
-    Raises
-    ------
-    NotForCoqError
-        It has none.
-    """
-    size = len(rows)
-    work = [[*row, *(Fraction(int(i == j)) for j in range(size))] for i, row in enumerate(rows)]
-    for n in range(size):
-        pivot = next((r for r in range(n, size) if work[r][n]), None)
-        if pivot is None:
-            raise NotForCoqError("rank: found a minor that is zero")
-        work[n], work[pivot] = work[pivot], work[n]
-        work[n] = [x / work[n][n] for x in work[n]]
-        for r in range(size):
-            if r != n and work[r][n]:
-                work[r] = [a - work[r][n] * b for a, b in zip(work[r], work[n], strict=True)]
-    return [row[size:] for row in work]

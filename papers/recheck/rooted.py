@@ -8,7 +8,8 @@ from fractions import Fraction
 from itertools import product
 from typing import Any
 
-from semispline.papers.recheck.arithmetic import determinant, value
+from semispline.papers.recheck.arithmetic import value
+from semispline.papers.recheck.fraction_matrices import determinant
 
 # Powers of the roots -> coefficient.
 Terms = dict[tuple[int, ...], Fraction]

@@ -10,9 +10,9 @@ from helpers.statements import RIGHT, WRONG
 from semispline.papers.recheck import Export, Identity, Theory, identity, kernel_checked, require_system
 from semispline.papers.recheck.coq_folder import CoqFile, coq_folder, hand_written, imports, needed_sources, write_coq
 from semispline.papers.recheck.coq_lemmas import lemma
+from semispline.papers.recheck.coq_roots import NotForCoqError
 from semispline.papers.recheck.coqc import REALS, Kernel, assumptions_in
 from semispline.papers.recheck.kernel import KernelCheck
-from semispline.papers.recheck.roots import NotForCoqError
 from semispline.papers.recheck.statements import Certificate, Reading
 from semispline.solver.errors import ComputationError, OptionError
 

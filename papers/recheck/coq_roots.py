@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 from fractions import Fraction
 from math import isqrt
 
+from semispline.papers.recheck.fraction_matrices import Rows
 from semispline.solver.errors import InputError
 
 _ROOTS = range(16, 257, 16)
@@ -16,10 +17,7 @@ class NotForCoqError(InputError):
     """Something for which no proof could be written."""
 
 
-Rows = Sequence[Sequence[Fraction]]
-
-
-def whole_root(entries: Sequence[Sequence[Fraction]]) -> tuple[int, list[list[int]]]:
+def whole_root(entries: Rows) -> tuple[int, list[list[int]]]:
     """Return s and F, a triangle of whole numbers, with s A = F F^T + E, E with a diagonal that outweighs the rest.
 
     Raises
@@ -52,12 +50,12 @@ def whole_root(entries: Sequence[Sequence[Fraction]]) -> tuple[int, list[list[in
 
 
 def _root(square: Fraction) -> int:
-    """Return the square root of a number, rounded, with the sign of the number."""
+    """Return the whole part of the square root of a number's size, with the sign of the number."""
     found = isqrt(abs(square.numerator) // square.denominator)
     return found if square >= 0 else -found
 
 
-def _triangle(entries: Sequence[Sequence[Fraction]]) -> tuple[list[list[Fraction]], list[Fraction]] | None:
+def _triangle(entries: Rows) -> tuple[list[list[Fraction]], list[Fraction]] | None:
     """Return L and D of L D L^T, or None where the matrix is not positive definite."""
     work = [list(row) for row in entries]
     size = len(work)
@@ -77,9 +75,7 @@ def _triangle(entries: Sequence[Sequence[Fraction]]) -> tuple[list[list[Fraction
     return lower, pivots
 
 
-def remainder(
-    entries: Sequence[Sequence[Fraction]], scale: int, root: Sequence[Sequence[int]]
-) -> Iterator[tuple[Fraction, list[Fraction]]]:
+def remainder(entries: Rows, scale: int, root: Sequence[Sequence[int]]) -> Iterator[tuple[Fraction, list[Fraction]]]:
     """Yield the diagonal entry of each row of E, and the others."""
     for i, row in enumerate(entries):
         rest = [scale * x - sum(a * b for a, b in zip(root[i], root[j], strict=False)) for j, x in enumerate(row)]
