@@ -5,7 +5,7 @@ BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 # What is compiled is kept, whatever the environment says: tests start a hundred processes that import all of it.
 export PYTHONDONTWRITEBYTECODE :=
-LEFT_OUT := compiler or browser or slow
+LEFT_OUT := compiler or browser or coq or slow
 # Half of the files each, so that what a file shares is made once; who is done first takes from the other.
 PYTEST := $(BIN)/python -m pytest -n 2 --dist worksteal --quiet
 # Rooms whose tests take about a minute on two cores, less the files that take ten seconds and more each; not derivations,
@@ -13,11 +13,12 @@ PYTEST := $(BIN)/python -m pytest -n 2 --dist worksteal --quiet
 LONG := io/test_io_foreign io/test_face_boundary io/test_io_cad judge/test_de_boor \
 	judge/test_meets proof/test_squares blending/test_reduced blending/test_real_bases blending/test_units \
 	blending/test_closed_pairs blending/test_blending blending/test_open_cascade_hundred
-QUICK := tests/test_documents.py tests/test_readme.py tests/test_rooms.py tests/papers/ledger \
+QUICK := tests/test_documents.py tests/test_readme.py tests/test_rooms.py tests/papers/ledger tests/papers/checks \
+	tests/papers/latex tests/papers/pseudocode \
 	$(addprefix tests/solver/,splines generated proof judge blending io c_export) \
 	$(patsubst %,--ignore=tests/solver/%.py,$(LONG))
 
-.PHONY: report check quick test test-left-out test-kernels mutants lint types layers fresh recheck bench shapes reach solids pictures clean
+.PHONY: report check quick test test-left-out test-kernels mutants lint types layers fresh recheck coq bench shapes reach solids pictures clean
 
 $(STAMP): pyproject.toml constraints.txt
 	$(PYTHON) -m venv $(VENV)
@@ -29,7 +30,7 @@ report: $(STAMP)
 
 test: $(STAMP)
 	$(PYTEST) -m 'not ($(LEFT_OUT))'
-	@echo "Left out here, run by .ci/run: tests marked compiler (a C compiler), browser (Chromium) or slow (long sweeps); and most examples of the sweeps"
+	@echo "Left out here, run by .ci/run: tests marked compiler (a C compiler), browser (Chromium), coq (the kernel of Coq) or slow (long sweeps); and most examples of the sweeps"
 
 # The loop while working.
 check: lint types layers quick
@@ -37,9 +38,9 @@ check: lint types layers quick
 quick: $(STAMP)
 	$(PYTEST) -m 'not ($(LEFT_OUT))' $(QUICK)
 
-# With all examples of the sweeps. pytest leaves with 5 when nothing carries these marks.
+# With all examples of the sweeps; `make coq` runs what needs Coq. pytest leaves with 5 when nothing carries these marks.
 test-left-out: $(STAMP)
-	SEMISPLINE_SWEEPS=whole $(PYTEST) -m '$(LEFT_OUT) or sweep or hypothesis' || [ $$? -eq 5 ]
+	SEMISPLINE_SWEEPS=whole $(PYTEST) -m '($(LEFT_OUT) or sweep or hypothesis) and not coq' || [ $$? -eq 5 ]
 
 # Under each kernel of OpenBLAS that the processor has; KERNELS=another takes any one that is not the default.
 test-kernels: $(STAMP)
@@ -66,6 +67,10 @@ fresh: $(STAMP)
 recheck: $(STAMP)
 	$(BIN)/semispline verify lin2014 --recheck pari --certificates build/certificates
 	cd build/certificates && gp -q check.gp
+
+# The same by the kernel of Coq, with the theorems of derivations/coq from the definition of B-splines on; its controls.
+coq: $(STAMP)
+	$(PYTEST) -m coq
 
 bench: $(STAMP)
 	$(BIN)/python benchmarks/run.py

@@ -6,9 +6,10 @@ Heavy imports wait inside the functions, so that `--help` answers fast.
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from copy import copy
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -17,7 +18,7 @@ import typer
 from semispline import __version__
 from semispline.derivations import cli as derivations_cli
 from semispline.solver import cli as solver_cli
-from semispline.solver.exit_status import ANSWER_IS_NO, FAILED, reports_errors
+from semispline.solver.exit_status import ANSWER_IS_NO, FAILED, WRONG_INPUT, reports_errors
 from semispline.solver.reports import print_warnings
 
 if TYPE_CHECKING:
@@ -38,7 +39,13 @@ def _show_version(asked: bool) -> None:
         raise typer.Exit
 
 
-Name = Annotated[str, typer.Argument(metavar="PAPER", help="A paper of this package, or a folder with printed.py.")]
+Name = Annotated[
+    str,
+    typer.Argument(
+        metavar="PAPER",
+        help="A paper of this package, or a folder with printed.py and claims.py, which are run as Python.",
+    ),
+]
 
 
 @app.callback()
@@ -66,11 +73,19 @@ def verify_command(
         typer.Option(metavar="FILE", help="Write two pages for a reader of the paper, their picture beside them."),
     ] = None,
     recheck: Annotated[
-        str | None, typer.Option(metavar="SYSTEM", help="Have a second system, pari, repeat what verdicts rest on.")
+        list[str] | None,
+        typer.Option(
+            metavar="SYSTEM",
+            help="Have pari, or the kernel of coq (minutes), repeat what verdicts rest on; twice for both.",
+        ),
     ] = None,
     certificates: Annotated[
-        str | None, typer.Option(metavar="DIR", help="Write what verdicts rest on, for PARI alone: gp -q check.gp.")
+        str | None, typer.Option(metavar="DIR", help="Write what verdicts rest on, for PARI and for Coq alone.")
     ] = None,
+    draft: Annotated[
+        bool,
+        typer.Option("--draft", help="Show what the checks of unfinished claims find and what they lack; exit 0."),
+    ] = False,
 ) -> None:
     """Decide every claim of a paper anew; exit status 1 if a verdict is not the recorded one, 3 if one is missing."""
     from semispline.papers.ledger import paper_files
@@ -78,16 +93,23 @@ def verify_command(
     from semispline.papers.report import ledger_markdown, ledger_record, require_erratum, with_study_kept, write_erratum
     from semispline.solver.io import check_outputs, to_text, write_text
 
+    if draft:
+        given = {
+            "--json": json_file, "--markdown": markdown, "--erratum": erratum, "--recheck": recheck,
+            "--certificates": certificates,
+        }  # fmt: skip
+        _show_drafts(paper, [option for option, value in given.items() if value is not None])
+        return
     outputs = {"--json": None if json_file == "-" else json_file, "--markdown": markdown, "--erratum": erratum}
     check_outputs(outputs, paper_files(paper))
     if erratum is not None:
         require_erratum(paper)
-    if recheck is not None:
-        require_system(recheck)
+    for system in recheck or ():
+        require_system(system)
     if certificates is not None:
         require_folder(certificates)
     ledger = decided(paper)
-    second = _second_system(ledger, recheck, certificates) if recheck or certificates else None
+    second = _second_systems(ledger, recheck or [], certificates) if recheck or certificates else None
     if json_file == "-":
         typer.echo(to_text(ledger_record(ledger, second)), nl=False)
     elif json_file is not None:
@@ -108,25 +130,82 @@ def verify_command(
     _end_as(ledger, agrees=second is None or second.agrees)
 
 
-def _second_system(ledger: Ledger, system: str | None, folder: str | None) -> Recheck:
+def _show_drafts(paper: str, others: list[str]) -> None:
+    """Show decided records as ever, and what the checks of the others find."""
+    from semispline.papers.ledger import load_drafts, verify_drafts
+    from semispline.papers.report import draft_text
+    from semispline.solver.errors import OptionError
+
+    if others:
+        raise OptionError(f"--draft: found {others[0]} beside it, expected it alone")
+    claims = {claim.id: claim for claim in load_drafts(paper).claims}
+    with _progress("looking", len(claims)) as advance:
+        ledger, drafts = verify_drafts(paper, workers=_workers(), progress=lambda found: advance(found.id))
+    if ledger.decisions:
+        print_ledger(ledger)
+    for finding in drafts:
+        typer.echo(f"\n{draft_text(claims[finding.id], finding)}")
+    typer.echo(f"\n{len(drafts)} {'draft' if len(drafts) == 1 else 'drafts'}, {len(ledger.decisions)} complete")
+
+
+def _workers() -> int:
+    return min(os.cpu_count() or 1, 8)
+
+
+def _second_systems(ledger: Ledger, systems: list[str], folder: str | None) -> Recheck:
     """Export what the verdicts of a ledger rest on, write it where asked, and have it repeated where asked."""
-    from semispline.papers.recheck import Recheck, exported, rechecked, write_certificates
+    from semispline.papers.recheck import Recheck, exported, kernel_checked, rechecked, write_certificates
 
     export = exported(ledger.paper)
     if folder is not None:
         write_certificates(folder, export)
-    return rechecked(export, folder) if system is not None else Recheck(export)
+    found = rechecked(export, folder) if "pari" in systems else Recheck(export)
+    return replace(found, kernel=kernel_checked(export, folder)) if "coq" in systems else found
 
 
 def recheck_text(second: Recheck) -> str:
-    """Return in one line what was exported and what the second system agrees on."""
+    """Return what was exported and what the second system agrees on, and why records are not repeated as a whole."""
     counts = second.counts()
     done = (
         f", {counts['identities_agreed']} agreed; {counts['rechecked']} records rechecked as a whole"
         if second.refused is not None
         else ""
     )
-    return f"{counts['identities_exported']} identities exported{done}; {counts['not_expressible']} not expressible"
+    said = f"{counts['identities_exported']} identities exported{done}; {counts['not_expressible']} not expressible"
+    same = f"{counts['identities_of_one_text']} identities are one text on both sides, and not counted"
+    lines = [said, *([same] if counts["identities_of_one_text"] else []), *_by_reason(second.reasons())]
+    if second.kernel is not None:
+        lines += [
+            f"Coq {second.kernel.version}: {counts['kernel_identities']} identities and {counts['kernel_statements']} "
+            f"statements accepted; {counts['kernel_checked']} records checked as a whole by its kernel, "
+            f"{counts['kernel_inexpressible']} not expressible",
+            *_by_reason(second.kernel.reasons()),
+        ]
+    return "\n".join(lines)
+
+
+def _by_reason(reasons: Mapping[str, str]) -> list[str]:
+    """Return each reason with its records, or with their number."""
+    named: dict[str, list[str]] = {}
+    for identifier, reason in reasons.items():
+        named.setdefault(reason, []).append(identifier)
+    return [f"{', '.join(found) if len(found) < 4 else len(found)}: {why}" for why, found in named.items()]
+
+
+@app.command("new-paper")
+@reports_errors
+def new_paper_command(
+    folder: Annotated[str, typer.Argument(metavar="DIR", help="A new or empty folder.")],
+    title: Annotated[str, typer.Option(metavar="TEXT", help="Title of the paper.")] = "",
+    doi: Annotated[str, typer.Option(metavar="DOI", help="Where it is published.")] = "",
+) -> None:
+    """Write a small working paper of three claims to begin with: one holds, one fails, one is ambiguous."""
+    from semispline.papers.new_paper import write_paper
+    from semispline.solver.io import shown
+
+    for path in write_paper(folder, title, doi):
+        typer.echo(f"wrote {path}")
+    typer.echo(f"next: semispline verify {shown(folder)}, then change printed.py and claims.py")
 
 
 @app.command("reproduce")
@@ -135,12 +214,9 @@ def reproduce_command(
     paper: Name,
     out: Annotated[str, typer.Option(metavar="DIR", help="Folder for index.html, pictures and numbers.")] = "report",
 ) -> None:
-    """Verify the claims of a paper, run its examples, and write tables, pictures and an HTML report."""
-    from semispline.papers.ledger import LedgerError, paper_names
+    """Verify the claims of a paper, run its examples if it has any, and write an HTML report, tables and pictures."""
     from semispline.papers.whole_study import reproduce
 
-    if paper not in paper_names():
-        raise LedgerError(f"paper: found {paper!r}, expected one of {', '.join(paper_names())}")
     ledger = reproduce(paper, out, decide=decided, show=print_ledger, echo=typer.echo, progress=_progress)
     _end_as(ledger)
 
@@ -179,11 +255,13 @@ def decided(name: str) -> Ledger:
 
     total = len(collected(name).claims)
     with _progress("deciding", total) as advance:
-        return verify(name, workers=min(os.cpu_count() or 1, 8), progress=lambda decision: advance(decision.id))
+        return verify(name, workers=_workers(), progress=lambda decision: advance(decision.id))
 
 
 def _end_as(ledger: Ledger, *, agrees: bool = True) -> None:
-    """End with the exit status of a ledger: what gave no answer is a failure of its check, and never a no."""
+    """End with the exit status of a ledger: what gave no answer is a mistake or a failed check, and never a no."""
+    if ledger.mistaken:
+        raise typer.Exit(WRONG_INPUT)
     if ledger.unanswered:
         raise typer.Exit(FAILED)
     if not ledger.ok or not agrees:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib
 import os
 from collections.abc import Callable, Iterable
 from contextlib import AbstractContextManager, closing
@@ -11,7 +10,7 @@ from pathlib import Path
 from typing import Any, TypeAlias
 
 from semispline.papers.baselines import Method, methods
-from semispline.papers.ledger import Ledger
+from semispline.papers.ledger import Ledger, MistakeError, paper_folder, paper_module, placed
 from semispline.papers.report import Results, blends_table, environment, text_lines, write_report
 from semispline.papers.reproduction import Comparison, Comparisons, Drawing, Example, Study, Table, run
 from semispline.solver.errors import FileError
@@ -46,7 +45,7 @@ def reproduce(
     Parameters
     ----------
     paper : str
-        A paper of this package, with a module `study`.
+        A paper of this package, or a folder; its examples and pictures are those of its module `study`.
     out : str
         Folder, made where it is missing.
     decide : callable
@@ -62,9 +61,10 @@ def reproduce(
         The folder cannot be made or written to, or pyvista, which draws the pictures, is not installed.
     """
     folder = _folder(out)
-    # Found now rather than after minutes of work.
-    pyvista_module("reproduce")
-    study: Study = importlib.import_module(f"semispline.papers.{paper}.study").study()
+    study = _study(paper)
+    if study.drawings:
+        # Found now rather than after minutes of work.
+        pyvista_module("reproduce")
     ledger = decide(paper)
     show(ledger)
     results = collect(
@@ -73,8 +73,21 @@ def reproduce(
     for line in _spoken(results):
         echo(line)
     write_report(results, folder)
-    echo(f"wrote {folder / 'index.html'}, numbers.json, RECORDS.md, report.md and the pictures beside it")
+    pictures = " and the pictures beside it" if study.drawings else " beside it"
+    echo(f"wrote {folder / 'index.html'}, numbers.json, RECORDS.md, report.md{pictures}")
     return ledger
+
+
+def _study(paper: str) -> Study:
+    """Return what a paper's module `study` gives; of one that has none, nothing beside its claims."""
+    module = paper_module(paper, "study")
+    if module is None:
+        return Study((), (), tables=lambda _: (), findings=lambda _: ())
+    with placed(paper_folder(paper)):
+        found = module.study()
+    if not isinstance(found, Study):
+        raise MistakeError(f"{module.__file__}: study returned a {type(found).__name__}, expected a Study")
+    return found
 
 
 def collect(
@@ -122,13 +135,14 @@ def _edge_by_edge(examples: Iterable[Example], comparisons: Comparisons) -> list
 
 def _spoken(results: Results) -> list[str]:
     """Return what the terminal shows after the ledger."""
-    tables: list[Table] = [*results.study.tables(results.comparisons), results.blends]
+    tables: list[Table] = [*results.study.tables(results.comparisons)]
+    tables += [results.blends] if results.study.examples else []
     lines = []
     for table in tables:
         lines += ["", table.title, *text_lines(table)]
-    lines += ["", "Found"]
-    lines += [f"- {finding.short}" for finding in results.study.findings(results.comparisons)]
-    return [*lines, ""]
+    found = results.study.findings(results.comparisons)
+    lines += ["", "Found", *(f"- {finding.short}" for finding in found)] if found else []
+    return [*lines, ""] if lines else []
 
 
 def _folder(out: str) -> Path:

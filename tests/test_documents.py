@@ -38,7 +38,15 @@ def exists(path):
     return (ROOT / path).exists() or ("/" not in path.rstrip("/") and any(ROOT.glob(f"[a-z]*/**/{path.rstrip('/')}")))
 
 
-DOCUMENTS = ("CONTRIBUTING.md", "README.md", "benchmarks/README.md", "docs/architecture.md", "docs/theory.md")
+DOCUMENTS = (
+    "CONTRIBUTING.md",
+    "README.md",
+    "benchmarks/README.md",
+    "docs/architecture.md",
+    "docs/theory.md",
+    "docs/what-has-to-be-believed.md",
+    "docs/your-own-paper.md",
+)
 
 
 @pytest.mark.parametrize("document", DOCUMENTS)

@@ -80,6 +80,7 @@ def test_no_hall_answers_to_its_bare_name(programs, hall, tmp_path):
     assert said.strip() == f"No module named '{hall}'"
 
 
+@pytest.mark.slow
 def test_beside_files_of_the_user_that_have_the_names_of_the_halls(programs, tmp_path):
     (tmp_path / "solver.py").write_text("OWNER = 'user'")
     for package in ("papers", "derivations"):

@@ -56,6 +56,7 @@ def collected(*options):
     return [line for line in run.stdout.splitlines() if "::" in line]
 
 
+@pytest.mark.slow
 def test_the_order_of_tests_follows_from_its_seed():
     plain, one, again, other = (
         collected(*options) for options in ((), ("--order-seed=1",), ("--order-seed=1",), ("--order-seed=2",))

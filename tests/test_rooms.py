@@ -146,10 +146,18 @@ def test_other_rooms_enter_by_the_face_and_the_room_itself_does_not(face):
     assert round_about == [], "inside a room import the module"
 
 
+def for_authors():
+    """(room, name) of each name that the page for authors of papers tells them to import."""
+    page = (ROOT / "docs" / "your-own-paper.md").read_text("utf-8")
+    lines = re.findall(r"(?m)^    from (semispline\.[\w.]+) import (.*)$", page)
+    return {(room, name.strip()) for room, names in lines for name in names.split(",")}
+
+
 @pytest.mark.parametrize("face", FACES)
 def test_each_name_of_a_face_exists_and_is_used(face):
     public = set(stub_entries("semispline"))
     asked_for = {what for name, source, what in all_imports() if source == face}
+    asked_for |= {name for room, name in for_authors() if room == face}
     entries = stub_entries(face)
     assert [e for e in entries if not hasattr(importlib.import_module(e[0]), e[1])] == []
     assert [e for e in entries if e[1] not in asked_for and e not in public] == [], "no other room asks for it"

@@ -7,6 +7,7 @@ two apart.
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
@@ -16,8 +17,9 @@ from typing import Any
 import sympy as sp
 from sympy.core.function import AppliedUndef
 
-from semispline.papers.ledger.number_lists import Knots, Numbers, exchanges, knot_changes, near, number_changes
-from semispline.papers.ledger.records import Case, Check, Formula, Part, decided_cases
+from semispline.papers.ledger.number_lists import near
+from semispline.papers.ledger.records import Case, Check, CheckFailedError, EndlessError, Formula, Part, decided_cases
+from semispline.solver.errors import InputError
 
 
 @dataclass(frozen=True)
@@ -27,7 +29,7 @@ class Mutant:
     Attributes
     ----------
     kind : str
-        What was changed: sign, factor, exponent, index, limit, number, or knot.
+        What was changed: sign, factor, exponent, index, limit, number, entry of a matrix, or what printed data say.
     relation : sympy.Rel
     """
 
@@ -37,7 +39,7 @@ class Mutant:
     @property
     def text(self) -> str:
         """How a record names it, to say why it is equivalent."""
-        return str(self.relation)
+        return one_line(self.relation)
 
 
 @dataclass(frozen=True)
@@ -54,7 +56,7 @@ class MutationResult:
         The other survivors, with the written reason: those that say the same as the formula, and those that nothing
         printed can tell from it.
     undefined : int
-        Mutants that were noticed since they divide by zero.
+        Mutants that were noticed since they divide by zero, or never end.
     """
 
     kinds: Mapping[str, int] = field(default_factory=dict)
@@ -81,6 +83,17 @@ class MutationResult:
             self.undecidable + other.undecidable,
             self.undefined + other.undefined,
         )
+
+
+def one_line(relation: Any) -> str:
+    """Return a relation as text, matrices too.
+
+    Examples
+    --------
+    >>> one_line(sp.ImmutableMatrix([[1, 0], [2, 3]]))
+    'Matrix([[1, 0], [2, 3]])'
+    """
+    return re.sub(r"\s*\n\s*", " ", str(relation)).replace("Matrix([ [", "Matrix([[")
 
 
 def mutants(formula: Formula) -> list[Mutant]:
@@ -178,13 +191,19 @@ def _tried(check: Check, formula: Formula, original: list[Case] | None) -> Mutat
                 original = list(decided_cases(check, formula))
             if not _differs(original, decided_cases(check, changed)):
                 survivors.append(mutant)
-        except ZeroDivisionError:
+        except (ZeroDivisionError, EndlessError):
             undefined += 1
+        except (CheckFailedError, InputError):
+            # No answer is no difference that the check has noticed.
+            survivors.append(mutant)
     # A reason that says nothing explains nothing.
     same, open_ = (
         {text: why for text, why in reasons.items() if why.strip()}
         for reasons in (formula.equivalent, formula.undecidable)
     )
+    if formula.equivalent_if:
+        by_rule = {m.text: formula.equivalent_if(m) for m in survivors if m.text not in same}
+        same |= {text: why for text, why in by_rule.items() if why.strip()}
     return MutationResult(
         kinds,
         tuple(f"{m.kind}: {m.text}" for m in survivors if m.text not in same and m.text not in open_),
@@ -215,7 +234,7 @@ def _neighbour_map(chains: tuple[tuple[Any, ...], ...]) -> dict[Any, list[Any]]:
 
 def _whole_variants(expression: Any) -> Iterator[tuple[str, Any]]:
     """Yield changes of a whole side."""
-    if isinstance(expression, sp.Tuple):
+    if not isinstance(expression, sp.Expr | sp.MatrixBase | sp.MatrixExpr):
         return
     yield "sign", -expression
     yield "factor", 2 * expression
@@ -223,19 +242,14 @@ def _whole_variants(expression: Any) -> Iterator[tuple[str, Any]]:
         yield from (("number", changed) for changed in near(expression))
 
 
-def _data_variants(data: Knots | Numbers) -> Iterator[tuple[str, Any]]:
-    if isinstance(data, Knots):
-        yield from (("knot", changed) for changed in knot_changes(data))
-    else:
-        yield from (("number", changed) for changed in number_changes(data))
-        yield from (("index", changed) for changed in exchanges(data))
-
-
 def _variants(expression: Any, near_by: dict[Any, list[Any]]) -> Iterator[tuple[str, Any]]:
     """Yield (kind, expression with one change), walking through the whole tree."""
     yield from (("index", other) for other in near_by.get(expression, []))
     yield from _node_variants(expression)
-    if isinstance(expression, Knots | Numbers | sp.Indexed):
+    if hasattr(expression, "changes") or isinstance(expression, sp.Indexed | sp.CRootOf):
+        return
+    if isinstance(expression, sp.MatrixBase):
+        yield from _matrix_variants(expression, near_by)
         return
     if isinstance(expression, sp.Sum | sp.Integral):
         for kind, changed in _variants(expression.function, near_by):
@@ -248,8 +262,9 @@ def _variants(expression: Any, near_by: dict[Any, list[Any]]) -> Iterator[tuple[
 
 def _node_variants(expression: Any) -> Iterator[tuple[str, Any]]:
     """Yield changes of one node of the tree."""
-    if isinstance(expression, Knots | Numbers):
-        yield from _data_variants(expression)
+    if hasattr(expression, "changes"):
+        # What is printed otherwise than as an expression knows best how it may be mistaken.
+        yield from expression.changes()
     elif expression.is_Rational and not expression.is_Integer:
         yield from (("number", changed) for changed in near(expression))
     elif isinstance(expression, sp.Add):
@@ -269,6 +284,25 @@ def _node_variants(expression: Any) -> Iterator[tuple[str, Any]]:
         yield from _limit_variants(expression)
     elif isinstance(expression, sp.Integral):
         yield "factor", 2 * expression
+
+
+def _matrix_variants(matrix: Any, near_by: dict[Any, list[Any]]) -> Iterator[tuple[str, Any]]:
+    """Yield matrices with one entry changed, or exchanged with the next one of its row."""
+    entries = list(matrix)
+
+    def with_entries(changed: list[Any]) -> Any:
+        return sp.ImmutableDenseMatrix(matrix.rows, matrix.cols, changed)
+
+    for i, entry in enumerate(entries):
+        changes = list(_variants(entry, near_by))
+        if entry.is_Integer:
+            changes.append(("number", entry + 1))
+        if entry != 0:
+            changes.append(("sign", -entry))
+        for kind, changed in changes:
+            yield kind, with_entries([*entries[:i], changed, *entries[i + 1 :]])
+        if (i + 1) % matrix.cols and entries[i + 1] != entry:
+            yield "entry", with_entries([*entries[:i], entries[i + 1], entry, *entries[i + 2 :]])
 
 
 def _limit_variants(expression: Any) -> Iterator[tuple[str, Any]]:

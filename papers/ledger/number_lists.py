@@ -1,4 +1,4 @@
-"""Printed data inside a formula: knot vectors and lists of numbers, which the mutation check perturbs one by one."""
+"""Printed data inside a formula: knot vectors and lists of numbers, which say themselves how they may be mistaken."""
 
 from __future__ import annotations
 
@@ -17,9 +17,18 @@ class Knots(sp.Tuple):
     (0, 0, 1/2, 1, 1)
     """
 
+    def changes(self) -> Iterator[tuple[str, Knots]]:
+        """Yield what the mutation check tries."""
+        yield from (("knot", changed) for changed in knot_changes(self))
+
 
 class Numbers(sp.Tuple):
-    """Other printed numbers: sizes, counts, decimals."""
+    """Other printed numbers: sizes and counts."""
+
+    def changes(self) -> Iterator[tuple[str, Numbers]]:
+        """Yield what the mutation check tries."""
+        yield from (("number", changed) for changed in number_changes(self))
+        yield from (("index", changed) for changed in exchanges(self))
 
 
 def knot_changes(knots: Knots) -> Iterator[Knots]:

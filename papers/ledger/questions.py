@@ -19,7 +19,7 @@ def question(cases: Callable[[], Iterator[Case]], method: str, strength: Strengt
     return Check(lambda _: cases(), strength, method)
 
 
-def proved(cases: Callable[[], Iterator[Case]], method: str, strength: Strength = Strength.SYMBOLIC_ORDER) -> Check:
+def proved(cases: Callable[[], Iterator[Case]], method: str, strength: Strength = Strength.GENERAL) -> Check:
     """Return a check of a question whose cases prove the answer."""
     return Check(lambda _: cases(), strength, method, proof=True)
 

@@ -1,22 +1,35 @@
-"""What makes a record well formed; one that is not is refused when it is loaded."""
+"""What makes a record well formed and what makes it complete.
+
+One that is not well formed is refused when it is loaded. One that is not complete is a draft: it runs, but is not
+decided.
+"""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import sympy as sp
 
 from semispline.papers.ledger.mutation import mutants
-from semispline.papers.ledger.records import Cause, Check, Claim, Formula, LedgerError, Strength, Verdict
+from semispline.papers.ledger.records import (
+    Cause,
+    Check,
+    Claim,
+    Formula,
+    LedgerError,
+    Strength,
+    Verdict,
+    natural_key,
+)
 from semispline.papers.ledger.search import smallest_assignment
 
-# The paper's own number, or a section, figure or table with a slug.
-_ID = re.compile(r"(def|eq|app)-[A-Za-z0-9]+|cond-\d+\.\d+|(sec|fig|table)-[A-Za-z0-9]+\.[a-z0-9]+([.-][a-z0-9]+)*")
+# It names files and anchors of pages too.
+_ID = re.compile(r"[A-Za-z0-9][A-Za-z0-9._+-]{0,79}(?<!\.)")
 
 
 def check_record(claim: Claim) -> None:
-    """Refuse a record that is not well formed.
+    """Refuse a record that is not well formed, whether it is complete or not.
 
     Raises
     ------
@@ -25,6 +38,29 @@ def check_record(claim: Claim) -> None:
     """
     for problem in _problems(claim):
         raise LedgerError(f"claim {claim.id}: {problem}")
+
+
+def check_complete(claim: Claim) -> None:
+    """Refuse a record that lacks something: only one that is complete is decided.
+
+    Raises
+    ------
+    LedgerError
+        Naming the record, and the first thing that is missing.
+    """
+    for problem in missing(claim):
+        raise LedgerError(f"claim {claim.id}: {problem}; `semispline verify --draft` shows what its checks find")
+
+
+def same_ids(claims: Sequence[Claim]) -> tuple[str, str] | None:
+    """Return two ids that are the same, or so much alike that they sort as one; None where there are none."""
+    seen: dict[tuple[tuple[int, str], ...], str] = {}
+    for claim in claims:
+        key = natural_key(claim.id)
+        if key in seen:
+            return claim.id, seen[key]
+        seen[key] = claim.id
+    return None
 
 
 def check_causes(claims: tuple[Claim, ...], causes: tuple[Cause, ...]) -> None:
@@ -52,16 +88,21 @@ def check_causes(claims: tuple[Claim, ...], causes: tuple[Cause, ...]) -> None:
 
 def _problems(claim: Claim) -> Iterator[str]:
     if not _ID.fullmatch(claim.id):
-        yield f"id {claim.id!r}, expected one such as eq-1, cond-2.1, fig-3.slug or sec-4.slug"
-    if claim.verdict not in list(Verdict):
-        yield f"verdict {claim.verdict!r}, expected one of {', '.join(Verdict)}"
-    if not claim.statement.strip() or not claim.where.strip():
-        yield "statement or place is empty, expected both"
+        yield (
+            f"id {claim.id!r}, expected letters, digits and . - _ +, such as eq-2.3, thm-1, lemma-2, eq-A.1 or "
+            "table-2.weights"
+        )
+    if claim.verdict is not None and claim.verdict not in list(Verdict):
+        yield f"verdict {claim.verdict!r}, expected one of {', '.join(Verdict)}, or none for a draft"
     for formula in claim.formulas + claim.corrected_formulas:
         yield from _formula_problems(formula)
     for part in claim.parts + claim.correction_parts:
         yield from _check_problems(part.check)
-    yield from _missing_evidence(claim)
+    labels = [reading.label for reading in claim.readings]
+    if len(labels) > 1 and not all(labels):
+        yield "several readings, one without a label"
+    if len(set(labels)) < len(labels) and all(labels):
+        yield f"several readings with one label: {labels}, expected different ones"
 
 
 def _check_problems(check: Check) -> Iterator[str]:
@@ -114,8 +155,14 @@ def assumption_instance(formula: Formula) -> dict[sp.Symbol, sp.Rational] | None
     return smallest_assignment(symbols, lambda at: all(test(*(at[s] for s in used)) for used, test in compiled))
 
 
-def _missing_evidence(claim: Claim) -> Iterator[str]:
+def missing(claim: Claim) -> Iterator[str]:
+    """Yield what a record lacks to be decided, or has too much for its verdict."""
     verdict = claim.verdict
+    if not claim.statement.strip() or not claim.where.strip():
+        yield "statement or place is empty, expected both"
+    if verdict is None:
+        yield f"no verdict, expected one of {', '.join(Verdict)}"
+        return
     if verdict in (Verdict.NOT_CHECKABLE, Verdict.DEFINITION):
         if not claim.reason.strip():
             yield f"{verdict} without " + ("a reason" if verdict is Verdict.NOT_CHECKABLE else "what it names")
@@ -128,11 +175,6 @@ def _missing_evidence(claim: Claim) -> Iterator[str]:
         yield f"{verdict} without a check"
     if verdict is Verdict.AMBIGUOUS and len(claim.readings) < 2:
         yield f"ambiguous with {len(claim.readings)} reading, expected at least 2"
-    if len(claim.readings) > 1 and not all(reading.label for reading in claim.readings):
-        yield "several readings, one without a label"
-    labels = [reading.label for reading in claim.readings]
-    if len(set(labels)) < len(labels) and all(labels):
-        yield f"several readings with one label: {labels}, expected different ones"
     if verdict in (Verdict.HOLDS, Verdict.FAILS) and any(reading.condition for reading in claim.readings):
         yield f"{verdict} with a condition, expected none, or holds-if"
     if verdict is Verdict.HOLDS_IF and not all(reading.condition for reading in claim.readings):
@@ -142,10 +184,10 @@ def _missing_evidence(claim: Claim) -> Iterator[str]:
 
 
 def _missing_correction(claim: Claim) -> Iterator[str]:
-    missing = [name for name in ("correction", "counterexample", "consequence") if getattr(claim, name) is None]
-    if missing:
-        yield f"fails without {', '.join(missing)}"
+    if claim.counterexample is None and not any(part.check.search for part in claim.parts):
+        yield "fails without a counterexample, expected a search"
     if claim.correction is None:
+        yield "fails without a correction, expected what is true instead, with its check"
         return
     if not claim.correction_parts:
         yield "fails with a correction that has no proof"

@@ -6,10 +6,12 @@ them.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from enum import IntEnum, StrEnum
-from typing import Any
+from pathlib import Path
+from typing import Any, TypeAlias
 
 import sympy as sp
 
@@ -24,8 +26,12 @@ class CheckFailedError(LedgerError):
     """A check gave no answer, or an answer that its record does not account for."""
 
 
+class EndlessError(CheckFailedError):
+    """What a check runs was stopped since it did not end: no answer, but one that a change may well cause."""
+
+
 class Verdict(StrEnum):
-    """What is known of a claim; see the table in the README of the project's design."""
+    """What is known of a claim."""
 
     HOLDS = "holds"
     HOLDS_IF = "holds-if"
@@ -34,20 +40,42 @@ class Verdict(StrEnum):
     DEFINITION = "definition"
     NOT_CHECKABLE = "not-checkable"
 
+    @property
+    def text(self) -> str:
+        """What it means, and what a record of it has to carry."""
+        return _VERDICT_TEXT[self]
+
+
+_VERDICT_TEXT = {
+    Verdict.HOLDS: "true as printed, under the paper's own assumptions",
+    Verdict.HOLDS_IF: "true only under a condition that the paper does not state and that its own setting (its orders, "
+    "its choice of knots) meets, or, where the condition is one on data that are not printed, may meet; with an exact "
+    "instance on each side of the condition",
+    Verdict.FAILS: "false as printed, or false in the paper's own setting; with what it leaves, the smallest rational "
+    "counterexample, what is right instead and the proof of that, and what the error does, where it can be measured",
+    Verdict.AMBIGUOUS: "can be read in more than one way; each reading is decided",
+    Verdict.DEFINITION: "says what a name means, and cannot be false",
+    Verdict.NOT_CHECKABLE: "data are missing, or nothing in it can be computed; with the reason",
+}
+
 
 class Strength(IntEnum):
     """How strong the evidence is, the strongest first.
 
-    In general: for all that the claim speaks of (orders, degrees, counts, knots, control points), left as symbols.
+    In general: for all that the claim speaks of (orders, degrees, counts, knots, control points), left as symbols. For
+    each of a range: the same, but for some whole numbers (orders, degrees), which are tried one after another. At
+    random points: as many and of such size that a false formula of its degree would have passed with a probability that
+    is stated.
     The last one is no evidence for a claim: what is printed agrees, or something of the kind exists. It is counted
     apart; only where what is printed contradicts itself is anything shown.
     """
 
-    SYMBOLIC_ORDER = 1
-    EACH_ORDER = 2
-    RATIONAL = 3
-    FLOAT = 4
-    CONSISTENT = 5
+    GENERAL = 1
+    EACH = 2
+    RANDOM = 3
+    RATIONAL = 4
+    FLOAT = 5
+    CONSISTENT = 6
 
     @property
     def text(self) -> str:
@@ -56,8 +84,9 @@ class Strength(IntEnum):
 
 
 _STRENGTH_TEXT = {
-    Strength.SYMBOLIC_ORDER: "exact, in general",
-    Strength.EACH_ORDER: "exact, for each order from 2 to 8",
+    Strength.GENERAL: "exact, in general",
+    Strength.EACH: "exact, for each of a range",
+    Strength.RANDOM: "exact, at random points",
     Strength.RATIONAL: "exact rational instances",
     Strength.FLOAT: "floating point with a stated tolerance",
     Strength.CONSISTENT: "consistent with what is printed",
@@ -71,18 +100,20 @@ class Formula:
     Attributes
     ----------
     relation : sympy.Rel
-        Control points are scalar symbols: every relation of the paper holds coordinate by coordinate.
+        A relation between points that holds coordinate by coordinate is one between scalar symbols.
     variables : tuple of sympy.Symbol
         Exactly the free symbols of the relation and the assumptions.
     assumptions : tuple of sympy.Rel
         What the paper presupposes of them. Some rational instance must satisfy them all.
     neighbours : tuple of tuples of sympy.Expr
-        Chains in which an index or a knot may be mistaken for the next one; the mutation check walks along them.
+        Chains in which an index or a letter may be mistaken for the next one; the mutation check walks along them.
     equivalent : mapping
         Text of a mutant -> why that mutant says the same as the formula.
     undecidable : mapping
-        Text of a mutant -> why nothing printed can tell it from the formula; for printed data, such as a knot that no
-        other number of the paper depends on.
+        Text of a mutant -> why nothing printed can tell it from the formula; for printed data, such as a number that
+        nothing else of the paper depends on.
+    equivalent_if : callable, optional
+        Mutant -> why it says the same as the formula, empty where it does not; asked of those that survive.
     """
 
     relation: Any
@@ -91,6 +122,7 @@ class Formula:
     neighbours: tuple[tuple[Any, ...], ...] = ()
     equivalent: Mapping[str, str] = field(default_factory=dict)
     undecidable: Mapping[str, str] = field(default_factory=dict)
+    equivalent_if: Callable[[Any], str] | None = None
 
 
 @dataclass(frozen=True)
@@ -104,7 +136,7 @@ class Case:
     true : bool or None
         None: no answer, which fails the check.
     own : bool
-        Whether the instance belongs to the paper's own setting (its orders, its choice of knots).
+        Whether the instance belongs to the paper's own setting (what it presupposes, its orders or degrees).
     meets : bool
         Whether the instance meets the condition of a claim that holds under one.
     residual : sympy.Expr or None
@@ -134,6 +166,13 @@ class Check:
     probe : callable, optional
         Formula -> exact residuals at a few rational instances. Where two formulas differ in it, their residuals
         differ; the mutation check asks it first, since it is fast.
+    search : callable, optional
+        Formula -> its smallest counterexample, or None where a bounded search finds none. A record that fails needs no
+        counterexample of its own where a check has this.
+    export : callable, optional
+        Formula or None -> the same cases in the same order, as statements that a second system can repeat.
+    believed : str
+        What no system is asked: a sentence of induction, a theorem.
     """
 
     cases: Callable[[Formula | None], Iterable[Case]]
@@ -141,6 +180,9 @@ class Check:
     method: str
     proof: bool = False
     probe: Callable[[Formula], Any] | None = None
+    search: Callable[[Formula], Counterexample | None] | None = None
+    export: Callable[[Formula | None], Iterable[Any]] | None = None
+    believed: str = ""
 
 
 @dataclass(frozen=True)
@@ -201,27 +243,34 @@ class Counterexample:
 
     def __str__(self) -> str:
         where = ", ".join(f"{name} = {value}" for name, value in self.values)
-        also = f"; in the paper's own setting {self.own}" if self.own else ""
+        # A reader knows the paper's own setting best.
+        own = f"in the paper's own setting {self.own}; the smallest of all: " if self.own else ""
         more = f"; {self.also}" if self.also else ""
-        return f"{where}: printed {self.printed}, true {self.true}{also}{more}"
+        return f"{own}{where}: printed {self.printed}, true {self.true}{more}"
 
 
 @dataclass(frozen=True)
 class Consequence:
-    """What an error does to a surface, measured.
+    """What an error does, measured: what is measured, and on what, is the paper's affair.
 
     Attributes
     ----------
     text : str
         On what, and how it was measured.
     measured : mapping
-        Name (with unit) -> number.
+        Name (with unit) -> number. A whole number is a count.
+    corrected : mapping
+        The same with the corrected formula, where that was measured too.
+    rounding : float
+        A smaller number is nothing but rounding.
     judges : mapping
         Name of a judge -> what it says.
     """
 
     text: str
     measured: Mapping[str, float]
+    corrected: Mapping[str, float] = field(default_factory=dict)
+    rounding: float = 0.0
     judges: Mapping[str, str] = field(default_factory=dict)
 
 
@@ -248,37 +297,60 @@ class Cause:
 
 
 @dataclass(frozen=True)
+class Print:
+    """What is printed of a claim as LaTeX or as lines of code, and what was read of it: its formulas are made of that.
+
+    Attributes
+    ----------
+    text : str
+        As printed.
+    echo : str
+        What was read of LaTeX, with every product and bracket; empty where nothing was.
+    by_hand : str
+        Why and where it was not read: then the formulas are transcribed by hand. Or which words of code were replaced.
+    """
+
+    text: str
+    echo: str = ""
+    by_hand: str = ""
+
+
+@dataclass(frozen=True)
 class Claim:
     """One record.
 
     Attributes
     ----------
     id : str
-        The paper's own number, else `sec-N.slug`.
+        As the paper numbers it: eq-2.3, thm-1, lemma-2, alg-1, eq-A.1, table-2; else one of your own.
     where : str
         Where in the paper.
     statement : str
         What is claimed, in our own words.
-    verdict : Verdict
-        As recorded; every run decides anew and compares.
+    verdict : Verdict or None
+        As recorded; every run decides anew and compares. None: a draft, which runs but is not decided.
     readings : tuple of Reading
         One, or more where the text can be read in more than one way; none for a definition and where it is not
         checkable.
     correction : Correction, optional
-    counterexample, consequence : callables, optional
-        Search and measurement, run with the check.
+    counterexample : callable, optional
+        Search, run with the check; where there is none the searches of the checks are run.
+    consequence : callable, optional
+        Measurement of what an error does, where it does something that can be measured.
     reason : str
         Why it is not checkable, or what a definition gives a name to.
     remark : str
         Special cases, possible misreads of the scan.
     cause : str
         Key of the cause of what is wrong in it, where something is.
+    printed : Print, optional
+        What a report shows beside the formulas; where there is none, lines of code in them.
     """
 
     id: str
     where: str
     statement: str
-    verdict: Verdict
+    verdict: Verdict | None
     readings: tuple[Reading, ...] = ()
     correction: Correction | None = None
     counterexample: Callable[[], Counterexample | None] | None = None
@@ -286,6 +358,7 @@ class Claim:
     reason: str = ""
     remark: str = ""
     cause: str = ""
+    printed: Print | None = None
 
     @property
     def formulas(self) -> tuple[Formula, ...]:
@@ -309,6 +382,19 @@ class Claim:
 
 
 @dataclass(frozen=True)
+class Places:
+    """Where the arguments of a function stand: as indices below and above, and between brackets; texts as they are."""
+
+    lower: tuple[Any, ...] = ()
+    upper: tuple[Any, ...] = ()
+    arguments: tuple[Any, ...] = ()
+
+
+# Name of a function -> where its arguments stand; None for the usual brackets.
+Notation: TypeAlias = Mapping[str, Callable[[tuple[Any, ...]], Places | None]]
+
+
+@dataclass(frozen=True)
 class Paper:
     """A loaded paper.
 
@@ -321,6 +407,10 @@ class Paper:
     claims : tuple of Claim
     causes : tuple of Cause
         In the order in which a report tells them; none where the paper's records name none.
+    folder : Path
+        Where its files are.
+    notation : mapping
+        Name of a function -> where its arguments stand in print.
     """
 
     name: str
@@ -328,6 +418,8 @@ class Paper:
     legend: str
     claims: tuple[Claim, ...]
     causes: tuple[Cause, ...] = ()
+    folder: Path = Path()
+    notation: Notation = field(default_factory=dict)
 
     def claim(self, identifier: str) -> Claim:
         """Return the record with this id."""
@@ -335,6 +427,18 @@ class Paper:
             if claim.id == identifier:
                 return claim
         raise LedgerError(f"claim: found {identifier!r}, expected one of {', '.join(c.id for c in self.claims)}")
+
+
+def natural_key(identifier: str) -> tuple[tuple[int, str], ...]:
+    """Return what ids, and names of files, sort by: numbers by their size, letters whether small or large.
+
+    Examples
+    --------
+    >>> sorted(["eq-2.10", "eq-A.1", "eq-2.9", "lemma-1"], key=natural_key)
+    ['eq-2.9', 'eq-2.10', 'eq-A.1', 'lemma-1']
+    """
+    parts = re.findall(r"\d+|\D+", identifier.casefold())
+    return tuple((int(part), "") if part.isdecimal() else (-1, part) for part in parts)
 
 
 def decided_cases(check: Check, formula: Formula | None) -> Iterator[Case]:

@@ -11,9 +11,13 @@ from contextlib import closing, contextmanager
 from dataclasses import dataclass
 from functools import partial
 from math import isfinite
-from typing import Any, TypeAlias
+from pathlib import Path
+from typing import Any, Protocol, TypeAlias, TypeVar
 
-from semispline.papers.ledger.loading import collected, load_paper
+from sympy import preorder_traversal
+
+from semispline.papers.ledger.loading import RECORDS, claims_of, load_paper, paper_folder, record_files
+from semispline.papers.ledger.mistakes import found_text, place_of_error, place_of_text
 from semispline.papers.ledger.mutation import MutationResult, try_mutants
 from semispline.papers.ledger.records import (
     Case,
@@ -29,6 +33,7 @@ from semispline.papers.ledger.records import (
     Verdict,
     decided_cases,
 )
+from semispline.solver.errors import ComputationError, InputError
 from semispline.solver.workers import in_pool
 
 
@@ -82,11 +87,14 @@ class Decision:
     Attributes
     ----------
     id : str
-    recorded : Verdict
+    recorded : Verdict or None
+        None for a draft, which is never `ok`.
     verdict : Verdict or None
         None where a check gave no answer.
     problem : str
-        Why there is no verdict, or what the record lacks; empty where all is well.
+        Why there is no verdict; empty where all is well.
+    mistake : bool
+        There is none since something in the files of the paper is wrong; `problem` begins with the place.
     vacuous : bool
         Some check had no instance.
     readings : tuple of ReadingDecision
@@ -100,7 +108,7 @@ class Decision:
     """
 
     id: str
-    recorded: Verdict
+    recorded: Verdict | None
     verdict: Verdict | None
     problem: str
     vacuous: bool
@@ -110,11 +118,13 @@ class Decision:
     consequence: Consequence | None
     mutation: MutationResult
     seconds: float
+    mistake: bool = False
 
     @property
     def ok(self) -> bool:
         """The verdict is the recorded one and nothing is missing."""
-        return self.verdict is self.recorded and not self.problem and not self.vacuous and not self.mutation.survivors
+        answered = self.verdict is not None and not self.problem and not self.vacuous
+        return answered and self.verdict is self.recorded and not self.mutation.survivors
 
     @property
     def proved(self) -> bool:
@@ -136,35 +146,35 @@ class VacuousError(CheckFailedError):
     """A check without a single instance."""
 
 
-class _OutOfTimeError(BaseException):
+class OutOfTimeError(BaseException):
     """Raised in the middle of a check by its limit: no `except Exception` on the way out may take it for an answer."""
 
 
+# Where a record of no file stands.
+_NO_FOLDER = Path("/nowhere")
+# What is no mistake of the one who wrote a check, wherever it comes from.
+_NOT_OF_FILES = (ComputationError, MemoryError, RecursionError)
 # Of processor time, in seconds; no check of a paper that ships takes a fiftieth of this.
 TIME_LIMIT = 600.0
 
 
-def decide(claim: Claim, time_limit: float = TIME_LIMIT) -> Decision:
-    """Run every check of one record.
+def decide(claim: Claim, folder: Path = _NO_FOLDER, time_limit: float = TIME_LIMIT) -> Decision:
+    """Run every check of one record, which stands in a folder.
 
     A check without an answer does not raise: it leaves a decision without a verdict, which is never `ok`. So does one
     that takes more than `time_limit` seconds of processor time, on systems with an interval timer (Linux, macOS).
     """
     started = time.perf_counter()
     readings: tuple[ReadingDecision, ...] = ()
-    verdict, problem, vacuous = None, "", False
+    verdict, problem, vacuous, mistake = None, "", False, False
     counterexample, correction, consequence = "", None, None
     mutation = MutationResult()
     known: _Known = {}
     try:
-        with _limited(time_limit):
+        with limited(time_limit):
             readings = tuple(_decide_reading(reading, known) for reading in claim.readings)
             verdict = _combined(readings) if readings else _without_check(claim)
-            if claim.counterexample:
-                found = claim.counterexample()
-                if found is None or not found.values:
-                    raise CheckFailedError("the search found no counterexample, expected one with its values")
-                counterexample = str(found)
+            counterexample = _counterexample(claim, verdict, known)
             if claim.correction:
                 correction = _decide_reading(Reading(claim.correction.parts), known)
                 if correction.verdict is not Verdict.HOLDS:
@@ -175,12 +185,17 @@ def decide(claim: Claim, time_limit: float = TIME_LIMIT) -> Decision:
                 consequence = claim.consequence()
             _require_evidence(verdict, readings, counterexample, consequence)
             mutation = _mutation(claim, known)
-    except _OutOfTimeError:
+    except OutOfTimeError:
         verdict, problem = None, f"undecided: out of time, no answer within {time_limit:g} s of processor time"
     except VacuousError as error:
         verdict, problem, vacuous = None, str(error), True
+    except CheckFailedError as error:
+        verdict, problem = None, str(error)
     except Exception as error:  # a check may fail in any way; none may pass for it
-        verdict, problem = None, f"{type(error).__name__}: {error}"
+        where = place_of_error(error, folder)
+        mistake = isinstance(error, InputError) or bool(where and not isinstance(error, _NOT_OF_FILES))
+        where = where or place_of_text(claim.id, folder, *RECORDS)
+        verdict, problem = None, f"{where}: {found_text(error)}" if where else found_text(error)
     return Decision(
         claim.id,
         claim.verdict,
@@ -193,7 +208,26 @@ def decide(claim: Claim, time_limit: float = TIME_LIMIT) -> Decision:
         consequence,
         mutation,
         time.perf_counter() - started,
+        mistake,
     )
+
+
+def _counterexample(claim: Claim, verdict: Verdict, known: _Known) -> str:
+    """Search for a counterexample as the record says, or where it says nothing and fails as its checks say."""
+    if claim.counterexample:
+        found = claim.counterexample()
+        if found is None or not found.values:
+            raise CheckFailedError("the search found no counterexample, expected one with its values")
+        return str(found)
+    if verdict is not Verdict.FAILS:
+        return ""
+    for part in claim.parts:
+        wrong = any(not case.true for case in known[part.check, part.formula])
+        if wrong and part.formula is not None and part.check.search:
+            found = part.check.search(part.formula)
+            if found is not None:
+                return str(found)
+    raise CheckFailedError("fails, and the searches of its checks found no counterexample, expected one")
 
 
 def _require_evidence(
@@ -216,8 +250,8 @@ def _require_evidence(
 
 
 @contextmanager
-def _limited(seconds: float) -> Iterator[None]:
-    """Raise `_OutOfTimeError` in the body when this process has used some seconds of processor time.
+def limited(seconds: float) -> Iterator[None]:
+    """Raise `OutOfTimeError` in the body when this process has used some seconds of processor time.
 
     Time that passes while the process waits for its turn does not count, so that a busy machine decides nothing; what
     the system does for it counts (ITIMER_PROF, not ITIMER_VIRTUAL), so that a check that only fills memory ends too.
@@ -231,7 +265,7 @@ def _limited(seconds: float) -> Iterator[None]:
     def stop(_number: int, _frame: object) -> None:
         nonlocal met
         met = True
-        raise _OutOfTimeError
+        raise OutOfTimeError
 
     before = signal.signal(signal.SIGPROF, stop)
     signal.setitimer(signal.ITIMER_PROF, seconds)
@@ -242,7 +276,7 @@ def _limited(seconds: float) -> Iterator[None]:
         signal.signal(signal.SIGPROF, before)
         # Where something took the error all the same, neither an answer nor an error that came after it counts.
         if met:
-            raise _OutOfTimeError
+            raise OutOfTimeError
 
 
 # What the checks of one record found: readings may share a part, and mutants are compared with it.
@@ -266,7 +300,7 @@ def _decide_reading(reading: Reading, known: _Known) -> ReadingDecision:
     return ReadingDecision(
         reading.label,
         reading.condition,
-        _verdict(cases, reading.condition),
+        verdict_of_cases(cases, reading.condition),
         max(part.check.strength for part in reading.parts),
         all(part.check.proof for part in reading.parts),
         "; ".join(dict.fromkeys(part.check.method for part in reading.parts)),
@@ -277,7 +311,7 @@ def _decide_reading(reading: Reading, known: _Known) -> ReadingDecision:
     )
 
 
-def _verdict(cases: list[Case], condition: str) -> Verdict:
+def verdict_of_cases(cases: list[Case], condition: str) -> Verdict:
     """Decide one reading: false in the paper's own setting is `fails`, false only outside it needs a condition."""
     if all(case.true for case in cases):
         return Verdict.HOLDS
@@ -320,6 +354,11 @@ class Ledger:
     def ok(self) -> bool:
         """Every verdict is the recorded one, nothing vacuous, no mutant survived without a reason."""
         return all(decision.ok for decision in self.decisions)
+
+    @property
+    def mistaken(self) -> tuple[str, ...]:
+        """The records of which something in the files of the paper is wrong."""
+        return tuple(decision.id for decision in self.decisions if decision.mistake)
 
     @property
     def unanswered(self) -> tuple[str, ...]:
@@ -389,25 +428,52 @@ def verify(
         A process was killed, or needed more than its limits.
     """
     paper = load_paper(name)
-    decisions: dict[str, Decision] = {}
-    with closing(_decisions(paper, workers)) as found:
-        for decision in found:
-            decisions[decision.id] = decision
+    return Ledger(paper, of_each(decide, paper, workers, progress))
+
+
+_T = TypeVar("_T", bound="_OfClaim")
+
+
+class _OfClaim(Protocol):
+    """What is found of one record."""
+
+    @property
+    def id(self) -> str:
+        """Of the record."""
+
+
+def of_each(
+    find: Callable[[Claim, Path], _T], paper: Paper, workers: int, progress: Callable[[_T], None] | None
+) -> tuple[_T, ...]:
+    """Return what a function finds of each record of a paper, in the order of the records.
+
+    The function must be one of a module: it travels to the workers by its name.
+    """
+    found: dict[str, _T] = {}
+    with closing(_found(find, paper, workers)) as results:
+        for result in results:
+            found[result.id] = result
             if progress:
-                progress(decision)
-    return Ledger(paper, tuple(decisions[claim.id] for claim in paper.claims))
+                progress(result)
+    return tuple(found[claim.id] for claim in paper.claims)
 
 
-def _decisions(paper: Paper, workers: int) -> Generator[Decision, None, None]:
+def _found(find: Callable[[Claim, Path], _T], paper: Paper, workers: int) -> Generator[_T, None, None]:
     if workers == 1:
-        yield from map(decide, paper.claims)
+        yield from (find(claim, paper.folder) for claim in paper.claims)
         return
-    # Neighbours share oracles, which each worker derives for itself: so they go to one worker.
-    ids = [claim.id for claim in paper.claims]
-    tasks = [partial(_decide_by_id, paper.name, ids[start : start + _GROUP]) for start in range(0, len(ids), _GROUP)]
+    # Neighbours share oracles, which each worker derives for itself: so they go to one worker. The largest come first.
+    groups = [
+        (file, claims[start : start + _GROUP])
+        for file in record_files(paper.name)
+        for claims in [claims_of(paper.name, file)]
+        for start in range(0, len(claims), _GROUP)
+    ]
+    groups.sort(key=lambda group: -sum(map(_size, group[1])))
+    tasks = [partial(_found_of_ids, find, paper.name, file, [c.id for c in claims]) for file, claims in groups]
     with closing(in_pool(tasks, workers, 2 * _GROUP * TIME_LIMIT, _MEGABYTES)) as results:
-        for _, decided in results:
-            yield from decided
+        for _, found in results:
+            yield from found
 
 
 _GROUP = 6
@@ -415,7 +481,14 @@ _GROUP = 6
 _MEGABYTES = 4096
 
 
-def _decide_by_id(name: str, identifiers: list[str]) -> list[Decision]:
-    """Decide some records in a worker, which imports the paper once: checks are functions and do not travel."""
-    paper = collected(name)
-    return [decide(paper.claim(identifier)) for identifier in identifiers]
+def _size(claim: Claim) -> int:
+    """Return how much there is to change in the formulas of a record: what mutants take goes with its square."""
+    formulas = claim.formulas + claim.corrected_formulas
+    return sum(sum(1 for _ in preorder_traversal(formula.relation)) ** 2 for formula in formulas)
+
+
+def _found_of_ids(find: Callable[[Claim, Path], _T], name: str, file: str, identifiers: list[str]) -> list[_T]:
+    """Work on some records in a worker, which imports their file: checks are functions and do not travel."""
+    folder = paper_folder(name)
+    claims = {claim.id: claim for claim in claims_of(name, file)}
+    return [find(claims[identifier], folder) for identifier in identifiers]

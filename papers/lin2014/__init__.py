@@ -15,5 +15,6 @@ derivatives, E_l the least energy from value d_0 and slope d_1 to zero over a le
 energy between plates a gap d apart, their exits at angles theta, phi to the chord, c_between the cosine of theta - phi.
 J_0, J_1 and J are jumps at a seam. In Fig. 3 x is the argument of the Bernstein polynomials. The made pair is
 `examples/made-pair.json`: two bicubic bases of our own, extent 8, with 3 and 4 inner knots along their contacts. What
-is below 1e-9 (degrees, fractions of the curvature) is rounding.
+is below 1e-9 (degrees, fractions of the curvature) is rounding. `sentences.py`, beside this file, names the records
+that decide each sentence of the paper.
 """

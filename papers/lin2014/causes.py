@@ -22,8 +22,9 @@ CAUSES = (
     Cause(
         "linear-system",
         "The linear system (14)",
-        "Its entries are products of integrals where integrals of products are needed. Those of the unknown control "
-        "points are zero, so that as printed the system says nothing.",
+        "Its entries are products of integrals where integrals of products are needed. For the unknown control "
+        "points a_ij and c_ij are zero, so that A has rank 1 at most, and with one letter as it is printed (14) says "
+        "0 = 0.",
     ),
     Cause(
         "indices-for-cubics",

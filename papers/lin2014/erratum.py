@@ -10,7 +10,9 @@ from typing import Any
 from semispline.papers.ledger import Ledger, LedgerError, Verdict
 from semispline.papers.lin2014 import erratum_strip as strip
 from semispline.papers.lin2014 import printed as pr
+from semispline.papers.lin2014.certificates.export import written_as_a_whole
 from semispline.papers.lin2014.claims.section_3_conditions import TRUE_3_1, TRUE_3_2
+from semispline.papers.lin2014.notation import NOTATION
 from semispline.papers.lin2014.printed import CUBIC
 from semispline.papers.report import Erratum, latex
 
@@ -46,21 +48,26 @@ def _set(formula: str) -> str:
 
 def _of_the_ledger(ledger: Ledger) -> dict[str, Any]:
     counts = ledger.counts()
+    others = sum(counts[verdict] for verdict in (Verdict.HOLDS_IF, Verdict.FAILS, Verdict.AMBIGUOUS))
+    caused = sum(len(decisions) for _, decisions in ledger.causes())
     changed = [d.id for d in ledger.decisions if d.verdict is not d.recorded]
     return {
         "title": ledger.paper.title,
         "changed": f"\n**Not as recorded in this run: {', '.join(changed)}.**\n" if changed else "",
         "printed": counts["printed"],
         "decided": counts["decided"],
+        "repeated": len(written_as_a_whole(ledger.paper)),
         "holds": counts[Verdict.HOLDS],
-        "holds_if": counts[Verdict.HOLDS_IF],
+        "others": others,
+        "caused": caused,
+        "alone": others - caused,
         "consistent": counts["consistent"],
     }
 
 
 def _of_the_strip() -> dict[str, Any]:
     def bicubic(relation: Any) -> str:
-        return f"$`{latex(relation.subs({pr.k: CUBIC, pr.k_r: CUBIC, pr.k_s: CUBIC}))}`$"
+        return f"$`{latex(relation.subs({pr.k: CUBIC, pr.k_r: CUBIC, pr.k_s: CUBIC}), NOTATION)}`$"
 
     return {
         "printed_ratio": strip.curvature_ratio("printed"),
@@ -84,7 +91,11 @@ def _measures(ledger: Ledger) -> dict[str, Any]:
     few = _measured(ledger, "sec-3.fewer-better")
     none, one = (next(v for key, v in few.items() if f"C2, {m} middle curves" in key) for m in (0, 1))
     turn = _measured(ledger, "sec-A.17-gives-2.1")["turn of the normal across the contact [degrees]"]
-    share = _measured(ledger, "sec-4.facing")["share of exit angles below 90 degrees, 1 middle curves"]
+    facing = _measured(ledger, "sec-4.facing")
+    spared = _measured(ledger, "sec-A.special-choice")
+    numbers, functions = ([x for name, x in spared.items() if ("functions" in name) is free] for free in (False, True))
+    share = facing["share of exit angles below 90 degrees, 1 middle curves"]
+    crease = facing["crease at alpha = 0 between plates at 74 and 37 degrees [degrees]"]
     gap = _measured(ledger, "fig-10.seam")["gap at the seam, 1 middle curves [radius of the first cylinder]"]
     return {
         "jump": f"{100 * _measured(ledger, 'cond-3.1')[jump]:.0f}",
@@ -94,6 +105,9 @@ def _measures(ledger: Ledger) -> dict[str, Any]:
         "least": f"{third['least energy']:.3g}",
         "turn": f"{turn:.0f}",
         "share": f"{100 * share:.0f}",
+        "crease": f"{crease:.0f}",
+        "spared": f"{max(numbers):.1g}",
+        "spared_by_functions": f"{min(functions):.0f} to {max(functions):.0f}",
         "none": f"{none:.3g}",
         "one": f"{one:.3g}",
         "gap": f"{gap:.1g}",
@@ -102,11 +116,15 @@ def _measures(ledger: Ledger) -> dict[str, Any]:
 
 
 def _saving(counts: Mapping[str, float]) -> list[str]:
-    """Return the rows of the table of control points; Figs. 8 and 9 have the same bases."""
-    rows = []
-    for figure, name in ((5, "5"), (6, "6"), (8, "8, 9"), (10, "10")):
-        before = f"Fig. {figure}, "
-        converted = sorted({int(n) for key, n in counts.items() if key.startswith(f"{before}converted")})
-        last = str(converted[0]) if len(converted) == 1 else f"{converted[0]} to {converted[-1]}"
-        rows.append(f"| {name} | {counts[f'{before}own knots']} | {counts[f'{before}knots of both']} | {last} |")
-    return rows
+    """Return the rows of the table of control points, one for all figures with the same counts."""
+    figures: dict[str, list[str]] = {}
+    for figure in ("5", "6", "8", "9", "10"):
+        cells = [_range(counts, f"Fig. {figure}, {what}") for what in ("own knots", "knots of both", "converted")]
+        figures.setdefault(" | ".join(cells), []).append(figure)
+    return [f"| {', '.join(names)} | {cells} |" for cells, names in figures.items()]
+
+
+def _range(counts: Mapping[str, float], beginning: str) -> str:
+    """Return the least and the largest of some counts, by how the rule for the middle curve is read."""
+    found = sorted({int(number) for name, number in counts.items() if name.startswith(beginning)})
+    return str(found[0]) if len(found) == 1 else f"{found[0]} to {found[-1]}"

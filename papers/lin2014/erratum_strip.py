@@ -105,12 +105,12 @@ def picture() -> str:
     )
     for n, (colour, words) in enumerate(legend):
         x = 40 + 165 * n
-        parts.append(f"<line x1='{x}' x2='{x + 22}' y1='262' y2='262' stroke='{colour}' stroke-width='3'/>")
-        parts.append(f"<text x='{x + 28}' y='266'>{words}</text>")
+        parts.append(f"<line x1='{x}' x2='{x + 22}' y1='238' y2='238' stroke='{colour}' stroke-width='3'/>")
+        parts.append(f"<text x='{x + 28}' y='242'>{words}</text>")
     title = "A strip of a parabolic cylinder, blended back by three versions of (3.1)"
     return (
-        f"<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 700 276' role='img' aria-label='{title}' "
-        "font-family='sans-serif' font-size='12'><rect width='700' height='276' fill='white'/>"
+        f"<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 700 252' role='img' aria-label='{title}' "
+        "font-family='sans-serif' font-size='12'><rect width='700' height='252' fill='white'/>"
         f"{''.join(parts)}</svg>\n"
     )
 
@@ -139,7 +139,7 @@ class _Panel:
 
     def __init__(self, start: int, end: int, x: tuple[float, float], y: tuple[float, float]) -> None:
         self.start, self.end, self.x, self.y = start, end, x, y
-        self.top, self.bottom = 24, 222
+        self.top, self.bottom = 24, 198
 
     def _across(self, x: float) -> float:
         return self.start + (x - self.x[0]) / (self.x[1] - self.x[0]) * (self.end - self.start)

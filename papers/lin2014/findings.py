@@ -99,7 +99,7 @@ def _as_printed(comparisons: Comparisons) -> Iterator[Finding]:
     ratio = {e: found[e][1].energy / true[e][1].energy for e in found if e in true}
     kept = f" The bases of {_names(straight)} are straight across the contact, where the error shows in C2 alone."
     yield Finding(
-        f"Run as printed, it misses the promised contact in {_of(missed, found)} examples",
+        f"Run as printed on our stand-ins, it misses the promised contact in {_of(missed, found)} examples",
         f"The printed third rows, (3.1) and (3.2), leave relative jumps of normal curvature up to {jump[worst]:.2g} "
         f"({_name(worst)}); the energy is {_range(ratio.values(), '.3g')} times that with derived rows."
         f"{kept if straight else ''}",
@@ -194,7 +194,8 @@ def _hartmann(comparisons: Comparisons) -> Iterator[Finding]:
     yield Finding(
         f"Hartmann's blend [17] folds in {_of(back, inside)} examples only because its pieces lie inside the bases",
         f"With the bases continued past their contacts it is G2 without a fold in {_of(good, fair)} examples, at "
-        f"{_range(ratio, '.3g')} times our energy, and no spline. Fig. 7 shows the unfair variant.",
+        f"{_range(ratio, '.3g')} times our energy, and no spline. Fig. 7 shows the variant whose pieces "
+        "lie inside the bases.",
     )
 
 

@@ -1,3 +1,6 @@
+from .coq_bounds import least_over_a_box as least_over_a_box
+from .coq_bounds import minimiser as minimiser
+from .coq_bounds import rescaled as rescaled
 from .definition import Lets as Lets
 from .definition import basis_jets as basis_jets
 from .definition import basis_number as basis_number
@@ -5,6 +8,7 @@ from .definition import curve_jet as curve_jet
 from .definition import derivative as derivative
 from .definition import end_jets as end_jets
 from .definition import integral as integral
+from .definition import integral_text as integral_text
 from .definition import integrals as integrals
 from .definition import span_of as span_of
 from .definition import span_value as span_value
@@ -15,12 +19,16 @@ from .exporting import contained as contained
 from .exporting import different as different
 from .exporting import identity as identity
 from .exporting import knots as knots
+from .exporting import matrices as matrices
 from .exporting import minimum as minimum
 from .exporting import not_zero as not_zero
+from .exporting import number as number
 from .exporting import positive as positive
 from .exporting import rank as rank
+from .exporting import series as series
 from .files import require_folder as require_folder
 from .files import write_certificates as write_certificates
+from .kernel import kernel_checked as kernel_checked
 from .rechecking import Recheck as Recheck
 from .rechecking import exported as exported
 from .rechecking import rechecked as rechecked
@@ -29,6 +37,8 @@ from .statements import Export as Export
 from .statements import Identity as Identity
 from .statements import Statement as Statement
 from .statements import Term as Term
+from .statements import Theory as Theory
+from .texts import NotExpressibleError as NotExpressibleError
 from .texts import Text as Text
 from .texts import as_text as as_text
 from .texts import lets as lets

@@ -16,6 +16,10 @@ class TextError(InputError):
     """An expression that is not one of names, whole numbers, + - * / ^ and brackets."""
 
 
+# What a number may be a value of; `real_root(p, k)` is the k-th real root, from 1, of a polynomial in x_.
+FUNCTIONS = ("sqrt", "sqrtn", "exp", "log", "sin", "cos", "tan", "asin", "acos", "atan", "real_root")
+
+
 @cache
 def parsed(text: str) -> ast.expr:
     """Return the tree of an expression.
@@ -30,6 +34,10 @@ def parsed(text: str) -> ast.expr:
     except SyntaxError:
         raise TextError(f"expression: found {text!r}, expected names, whole numbers, + - * / ^ and brackets") from None
     for node in ast.walk(tree):
+        if isinstance(node, ast.Call) and not node.keywords and isinstance(node.func, ast.Name):
+            if node.func.id in FUNCTIONS:
+                continue
+            raise TextError(f"expression: found {node.func.id}, expected one of {', '.join(FUNCTIONS)}")
         whole = isinstance(node, ast.Constant) and isinstance(node.value, int)
         if not whole and not isinstance(
             node, ast.Name | ast.Load | ast.BinOp | ast.UnaryOp | ast.operator | ast.USub | ast.UAdd
@@ -74,7 +82,7 @@ _OPERATORS: dict[type[ast.operator], Callable[[Any, Any], Any]] = {
 
 def names(text: str) -> set[str]:
     """Return the names in an expression."""
-    return {node.id for node in ast.walk(parsed(text)) if isinstance(node, ast.Name)}
+    return {node.id for node in ast.walk(parsed(text)) if isinstance(node, ast.Name)} - set(FUNCTIONS)
 
 
 def divisors(text: str) -> Iterator[str]:

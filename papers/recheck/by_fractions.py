@@ -7,8 +7,25 @@ from fractions import Fraction
 from typing import Any
 
 from semispline.papers.recheck.arithmetic import instance, satisfied, value
-from semispline.papers.recheck.statements import Contained, Identity, Knots, Minimum, Positive, Rank, Statement, Term
+from semispline.papers.recheck.by_intervals import enclosed
+from semispline.papers.recheck.by_series import series_of
+from semispline.papers.recheck.rooted import equal_with_roots
+from semispline.papers.recheck.statements import (
+    Coefficient,
+    Contained,
+    Identity,
+    Knots,
+    Matrices,
+    Minimum,
+    Number,
+    Positive,
+    Rank,
+    Statement,
+    Term,
+)
 
+# No interval of a number is wider.
+_WIDTH = Fraction(1, 10**40)
 _Rows = list[list[Fraction]]
 
 
@@ -21,6 +38,8 @@ def agrees(statement: Statement) -> bool:
 
 
 def _identity(statement: Identity, at: dict[str, Fraction]) -> bool:
+    if statement.roots:
+        return equal_with_roots(statement.left, statement.right, statement.roots, at) == statement.equal
     equal = value(statement.left, at) == value(statement.right, at)
     return equal == statement.equal and all(satisfied(condition, at) for condition in statement.conditions)
 
@@ -109,6 +128,89 @@ def _fact(statement: Knots) -> bool:
     return knots == [Fraction(x) for x in statement.other]
 
 
+def _matrices(statement: Matrices, at: dict[str, Fraction]) -> bool:
+    named: dict[str, Any] = {
+        name: Square([[value(entry, at) for entry in row] for row in rows]) for name, rows in statement.matrices
+    }
+    left, right = (value(side, {**at, **named}) for side in (statement.left, statement.right))
+    return bool(left == right) == statement.equal
+
+
+class Square:
+    """A matrix of fractions, square where it has a negative power."""
+
+    def __init__(self, rows: _Rows) -> None:
+        self.rows = rows
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Square) and self.rows == other.rows
+
+    __hash__ = None  # type: ignore[assignment]  # rows may change
+
+    def __add__(self, other: Square) -> Square:
+        pairs = zip(self.rows, other.rows, strict=True)
+        return Square([[a + b for a, b in zip(one, two, strict=True)] for one, two in pairs])
+
+    def __neg__(self) -> Square:
+        return self * Fraction(-1)
+
+    def __sub__(self, other: Square) -> Square:
+        return self + (-other)
+
+    def __mul__(self, other: Square | Fraction) -> Square:
+        if isinstance(other, Square):
+            return Square(_product(self.rows, other.rows))
+        return Square([[a * other for a in row] for row in self.rows])
+
+    def __rmul__(self, number: Fraction) -> Square:
+        return self * number
+
+    def __pow__(self, power: int) -> Square:
+        size = len(self.rows)
+        product = Square([[Fraction(int(i == j)) for j in range(size)] for i in range(size)])
+        base = self if power >= 0 else Square(_inverse(self.rows))
+        for _ in range(abs(power)):
+            product = product * base
+        return product
+
+
+def _inverse(rows: _Rows) -> _Rows:
+    """Return the inverse by elimination.
+
+    Raises
+    ------
+    ZeroDivisionError
+        There is none.
+    """
+    size = len(rows)
+    work = [[*row, *(Fraction(int(i == j)) for j in range(size))] for i, row in enumerate(rows)]
+    for n in range(size):
+        pivot = next((r for r in range(n, size) if work[r][n] != 0), None)
+        if pivot is None:
+            raise ZeroDivisionError("a matrix without an inverse")
+        work[n], work[pivot] = work[pivot], work[n]
+        work[n] = [a / work[n][n] for a in work[n]]
+        for r in range(size):
+            if r != n:
+                work[r] = [a - work[r][n] * b for a, b in zip(work[r], work[n], strict=True)]
+    return [row[size:] for row in work]
+
+
+def _number(statement: Number, _: dict[str, Fraction]) -> bool:
+    found = enclosed(statement.left)
+    low, high = Fraction(statement.low), Fraction(statement.high)
+    if statement.inside:
+        # At an end the interval reaches a little beyond it.
+        return low - _WIDTH <= found.low and found.high <= high + _WIDTH
+    return found.high < low or found.low > high
+
+
+def _coefficient(statement: Coefficient, at: dict[str, Fraction]) -> bool:
+    count = statement.power + 1
+    one, other = (series_of(side, statement.variable, count, at)[-1] for side in (statement.left, statement.right))
+    return (one == other) == statement.equal
+
+
 def _numbers(rows: Sequence[Sequence[str]]) -> _Rows:
     return [[Fraction(entry) for entry in row] for row in rows]
 
@@ -142,4 +244,7 @@ _BY_FORM: dict[str, Callable[[Any, dict[str, Fraction]], bool]] = {
     "contained": _contained,
     "minimum": _minimum,
     "knots": _knots,
+    "matrices": _matrices,
+    "number": _number,
+    "coefficient": _coefficient,
 }

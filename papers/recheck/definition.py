@@ -6,7 +6,7 @@ shared with `derivations`: these are the witnesses for what is derived there.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cache
@@ -200,9 +200,38 @@ def integrals(
     order: int, one: tuple[Sequence[Fraction], int, int], other: tuple[Sequence[Fraction], int, int] | None = None
 ) -> list[Fraction]:
     """Return `integral` span by span."""
+    return [
+        sum((c * (end ** (n + 1) - start ** (n + 1)) / (n + 1) for n, c in enumerate(piece)), Fraction(0))
+        for start, end, piece in _pieces(order, one, other)
+    ]
+
+
+def integral_text(
+    order: int, one: tuple[Sequence[Fraction], int, int], other: tuple[Sequence[Fraction], int, int] | None = None
+) -> Text:
+    """Return `integral` as it stands: for each power of x in each span, what its primitive gains there.
+
+    Examples
+    --------
+    >>> hat = [Fraction(t) for t in (0, 0, 2, 2)]
+    >>> str(integral_text(2, (hat, 0, 0)))
+    '1*2 + (-1/2)*2^2/2'
+    """
+    terms = []
+    for start, end, piece in _pieces(order, one, other):
+        for n, c in enumerate(piece, start=1):
+            gain = as_text(end) ** n - as_text(start) ** n if start else as_text(end) ** n
+            if c:
+                terms.append(as_text(c) * gain / n if n > 1 else as_text(c) * gain)
+    return total(terms)
+
+
+def _pieces(
+    order: int, one: tuple[Sequence[Fraction], int, int], other: tuple[Sequence[Fraction], int, int] | None
+) -> Iterator[tuple[Fraction, Fraction, list[Fraction]]]:
+    """Yield the spans, and the coefficients of what is integrated there."""
     factors = [one] if other is None else [one, other]
     points = sorted({knot for knots, _, _ in factors for knot in knots})
-    found = []
     for start, end in pairwise(points):
         product = [Fraction(1)]
         for knots, i, d in factors:
@@ -214,7 +243,4 @@ def integrals(
                 for n, b in enumerate(piece):
                     terms[m + n] += a * b
             product = terms
-        found.append(
-            sum((c * (end ** (n + 1) - start ** (n + 1)) / (n + 1) for n, c in enumerate(product)), Fraction(0))
-        )
-    return found
+        yield start, end, product

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 
-from semispline.papers.ledger import Claim, LedgerError, Paper
-from semispline.papers.recheck.statements import Certificate, Export, Reading, Statement
+from semispline.papers.ledger import Claim, LedgerError, Paper, Part, mutants
+from semispline.papers.recheck.statements import Certificate, Export, Reading, Statement, Theory
+from semispline.papers.recheck.texts import NotExpressibleError
+from semispline.solver.errors import InputError
 
 
 @dataclass(frozen=True)
@@ -35,6 +38,8 @@ Drafts = Mapping[str, Callable[[Claim], Draft]]
 # Records that are not decided: they cannot be false, or nothing in them can be computed.
 _UNDECIDED = ("not-checkable", "definition")
 UNWRITTEN = "no certificate has been written for this record"
+# Changed formulas of each kind that are handed on.
+_EACH = 3
 
 
 def is_decided(claim: Claim) -> bool:
@@ -47,8 +52,15 @@ def export_of(
     drafts: Drafts,
     not_expressible: Mapping[str, str],
     controls: Callable[[], Iterable[Statement]] = tuple,
+    theorems: Mapping[str, tuple[str, ...]] | None = None,
+    theories: Callable[[], Iterable[Theory]] = tuple,
 ) -> Export:
-    """Return the export of a paper; a decided record with neither a draft nor a reason has `UNWRITTEN` for one.
+    """Return the export of a paper.
+
+    A decided record with neither a draft nor a reason gets what its checks export, or else `UNWRITTEN` for a reason.
+
+    `theorems` says which theorems of `derivations/coq` stand for a sentence that is believed, or prove a record;
+    `theories` are theorems that are generated as a whole.
 
     Raises
     ------
@@ -63,7 +75,50 @@ def export_of(
             f"certificate {both[0]}: found statements and a reason why there are none, expected one of them"
         )
     reasons = {c.id: not_expressible.get(c.id, UNWRITTEN) for c in decided if c.id not in drafts}
-    return Export(paper.name, tuple(certificates), tuple(controls()), reasons)
+    exportable = [claim for claim in decided if reasons.get(claim.id) == UNWRITTEN and _exports(claim)]
+    for claim in exportable:
+        try:
+            certificates.append(_certificate(claim, _of_checks(claim)))
+            del reasons[claim.id]
+        except NotExpressibleError as error:
+            reasons[claim.id] = str(error)
+    places = {claim.id: n for n, claim in enumerate(paper.claims)}
+    certificates.sort(key=lambda certificate: places[certificate.id])
+    every_control = (*controls(), *_changed(exportable))
+    return Export(paper.name, tuple(certificates), every_control, reasons, dict(theorems or {}), tuple(theories()))
+
+
+def _exports(claim: Claim) -> bool:
+    return all(part.check.export for part in (*claim.parts, *claim.correction_parts))
+
+
+def _of_checks(claim: Claim) -> Draft:
+    """Return what the checks of a record export."""
+
+    def of(parts: Iterable[Part]) -> list[Statement]:
+        return [case for part in parts if part.check.export for case in part.check.export(part.formula)]
+
+    parts = (*claim.parts, *claim.correction_parts)
+    believed = tuple(dict.fromkeys(part.check.believed for part in parts if part.check.believed))
+    return Draft([of(reading.parts) for reading in claim.readings], of(claim.correction_parts), believed)
+
+
+def _changed(claims: Iterable[Claim]) -> Iterator[Statement]:
+    """Yield changed formulas of records that their checks export: some of each kind of change."""
+    made: Counter[str] = Counter()
+    for part in (part for claim in claims for part in claim.parts):
+        if part.formula is None or part.check.export is None:
+            continue
+        for mutant in mutants(part.formula):
+            if made[mutant.kind] < _EACH and mutant.text not in part.formula.equivalent:
+                changed = replace(part.formula, relation=mutant.relation, equivalent={}, undecidable={})
+                try:
+                    wrong = next((s for s in part.check.export(changed) if not s.true), None)
+                except (InputError, ZeroDivisionError):
+                    continue
+                if wrong is not None:
+                    made[mutant.kind] += 1
+                    yield replace(wrong, label=f"{mutant.kind} changed: {wrong.label}")
 
 
 def _certificate(claim: Claim, draft: Draft) -> Certificate:

@@ -13,9 +13,22 @@ import sympy as sp
 from sympy.polys.domains import QQ
 from sympy.polys.matrices import DomainMatrix
 
-from semispline.papers.recheck.arithmetic import divisors, instance, names, satisfied, value
-from semispline.papers.recheck.statements import Contained, Identity, Knots, Minimum, Positive, Rank, Term
-from semispline.papers.recheck.texts import NotExpressibleError, lets, text
+from semispline.papers.recheck.arithmetic import TextError, divisors, instance, names, satisfied, value
+from semispline.papers.recheck.by_series import series_of
+from semispline.papers.recheck.rooted import defined_with_roots
+from semispline.papers.recheck.statements import (
+    Coefficient,
+    Contained,
+    Identity,
+    Knots,
+    Matrices,
+    Minimum,
+    Number,
+    Positive,
+    Rank,
+    Term,
+)
+from semispline.papers.recheck.texts import NotExpressibleError, Spelled, function_text, lets, number_text, text
 
 Where = Mapping[Any, Any] | Sequence[tuple[str, str]]
 
@@ -28,6 +41,8 @@ def identity(
     equal: bool = True,
     where: Where = (),
     conditions: Sequence[str] = (),
+    roots: Sequence[tuple[Any, Any, int]] = (),
+    meaning: Mapping[Any, Any] | None = None,
     **flags: Any,
 ) -> Identity:
     """Return the statement that both sides are the same, or are not.
@@ -40,6 +55,10 @@ def identity(
         What letters stand for; later ones may use earlier ones.
     conditions : sequence of str
         What an instance has to satisfy, such as "u_1 > 0".
+    roots : sequence of (letter, expression, int)
+        Letters of which a power is known, and which power; for sides that are equal.
+    meaning : mapping, optional
+        Letter -> what it stands for, for a reader.
     flags
         own, meets, wanted.
 
@@ -50,10 +69,13 @@ def identity(
     """
     pairs = _needed(_pairs(where), [text(left), text(right), *_condition_sides(conditions)])
     sides = text(left), text(right)
-    variables, nonzero = _read(pairs, (*sides, *_condition_sides(conditions)))
+    known = tuple((text(letter), text(radicand), degree) for letter, radicand, degree in roots)
+    variables, nonzero = _read(pairs, (*sides, *_condition_sides(conditions), *(r for _, r, _ in known)))
     conditions = tuple(conditions)
 
     def fits(at: Mapping[str, Fraction]) -> bool:
+        if known and not defined_with_roots(*sides, known, at):
+            return False
         return all(satisfied(c, at) for c in conditions) and (equal or value(sides[0], at) != value(sides[1], at))
 
     at = _instance(label, variables, pairs, nonzero, fits)
@@ -66,6 +88,8 @@ def identity(
         where=pairs,
         nonzero=nonzero,
         conditions=conditions,
+        roots=known,
+        meaning=tuple((text(letter), str(what)) for letter, what in (meaning or {}).items()),
         at=at,
         **flags,
     )
@@ -88,16 +112,19 @@ def positive(
     positive: Sequence[Any] = (),
     nonnegative: Sequence[Any] = (),
     over: Sequence[Term] = (),
+    under: Sequence[Term] = (Term(coefficient="1"),),
     where: Where = (),
     strict: bool = True,
+    among: Mapping[Any, Any] | None = None,
     **flags: Any,
 ) -> Positive:
     """Return the statement that an expression is positive, or not negative, for letters with these signs.
 
-    Without `over`, numerator and denominator have no negative coefficient.
+    Without `over`, numerator and denominator have no negative coefficient. `among` is an instance, where the signs
+    hold for few numbers.
     """
-    pairs = _needed(_pairs(where), [text(expression)])
-    under: tuple[Term, ...] = (Term(coefficient="1"),)
+    used = {name for term in (*over, *under) for name, _ in term.powers}
+    pairs = _needed(_pairs(where), [text(expression), *sorted(used)])
     if not over:
         numerator, denominator = sp.fraction(sp.cancel(_in_sympy(text(expression), pairs)))
         parts = [_terms(numerator), _terms(denominator)]
@@ -113,12 +140,16 @@ def positive(
     def fits(at: Mapping[str, Fraction]) -> bool:
         return all(at[name] > 0 for name in known if name in at)
 
-    at = _instance(label, variables, pairs, nonzero, fits)
+    at = (
+        _instance(label, variables, pairs, nonzero, fits)
+        if among is None
+        else tuple((text(letter), str(Fraction(number))) for letter, number in among.items())
+    )
     return Positive(
         label=label,
         left=text(expression),
         over=tuple(over),
-        under=under,
+        under=tuple(under),
         positive=signs[0],
         nonnegative=signs[1],
         strict=strict,
@@ -220,6 +251,99 @@ def minimum(label: str, matrix: Any, **flags: Any) -> Minimum:
     return Minimum(label=label, matrix=as_texts[0], lower=as_texts[1], pivots=tuple(map(text, pivots)), **flags)
 
 
+def matrices(
+    label: str, left: str, right: str, named: Mapping[str, Any], *, equal: bool = True, **flags: Any
+) -> Matrices:
+    """Return the statement that two expressions of matrices are the same, or are not.
+
+    Parameters
+    ----------
+    left, right : str
+        Texts of names, such as "m1^-1*m2*m1".
+    named : mapping
+        Name -> explicit matrix.
+    equal : bool
+    """
+    entries = {
+        name: tuple(tuple(map(text, matrix.row(i))) for i in range(matrix.rows)) for name, matrix in named.items()
+    }
+    texts = [entry for rows in entries.values() for row in rows for entry in row]
+    variables, nonzero = _read((), texts)
+    inverted = {d for side in (left, right) for d in divisors(side) if d in named}
+    sides = [value(side, named, sp.Integer) for side in (left, right)]
+    apart = sides[0] - sides[1]
+
+    def fits(at: Mapping[str, Fraction]) -> bool:
+        exact = {sp.Symbol(name): sp.Rational(number.numerator, number.denominator) for name, number in at.items()}
+        there = {name: named[name].xreplace(_by_text(named[name], exact)) for name in inverted}
+        if any(matrix.det() == 0 for matrix in there.values()):
+            return False
+        return equal or not apart.xreplace(_by_text(apart, exact)).is_zero_matrix
+
+    at = _instance(label, variables, (), nonzero, fits)
+    return Matrices(
+        label=label,
+        matrices=tuple(entries.items()),
+        left=left,
+        right=right,
+        equal=equal,
+        variables=variables,
+        nonzero=nonzero,
+        at=at,
+        **flags,
+    )
+
+
+def _by_text(matrix: Any, values: Mapping[Any, Any]) -> dict[Any, Any]:
+    """Return what letters of a matrix are, by the text that stands for them."""
+    return {letter: values[sp.Symbol(text(letter))] for letter in matrix.free_symbols}
+
+
+def number(label: str, expression: Any, low: Any, high: Any, *, inside: bool = True, **flags: Any) -> Number:
+    """Return the statement that a number is between two fractions, or outside of them.
+
+    Raises
+    ------
+    NotExpressibleError
+        The number has letters, or functions that are not known.
+    """
+    return Number(label=label, left=number_text(expression), low=text(low), high=text(high), inside=inside, **flags)
+
+
+def series(
+    label: str, left: Any, right: Any, variable: Any, power: int, *, equal: bool = True, **flags: Any
+) -> Coefficient:
+    """Return the statement that a power of a variable has the same factor in two power series at 0, or another one.
+
+    Raises
+    ------
+    NotExpressibleError
+        A side has no such series with rational coefficients.
+    """
+    sides = [function_text(side) for side in (left, right)]
+    others = sorted(set().union(*(names(side) for side in sides)) - {text(variable)})
+
+    def fits(at: Mapping[str, Fraction]) -> bool:
+        try:
+            one, other = (series_of(side, text(variable), power + 1, at)[-1] for side in sides)
+        except TextError as error:
+            raise NotExpressibleError(f"{label}: {error}") from None
+        return equal or one != other
+
+    at = _instance(label, others, (), (), fits)
+    return Coefficient(
+        label=label,
+        left=sides[0],
+        right=sides[1],
+        variable=text(variable),
+        power=power,
+        equal=equal,
+        variables=tuple(others),
+        at=at,
+        **flags,
+    )
+
+
 def knots(label: str, numbers: Iterable[Any], fact: str, *, holds: bool = True, **more: Any) -> Knots:
     """Return the statement of a fact about printed numbers."""
     other = tuple(map(text, more.pop("other", ())))
@@ -297,7 +421,7 @@ def _in_sympy(expression: str, pairs: Sequence[tuple[str, str]]) -> Any:
     meaning = dict(pairs)
 
     def letter(name: str) -> Any:
-        return read(meaning[name]) if name in meaning else sp.Symbol(name)
+        return read(meaning[name]) if name in meaning else Spelled(name)
 
     def read(source: str) -> Any:
         return value(source, {name: letter(name) for name in names(source)}, sp.Integer)

@@ -7,7 +7,8 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
-from semispline.papers.recheck.gp import CHECKER, check_lines
+from semispline.papers.recheck.coq_folder import coq_folder, write_coq
+from semispline.papers.recheck.gp import CHECKER, CONTROLS, check_lines
 from semispline.papers.recheck.statements import (
     Certificate,
     Export,
@@ -18,8 +19,6 @@ from semispline.papers.recheck.statements import (
     from_record,
 )
 from semispline.solver.errors import InputError
-
-CONTROLS = "controls"
 
 
 def require_folder(folder: str | Path) -> None:
@@ -58,7 +57,7 @@ def write_certificates(folder: str | Path, export: Export) -> list[Path]:
     for name, content in files.items():
         written.append(folder / name)
         written[-1].write_text(content, encoding="utf-8")
-    return written
+    return [*written, *write_coq(coq_folder(export), folder / "coq")]
 
 
 def read_certificates(folder: str | Path) -> tuple[list[Certificate], list[Statement]]:
@@ -118,6 +117,14 @@ To check all of it with PARI alone (Debian: `apt-get install pari-gp`), in this 
     gp -q check.gp
 
 The last line counts, and the status is 0 if PARI agrees on everything. What PARI is asked stands in `gp/checker.gp`.
+To check it with the kernel of Coq alone (Debian: `apt-get install coq`), in the folder `coq`:
+
+    sh check.sh
+
+It compiles the hand-written sources, then a lemma for each statement, named by the first record that has it. Each file
+ends by printing the axioms that its lemmas rest on: those of `Statements_*.v` none ("Closed under the global context"),
+theorems on B-splines those of Coq's own real numbers. `docs/what-has-to-be-believed.md` says what is then left.
+
 With Python, `cypari` and this package, but without SymPy: `python -m semispline.papers.recheck.process .`. It decides
 every instance with `fractions` too, and makes each verdict anew from its cases.
 

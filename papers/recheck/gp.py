@@ -11,19 +11,48 @@ from typing import Any
 
 from semispline.papers.recheck.arithmetic import divisors
 from semispline.papers.recheck.statements import (
+    Coefficient,
     Contained,
     Identity,
     Knots,
+    Matrices,
     Matrix,
     Minimum,
+    Number,
     Positive,
     Rank,
     Statement,
     Term,
 )
 
+CONTROLS = "controls"
 CHECKER = r"""\\ What PARI is asked. same: both sides are the same rational function.
 same(a, b) = (a - b) == 0;
+\\ A polynomial in r, where r^q stands for A: numerators are compared, one root after another, the last one first.
+\\ A quotient of two letters is to PARI a polynomial in the one over the other: `numerator` alone leaves it there.
+under(n) = {
+  my(d = 1);
+  if(type(n) == "t_RFRAC", return(under(numerator(n))));
+  if(type(n) != "t_POL", return(1));
+  foreach(Vec(n), c, d = lcm(d, if(type(c) == "t_RFRAC", denominator(c) * under(numerator(c)), under(c))));
+  d };
+cleared(n) = {
+  my(d);
+  n = numerator(n); d = under(n);
+  while(d != 1, n = numerator(n * d); d = under(n));
+  n };
+put_in(n, r, A, q) = {
+  my(d = poldegree(n, r));
+  if(d < q, n, cleared(sum(k = 0, d, polcoef(n, k, r) * r^(k % q) * A^(k \ q)))) };
+rooted(n, roots) = {
+  forstep(i = #roots, 1, -1, n = put_in(n, roots[i][1], roots[i][2], roots[i][3]));
+  n == 0 };
+same_over(a, b, roots) = rooted(cleared(a - b), roots);
+\\ A number is computed with a hundred digits; half of them count.
+default(realprecision, 100);
+real_root(p, k) = polrootsreal(p)[k];
+between(x, low, high) = if(type(x) == "t_COMPLEX", 0, low - 1e-50 <= x && x <= high + 1e-50);
+outside(x, low, high) = type(x) != "t_COMPLEX" && (x < low - 1e-50 || high + 1e-50 < x);
 \\ Every divisor of a text is a product of the factors that must not vanish, so that x/x is not taken for 1 unseen.
 is_number(x) = type(simplify(x)) == "t_INT" || type(simplify(x)) == "t_FRAC";
 covered(ds, fs) = {
@@ -75,6 +104,10 @@ def _covered(statement: Statement) -> str:
 
 
 def _identity(statement: Identity) -> str:
+    if statement.roots:
+        roots = vector([f"[{name}, {radicand}, {degree}]" for name, radicand, degree in statement.roots])
+        compared = f"same_over({statement.left}, {statement.right}, {roots})"
+        return f"{_covered(statement)} && {'' if statement.equal else '!'}{compared}"
     both = f"{_covered(statement)} && same({statement.left}, {statement.right})"
     if statement.equal:
         return both
@@ -83,6 +116,33 @@ def _identity(statement: Identity) -> str:
     there.append(f"({statement.left}) != ({statement.right})")
     at = [*_lets(statement.at), *_lets(statement.where), " && ".join(there)]
     return f"{_covered(statement)} && !same({statement.left}, {statement.right}) && (()->if(1, {'; '.join(at)}))()"
+
+
+def _matrices(statement: Matrices) -> str:
+    names = {name for name, _ in statement.matrices}
+    lets = [f"my({name} = {matrix(rows)})" for name, rows in statement.matrices]
+    texts = [text for _, text in statement.where] + list(statement.texts)
+    found = list(dict.fromkeys(d for text in texts for d in divisors(text)))
+    # What is taken to a negative power must have an inverse.
+    inverted = [f"matdet({d}) != 0" for side in (statement.left, statement.right) for d in divisors(side) if d in names]
+    covered = f"covered({vector(found)}, {vector(statement.nonzero)})" if found else "1"
+    same = f"same({statement.left}, {statement.right})"
+    if not statement.equal:
+        at = [*_lets(statement.at), *_lets(statement.where), *lets, f"!({same})"]
+        same = f"!({same}) && (()->if(1, {'; '.join(at)}))()"
+    return "; ".join([*lets, " && ".join([covered, *dict.fromkeys(inverted), same])])
+
+
+def _number(statement: Number) -> str:
+    return f"{'between' if statement.inside else 'outside'}({statement.left}, {statement.low}, {statement.high})"
+
+
+def _coefficient(statement: Coefficient) -> str:
+    x, order = statement.variable, statement.power + 1
+    both = statement.left, statement.right
+    sides = [f"polcoef({side} + O('{x}^{order}), {statement.power}, '{x})" for side in both]
+    compared = f"simplify({sides[0]} - {sides[1]}) == 0"
+    return f"my({x} = '{x} + O('{x}^{order})); {compared if statement.equal else f'!({compared})'}"
 
 
 def _positive(statement: Positive) -> str:
@@ -148,6 +208,9 @@ _BY_FORM: dict[str, Callable[[Any], str]] = {
     "contained": _contained,
     "minimum": _minimum,
     "knots": _knots,
+    "matrices": _matrices,
+    "number": _number,
+    "coefficient": _coefficient,
 }
 
 

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import json
 import sys
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 from semispline.papers.recheck.by_fractions import agrees
-from semispline.papers.recheck.files import CONTROLS, read_certificates
-from semispline.papers.recheck.gp import statement_id
+from semispline.papers.recheck.files import read_certificates
+from semispline.papers.recheck.gp import CONTROLS, statement_id
 from semispline.papers.recheck.statements import Statement
 from semispline.papers.recheck.verdicts import verdict_of
 
@@ -58,14 +57,17 @@ def _refused(pari: Any, folder: str | Path, name: str, statements: Sequence[Stat
     return found
 
 
+def work(folder: str) -> dict[str, Any]:
+    """Return `recheck` of a folder to the process that started this one, which sets its limits."""
+    return recheck(folder)
+
+
 def main(arguments: Sequence[str]) -> int:
-    """Recheck a folder, and write the result to a second path where one is given."""
+    """Recheck a folder, and say what was found."""
     result = recheck(arguments[0])
     for found in result["refused"].values():
         for name in found:
             sys.stderr.write(f"{name}\n")
-    if len(arguments) > 1:
-        Path(arguments[1]).write_text(json.dumps(result), encoding="utf-8")
     count = result["statements"]
     agreed = count - sum(map(len, result["refused"].values()))
     sys.stdout.write(f"{agreed} of {count} statements agree (PARI {result['pari']})\n")

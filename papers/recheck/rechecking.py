@@ -2,25 +2,25 @@
 
 from __future__ import annotations
 
-import importlib
 import importlib.util
-import json
-import subprocess
-import sys
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
-from semispline.papers.ledger import CheckFailedError, Paper, paper_names
-from semispline.papers.recheck.draft import is_decided
+from semispline.papers.ledger import MistakeError, Paper, paper_module, placed
+from semispline.papers.recheck.coqc import require_coqc
+from semispline.papers.recheck.draft import export_of
 from semispline.papers.recheck.files import write_certificates
+from semispline.papers.recheck.kernel import KernelCheck
 from semispline.papers.recheck.statements import Export, Identity
-from semispline.solver.errors import OptionError
+from semispline.solver.errors import ComputationError, OptionError
+from semispline.solver.workers import WorkerError, call
 
-SYSTEMS = ("pari",)
-_SECONDS = 600
+SYSTEMS = ("pari", "coq")
+# Of processor time and memory; no paper that ships takes a tenth of the former, or a half of the latter.
+_SECONDS, _MEGABYTES = 600, 4096
 
 
 @dataclass(frozen=True)
@@ -34,16 +34,19 @@ class Recheck:
         Record -> statements with which it disagrees; None where it was not asked.
     verdicts : mapping
         Record -> the verdict that was made anew from its cases.
+    kernel : KernelCheck or None
+        What the kernel of Coq said; None where it was not asked.
     """
 
     export: Export
     refused: Mapping[str, tuple[str, ...]] | None = None
     verdicts: Mapping[str, str | None] | None = None
+    kernel: KernelCheck | None = None
 
     @property
     def agrees(self) -> bool:
         """Whether nothing was refused, and every verdict is the recorded one."""
-        return not self.refused and not self.changed
+        return not self.refused and not self.changed and not (self.kernel and self.kernel.problems)
 
     @property
     def changed(self) -> tuple[str, ...]:
@@ -63,6 +66,7 @@ class Recheck:
         recorded = {c.id: c.verdict for c in self.export.certificates}
         return (
             *refused,
+            *(self.kernel.problems if self.kernel else ()),
             *(f"recheck: {i}: the cases amount to {verdicts[i]}, recorded {recorded[i]}" for i in self.changed),
         )
 
@@ -106,6 +110,7 @@ class Recheck:
             "rechecked": sum(self.is_whole(c.id) for c in self.export.certificates),
             "not_expressible": len(self.export.not_expressible)
             + sum(bool(c.left_out) for c in self.export.certificates),
+            **(self.kernel.counts() if self.kernel else {}),
         }
 
     def reasons(self) -> dict[str, str]:
@@ -124,18 +129,28 @@ class Recheck:
             "whole": self.is_whole(identifier),
             "not_expressible": reason,
             "believed": list(found.believed) if found else [],
+            **({"kernel": self.kernel.record(identifier)} if self.kernel else {}),
         }
 
 
 def exported(paper: Paper) -> Export:
-    """Return the export of a paper; of one without certificates of its own, that it has none."""
-    if paper.name in paper_names() and importlib.util.find_spec(f"semispline.papers.{paper.name}.certificates"):
-        module = importlib.import_module(f"semispline.papers.{paper.name}.certificates.export")
+    """Return the export of a paper: what its checks export, and certificates of its own where it has any.
+
+    These come from the function `export` of its module `certificates`, or `certificates.export`.
+
+    Raises
+    ------
+    LedgerError
+        They do not fit the records.
+    """
+    module = paper_module(paper.name, "certificates.export") or paper_module(paper.name, "certificates")
+    if module is None:
+        return export_of(paper, {}, {})
+    with placed(paper.folder):
         found = module.export(paper)
-        assert isinstance(found, Export)
-        return found
-    reason = "no certificates were written for this paper"
-    return Export(paper.name, (), (), {claim.id: reason for claim in paper.claims if is_decided(claim)})
+    if not isinstance(found, Export):
+        raise MistakeError(f"{module.__file__}: export returned a {type(found).__name__}, expected an Export")
+    return found
 
 
 def require_system(system: str) -> None:
@@ -147,6 +162,9 @@ def require_system(system: str) -> None:
     """
     if system not in SYSTEMS:
         raise OptionError(f"--recheck: found {system!r}, expected one of {', '.join(SYSTEMS)}")
+    if system == "coq":
+        require_coqc()
+        return
     if importlib.util.find_spec("cypari") is None:
         raise OptionError("--recheck pari: found no cypari, expected it installed: pip install 'semispline[recheck]'")
 
@@ -162,26 +180,20 @@ def rechecked(export: Export, folder: str | Path | None = None) -> Recheck:
 
     Raises
     ------
-    CheckFailedError
-        The process gave no answer, or did import SymPy.
+    ComputationError
+        The process ended without an answer, as where it was out of processor time, or it did import SymPy.
     """
     if not export.certificates:
         return Recheck(export, {}, {})
     with TemporaryDirectory() as scratch:
-        place = Path(folder) if folder is not None else Path(scratch) / "certificates"
+        place = Path(folder) if folder is not None else Path(scratch)
         if folder is None:
             write_certificates(place, export)
-        answer = Path(scratch) / "answer.json"
-        command = [sys.executable, "-m", "semispline.papers.recheck.process", str(place), str(answer)]
         try:
-            done = subprocess.run(command, capture_output=True, text=True, timeout=_SECONDS, check=False)
-        except subprocess.TimeoutExpired:
-            raise CheckFailedError(f"recheck: found no answer within {_SECONDS} s, expected one") from None
-        if not answer.is_file():
-            last = done.stderr.strip().splitlines()[-1:] or ["nothing"]
-            raise CheckFailedError(f"recheck: the process ended without an answer: {last[0]}")
-        result = json.loads(answer.read_text(encoding="utf-8"))
+            result = call("semispline.papers.recheck.process", [str(place)], _SECONDS, _MEGABYTES)
+        except WorkerError as error:
+            raise ComputationError(f"recheck: {error}") from None
     if result["sympy"]:
-        raise CheckFailedError("recheck: found SymPy in the process that rechecks, expected it not to be imported")
+        raise ComputationError("recheck: found SymPy in the process that rechecks, expected it not to be imported")
     refused = {name: tuple(found) for name, found in result["refused"].items()}
     return Recheck(export, refused, result["verdicts"])

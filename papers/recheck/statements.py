@@ -2,6 +2,7 @@
 
 Expressions are texts of names, whole numbers, + - * / ^ and brackets, as they stand before any simplification. Names
 in `where` stand for their expression in all that follows. No SymPy here: the process that rechecks imports this.
+Only in a `Number` or a `Coefficient` there are functions, and only in `Matrices` names of matrices.
 """
 
 from __future__ import annotations
@@ -64,6 +65,10 @@ class Identity(Statement):
         Whether the case is true if the sides are equal (else if they differ).
     conditions : tuple of str
         What the instance satisfies besides, such as "u_1 > 0".
+    roots : tuple of (str, str, int)
+        Variables of which a power is known: name, what its power is (of names before), and which power.
+    meaning : tuple of (str, str)
+        Variables that stand for something else, and for what: to be believed.
     """
 
     left: str
@@ -71,6 +76,8 @@ class Identity(Statement):
     equal: bool = True
     wanted: bool = True
     conditions: tuple[str, ...] = ()
+    roots: tuple[tuple[str, str, int], ...] = ()
+    meaning: tuple[tuple[str, str], ...] = ()
     form: ClassVar[str] = "identity"
 
     @property
@@ -232,7 +239,98 @@ class Knots(Statement):
         return self.holds
 
 
-FORMS: dict[str, type[Statement]] = {kind.form: kind for kind in (Identity, Positive, Rank, Contained, Minimum, Knots)}
+@dataclass(frozen=True, kw_only=True)
+class Matrices(Statement):
+    """Both sides are equal as matrices wherever `nonzero` holds, or differ at the instance `at`.
+
+    Attributes
+    ----------
+    matrices : tuple of (str, rows of str)
+        Names that stand for matrices in both sides, and their entries.
+    left, right : str
+    equal : bool
+    wanted : bool
+        Whether the case is true if the sides are equal (else if they differ).
+    """
+
+    matrices: tuple[tuple[str, Matrix], ...]
+    left: str
+    right: str
+    equal: bool = True
+    wanted: bool = True
+    form: ClassVar[str] = "matrices"
+
+    @property
+    def true(self) -> bool:
+        """Whether the sides are as wanted."""
+        return self.equal == self.wanted
+
+    @property
+    def texts(self) -> tuple[str, ...]:
+        """All entries."""
+        return tuple(entry for _, rows in self.matrices for row in rows for entry in row)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Number(Statement):
+    """A number is between two fractions, or outside of them.
+
+    Attributes
+    ----------
+    left : str
+        The number: an expression with the functions of `arithmetic.FUNCTIONS`.
+    low, high : str
+        Fractions.
+    inside : bool
+        Whether it is between them, the ends included; else it is outside.
+    wanted : bool
+        Whether the case is true if it is inside.
+    """
+
+    left: str
+    low: str
+    high: str
+    inside: bool = True
+    wanted: bool = True
+    form: ClassVar[str] = "number"
+
+    @property
+    def true(self) -> bool:
+        """Whether it is where it is wanted."""
+        return self.inside == self.wanted
+
+
+@dataclass(frozen=True, kw_only=True)
+class Coefficient(Statement):
+    """A power of a variable has the same factor in the power series of both sides, or another one.
+
+    Attributes
+    ----------
+    left, right : str
+        Expressions with the functions of `arithmetic.FUNCTIONS`, which have power series at 0.
+    variable : str
+    power : int
+    equal : bool
+    wanted : bool
+        Whether the case is true if the factors are equal (else if they differ).
+    """
+
+    left: str
+    right: str
+    variable: str
+    power: int
+    equal: bool = True
+    wanted: bool = True
+    form: ClassVar[str] = "coefficient"
+
+    @property
+    def true(self) -> bool:
+        """Whether the factors are as wanted."""
+        return self.equal == self.wanted
+
+
+_KINDS = (Identity, Positive, Rank, Contained, Minimum, Knots, Matrices, Number, Coefficient)
+FORMS: dict[str, type[Statement]] = {kind.form: kind for kind in _KINDS}
 
 
 @dataclass(frozen=True)
@@ -275,6 +373,29 @@ class Certificate:
 
 
 @dataclass(frozen=True)
+class Theory:
+    """A theorem that is generated as a whole, with the lemmas that it needs.
+
+    Attributes
+    ----------
+    name, title : str
+        Of the theorem, and what it is about.
+    needed : tuple of str
+        Modules of `derivations/coq` that it imports.
+    text : str
+        In the language of Coq.
+    over_reals : bool
+        Whether it rests on the axioms of the real numbers.
+    """
+
+    name: str
+    title: str
+    needed: tuple[str, ...]
+    text: str
+    over_reals: bool = True
+
+
+@dataclass(frozen=True)
 class Export:
     """Everything of one paper.
 
@@ -286,12 +407,17 @@ class Export:
         Changed formulas, one of each kind of change at the least, which must be refused.
     not_expressible : mapping
         Decided record -> why nothing of it is here.
+    theorems : mapping
+        What is believed, or a record -> theorems of the sources in `derivations/coq` that say so.
+    theories : tuple of Theory
     """
 
     paper: str
     certificates: tuple[Certificate, ...]
     controls: tuple[Statement, ...] = ()
     not_expressible: Mapping[str, str] = field(default_factory=dict)
+    theorems: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    theories: tuple[Theory, ...] = ()
 
 
 def as_record(statement: Statement) -> dict[str, Any]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache
@@ -29,12 +29,36 @@ _RESERVED = {
     "definite",
     "increasing",
 }
+_RESERVED |= {"put_in", "rooted", "same_over", "real_root"}
 _RESERVED |= {"inner", "clamped", "single", "asked", "agreed", "check", "if", "my", "for", "x_", "fun", "let", "in"}
+# Words of small letters may be functions of PARI, of which there are a thousand; these letters are none.
+_WORD = re.compile(r"[a-z][a-z0-9]*[a-z][a-z0-9]*")
+_GREEK = {
+    "alpha",
+    "beta",
+    "delta",
+    "epsilon",
+    "iota",
+    "kappa",
+    "mu",
+    "nu",
+    "xi",
+    "rho",
+    "tau",
+    "phi",
+    "chi",
+    "pi",
+    "ell",
+}
 _SPELLED = {"+": "_plus_", "-": "_less_", "'": "_prime", "^": "_", ",": "_", " ": "_", ".": "_dot_"}
 
 
 class NotExpressibleError(InputError):
     """An expression that is not a rational function of its letters."""
+
+
+class Spelled(sp.Symbol):  # type: ignore[misc]  # SymPy has no types
+    """A letter that came from a text, where its name is one that all systems read."""
 
 
 @dataclass(frozen=True)
@@ -119,6 +143,81 @@ def text(value: Any) -> str:
     return str(as_text(value))
 
 
+def number_text(number: Any) -> str:
+    """Return a SymPy expression without letters as text, with the functions of `arithmetic.FUNCTIONS`.
+
+    Raises
+    ------
+    NotExpressibleError
+        It has a letter, or another function.
+
+    Examples
+    --------
+    >>> number_text(sp.sqrt(2) * sp.cos(sp.pi / 8) - sp.E)
+    'sqrt(2)*sqrt(sqrt(2)/4 + 1/2) - exp(1)'
+    >>> number_text(sp.CRootOf(sp.Symbol("t") ** 3 - 2, 0))
+    'real_root(x_^3 - 2, 1)'
+    """
+    if number.free_symbols:
+        raise NotExpressibleError(f"number: found the letters {number.free_symbols}, expected none")
+    return str(_number_written(number))
+
+
+def function_text(expression: Any) -> str:
+    """Return a SymPy expression with letters as text, with the functions of `arithmetic.FUNCTIONS`.
+
+    Raises
+    ------
+    NotExpressibleError
+        It has another function.
+
+    Examples
+    --------
+    >>> a, x = sp.symbols("a x")
+    >>> function_text(sp.sin(a * x) / sp.sqrt(1 + x))
+    '1/sqrt(x + 1)*sin(a*x)'
+    """
+    return str(_number_written(expression))
+
+
+def _number_written(e: Any) -> Text:  # noqa: PLR0911  # one for each kind of node
+    if e.is_Rational:
+        return _number(Fraction(int(e.p), int(e.q)))
+    if e.is_Symbol:
+        return Text(name_of(_letter(e)))
+    if e in (sp.pi, sp.E):
+        return Text("Pi") if e is sp.pi else Text("exp(1)")
+    if e.is_Add:
+        return _sum(e, _number_written)
+    if e.is_Mul:
+        return _product(e, _number_written)
+    if e.is_Pow and e.exp.is_Integer:
+        return _number_written(e.base) ** int(e.exp)
+    if e.is_Pow and e.base is sp.E:
+        return Text(f"exp({function_text(e.exp)})")
+    if e.is_Pow and e.exp.is_Rational:
+        base, degree = function_text(e.base), int(e.exp.q)
+        root = Text(f"sqrt({base})" if degree == 2 else f"sqrtn({base}, {degree})")
+        return root ** int(e.exp.p)
+    if isinstance(e, sp.CRootOf) and e.is_real:
+        # SymPy counts real roots from 0, before the others.
+        polynomial = e.poly.as_expr().xreplace({e.poly.gen: _ROOT})
+        return Text(f"real_root({_written_with(polynomial)}, {e.index + 1})")
+    name = _FUNCTION_NAMES.get(type(e))
+    if name is None:
+        raise NotExpressibleError(f"number: found {e}, expected one without letters, of elementary functions")
+    return Text(f"{name}({function_text(e.args[0])})")
+
+
+_ROOT = sp.Symbol("x_")
+_FUNCTION_NAMES = {kind: kind.__name__ for kind in (sp.exp, sp.log, sp.sin, sp.cos, sp.tan, sp.asin, sp.acos, sp.atan)}
+
+
+def _written_with(polynomial: Any) -> str:
+    """Return a polynomial in x_, whose name no letter of a paper has."""
+    return str(_written(polynomial)).replace(name_of("x_"), "x_")
+
+
 def _number(number: Fraction) -> Text:
     if number.denominator == 1:
         return Text(str(number.numerator), 4 if number >= 0 else 1)
@@ -140,7 +239,8 @@ def name_of(letter: str) -> str:
     spelled = re.sub(r"\W", "_", spelled)
     if not spelled[0].isalpha():
         spelled = "v" + spelled
-    return spelled + "_" if spelled in _RESERVED else spelled
+    taken = spelled in _RESERVED or (_WORD.fullmatch(spelled) and spelled not in _GREEK)
+    return spelled + "_" if taken else spelled
 
 
 def _written(expression: Any) -> Text:
@@ -153,7 +253,7 @@ def _written(expression: Any) -> Text:
         return _product(expression)
     if expression.is_Pow and expression.exp.is_Integer:
         return _written(expression.base) ** int(expression.exp)
-    return Text(name_of(_letter(expression)))
+    return Text(expression.name if isinstance(expression, Spelled) else name_of(_letter(expression)))
 
 
 def _letter(expression: Any) -> str:
@@ -167,25 +267,27 @@ def _letter(expression: Any) -> str:
     raise NotExpressibleError(f"expression: found {expression}, expected a rational function")
 
 
-def _sum(expression: Any) -> Text:
+def _sum(expression: Any, written: Callable[[Any], Text] | None = None) -> Text:
+    written = written or _written
     # Positive terms first and numbers last, as one writes them.
     terms = sorted(expression.args, key=lambda term: (term.could_extract_minus_sign(), bool(term.is_Number)))
-    found = _written(terms[0])
+    found = written(terms[0])
     for term in terms[1:]:
-        found = found - _written(-term) if term.could_extract_minus_sign() else found + _written(term)
+        found = found - written(-term) if term.could_extract_minus_sign() else found + written(term)
     return found
 
 
-def _product(expression: Any) -> Text:
+def _product(expression: Any, written: Callable[[Any], Text] | None = None) -> Text:
+    written = written or _written
     over, under = [], []
     for factor in expression.args:
         if factor.is_Pow and factor.exp.is_Integer and factor.exp < 0:
-            under.append(_written(factor.base ** (-factor.exp)))
+            under.append(written(factor.base ** (-factor.exp)))
         elif factor.is_Rational and not factor.is_Integer:
             over += [] if factor.p == 1 else [_number(Fraction(int(factor.p)))]
             under.append(_number(Fraction(int(factor.q))))
         else:
-            over.append(_written(factor))
+            over.append(written(factor))
     product = _multiplied(over)
     return product / _multiplied(under) if under else product
 

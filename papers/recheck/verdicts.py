@@ -1,4 +1,8 @@
-"""The verdict of a record, made anew from its cases by the rules of `design.md`, section 7."""
+"""The verdict of a record, made anew from its cases.
+
+A reading holds where all cases are true and fails where one of the paper's own setting is false; it holds under its
+condition where exactly the cases that meet it are true. Readings that differ are one ambiguous record.
+"""
 
 from __future__ import annotations
 

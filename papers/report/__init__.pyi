@@ -1,4 +1,5 @@
 from .documents import write_report as write_report
+from .draft_as_text import draft_text as draft_text
 from .erratum import Erratum as Erratum
 from .erratum import require_erratum as require_erratum
 from .erratum import write_erratum as write_erratum

@@ -46,7 +46,10 @@ def numbers(results: Results) -> dict[str, Any]:
 
 def markdown(results: Results) -> list[str]:
     """Return the report in Markdown: findings, tables, ledger, machine."""
-    lines = [f"# {results.ledger.paper.title.rstrip('.')}", "", results.study.preface, "", "## What was found", ""]
+    lines = [f"# {results.ledger.paper.title.rstrip('.')}", ""]
+    if not results.study.examples:
+        return [*lines, f"`{results.command}`", "", ledger_markdown(results.ledger)]
+    lines += [results.study.preface, "", "## What was found", ""]
     lines += [f"- **{f.short}.** {f.detail}" for f in results.study.findings(results.comparisons)]
     for table in results.study.tables(results.comparisons):
         lines += ["", *markdown_lines(table)]
@@ -64,6 +67,8 @@ def records_document(results: Results) -> str:
 
     Its copy in the paper's folder is what the last study said; numbers that depend on the machine are left out.
     """
+    if not results.study.examples:
+        return ledger_markdown(results.ledger)
     lines = [f"{STUDY_HEADING}: {results.ledger.paper.title.rstrip('.')}", "", results.study.preface, ""]
     lines += [f"Every statement here was computed by `{results.command}`.", ""]
     lines += [f"- **{f.short}.** {f.detail}" for f in results.study.findings(results.comparisons)]

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import importlib
-import importlib.util
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
 from semispline import __version__
-from semispline.papers.ledger import Ledger, LedgerError, paper_names
+from semispline.papers.ledger import Ledger, LedgerError, MistakeError, paper_module, placed
 from semispline.solver.io import write_text
 
 
@@ -29,8 +27,8 @@ class Erratum:
 
 
 def has_erratum(paper: str) -> bool:
-    """Tell whether a paper of this package has such a document."""
-    return paper in paper_names() and importlib.util.find_spec(f"semispline.papers.{paper}.erratum") is not None
+    """Tell whether a paper has such a document: a module `erratum` with a function of that name."""
+    return paper_module(paper, "erratum") is not None
 
 
 def require_erratum(paper: str) -> None:
@@ -47,9 +45,12 @@ def require_erratum(paper: str) -> None:
 def erratum_of(ledger: Ledger) -> Erratum:
     """Return the document of a decided paper that has one."""
     require_erratum(ledger.paper.name)
-    name = ledger.paper.name
-    found = importlib.import_module(f"semispline.papers.{name}.erratum").erratum(ledger, __version__)
-    assert isinstance(found, Erratum)
+    module = paper_module(ledger.paper.name, "erratum")
+    assert module is not None
+    with placed(ledger.paper.folder):
+        found = module.erratum(ledger, __version__)
+    if not isinstance(found, Erratum):
+        raise MistakeError(f"{module.__file__}: erratum returned a {type(found).__name__}, expected an Erratum")
     return found
 
 

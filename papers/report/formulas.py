@@ -1,23 +1,29 @@
-"""Formulas as MathML, which browsers set without a network, and as LaTeX: SymPy's printers, the paper's letters."""
+"""Formulas as MathML, which browsers set without a network, and as LaTeX: SymPy's printers, the paper's notation."""
 
 from __future__ import annotations
 
 import re
 from html import escape
+from types import MappingProxyType
 from typing import Any
 
 from sympy.printing.latex import LatexPrinter
 from sympy.printing.mathml import MathMLPresentationPrinter
 
+from semispline.papers.ledger import Notation, Places
+
 # A letter with its own index, a number, or an operator, inside an index such as k_r+1 or m-k+1.
 _TOKEN = re.compile(r"([A-Za-z]+)(?:_([A-Za-z0-9]+))?|(\d+)|([-+,'])")
-_GREEK = {"alpha": "α", "beta": "β", "delta": "δ", "kappa": "κ", "rho": "ρ", "mu": "μ", "theta": "θ"}
+_GREEK = {
+    "alpha": "α", "beta": "β", "gamma": "γ", "delta": "δ", "epsilon": "ε", "zeta": "ζ", "eta": "η", "theta": "θ",
+    "iota": "ι", "kappa": "κ", "lambda": "λ", "mu": "μ", "nu": "ν", "xi": "ξ", "omicron": "ο", "pi": "π", "rho": "ρ",
+    "sigma": "σ", "tau": "τ", "upsilon": "υ", "phi": "φ", "chi": "χ", "psi": "ψ", "omega": "ω",
+}  # fmt: skip
 # h1 and alpha2 are h_1 and alpha_2; primes stand before or after the index, and V^r has an upper one.
 _NAME = re.compile(r"([A-Za-z]+)('*)(?:_?(\d+)|_(\w+|\{.*\}))?('*)(?:\^(\w+))?")
-# The same inside a sentence: a letter or Greek name with a lower index, an upper one, or both. G2 and C2 are no letters
-# with an index, h1 and H1 are.
+# The same inside a sentence: a letter or Greek name with a lower index, an upper one, or both.
 _IN_TEXT = re.compile(
-    r"\b(?:([hH])(\d)\b|([A-Za-z]|alpha|beta|kappa|rho|mu)(?:_(\{(?:[^{}]|\{[^{}]*\})*\}|[A-Za-z0-9]+))?)('*)"
+    rf"\b([A-Za-z]|{'|'.join(_GREEK)})(?:_(\{{(?:[^{{}}]|\{{[^{{}}]*\}})*\}}|[A-Za-z0-9]+))?('*)"
     r"(?:\^(\([^()]*\)|\w+))?(?![A-Za-z])"
 )
 
@@ -46,30 +52,28 @@ class _PositiveFirst:
         return sorted(terms, key=lambda term: bool(term.could_extract_minus_sign()))
 
 
-def _basis_parts(e: Any) -> tuple[list[Any], list[Any], list[Any]] | None:
-    """Return lower indices, upper indices and arguments of a basis function; None for other functions.
-
-    B(i, n, x) is a Bernstein polynomial, B(i, k, x, knots) a B-spline, a fifth argument the order of a derivative.
-    """
-    arguments = list(e.args)
-    if e.func.__name__ != "B" or len(arguments) < 3:
-        return None
-    if len(arguments) == 3:
-        return arguments[:1], arguments[1:2], arguments[2:]
-    derivative = [f"({arguments[4]})"] if len(arguments) > 4 and arguments[4] != 0 else []
-    return arguments[:2], derivative, arguments[2:4]
+def _parts(e: Any, notation: Notation) -> Places | None:
+    """Return where the arguments of a function stand; None where that is between brackets."""
+    rule = notation.get(e.func.__name__)
+    return rule(e.args) if rule is not None else None
 
 
 class _Latex(_PositiveFirst, LatexPrinter):  # type: ignore[misc]
-    """SymPy's LaTeX printer, but for basis functions."""
+    """SymPy's LaTeX printer, but for functions of which a paper says how they are written."""
+
+    notation: Notation = MappingProxyType({})
 
     def _print_Function(self, expr: Any, exp: Any = None) -> str:  # noqa: N802
-        parts = _basis_parts(expr)
+        parts = _parts(expr, self.notation)
         if parts is None:
             return str(super()._print_Function(expr, exp))
-        lower, upper, arguments = ([x if isinstance(x, str) else self._print(x) for x in part] for part in parts)
+        lower, upper, arguments = (
+            [x if isinstance(x, str) else self._print(x) for x in part]
+            for part in (parts.lower, parts.upper, parts.arguments)
+        )
+        below = f"_{{{','.join(lower)}}}" if lower else ""
         raised = f"^{{{','.join(upper)}}}" if upper else ""
-        return f"B_{{{','.join(lower)}}}{raised}({'; '.join(arguments)})"
+        return f"{expr.func.__name__}{below}{raised}({'; '.join(arguments)})"
 
     def _print_Knots(self, expr: Any) -> str:  # noqa: N802
         return f"({', '.join(decimal(number) or self._print(number) for number in expr)})"
@@ -78,7 +82,9 @@ class _Latex(_PositiveFirst, LatexPrinter):  # type: ignore[misc]
 
 
 class _Printer(_PositiveFirst, MathMLPresentationPrinter):  # type: ignore[misc]  # SymPy is untyped
-    """SymPy's presentation printer, but for names with indices and for basis functions."""
+    """SymPy's presentation printer, but for names with indices and functions that a paper writes in its own way."""
+
+    notation: Notation = MappingProxyType({})
 
     def _print_Symbol(self, sym: Any, style: str = "plain") -> Any:  # noqa: N802
         return self._name(str(sym))
@@ -87,12 +93,12 @@ class _Printer(_PositiveFirst, MathMLPresentationPrinter):  # type: ignore[misc]
         return self._with_index(self._leaf("mi", str(e.base)), ",".join(map(str, e.indices)))
 
     def _print_AppliedUndef(self, e: Any) -> Any:  # noqa: N802
-        """Set a basis function with its indices, other functions as f(x; y)."""
+        """Set a function as a paper writes it, other functions as f(x, y)."""
         row = self.dom.createElement("mrow")
-        parts = _basis_parts(e)
-        head, arguments = self._leaf("mi", e.func.__name__), list(e.args)
+        parts = _parts(e, self.notation)
+        head, arguments, between = self._leaf("mi", e.func.__name__), list(e.args), ","
         if parts is not None:
-            lower, upper, arguments = parts
+            lower, upper, arguments, between = [*parts.lower], [*parts.upper], [*parts.arguments], ";"
             head = self._with_index(head, ",".join(map(str, lower)))
             if upper:
                 raised = self.dom.createElement("msubsup")
@@ -103,7 +109,7 @@ class _Printer(_PositiveFirst, MathMLPresentationPrinter):  # type: ignore[misc]
         row.appendChild(self._leaf("mo", "("))
         for n, argument in enumerate(arguments):
             if n:
-                row.appendChild(self._leaf("mo", ";"))
+                row.appendChild(self._leaf("mo", between))
             row.appendChild(self._print(argument))
         row.appendChild(self._leaf("mo", ")"))
         return row
@@ -174,8 +180,14 @@ class _Printer(_PositiveFirst, MathMLPresentationPrinter):  # type: ignore[misc]
         return leaf
 
 
-def mathml(expression: Any) -> str:
+def mathml(expression: Any, notation: Notation | None = None) -> str:
     """Return a `<math>` element.
+
+    Parameters
+    ----------
+    expression : sympy.Basic
+    notation : mapping, optional
+        Name of a function -> where its arguments stand.
 
     Examples
     --------
@@ -183,11 +195,14 @@ def mathml(expression: Any) -> str:
     >>> mathml(Symbol("u_{m-3}"))
     '<math><msub><mi>u</mi><mrow><mi>m</mi><mo>&#8722;</mo><mn>3</mn></mrow></msub></math>'
     """
-    text = _Printer().doprint(expression)
-    return f"<math>{text}</math>".replace("&InvisibleTimes;", "&#8290;").replace("&dd;", "&#8518;")
+    printer = _Printer()
+    printer.notation = notation or {}
+    return f"<math>{printer.doprint(expression)}</math>".replace("&InvisibleTimes;", "&#8290;").replace(
+        "&dd;", "&#8518;"
+    )
 
 
-def latex(expression: Any) -> str:
+def latex(expression: Any, notation: Notation | None = None) -> str:
     """Return LaTeX.
 
     Examples
@@ -197,11 +212,13 @@ def latex(expression: Any) -> str:
     >>> latex(b - a)
     'b - a'
     """
-    return str(_Latex().doprint(expression))
+    printer = _Latex()
+    printer.notation = notation or {}
+    return str(printer.doprint(expression))
 
 
 def text_html(text: str) -> str:
-    """Return a sentence as HTML, where names such as u_1, w_{k_r+1}, alpha^4 and H1 have their indices below or above.
+    """Return a sentence as HTML, where names such as u_1, w_{k_r+1} and alpha^4 have their indices below or above.
 
     Examples
     --------
@@ -212,9 +229,9 @@ def text_html(text: str) -> str:
     """
     pieces, end = [], 0
     for found in _IN_TEXT.finditer(text):
-        short, number, letter, index, primes, upper = found.groups()
-        if index or short or upper:
-            pieces += [escape(text[end : found.start()]), _name_html(letter or short, index or number, primes, upper)]
+        letter, index, primes, upper = found.groups()
+        if index or upper:
+            pieces += [escape(text[end : found.start()]), _name_html(letter, index, primes, upper)]
             end = found.end()
     return "".join(pieces) + escape(text[end:])
 

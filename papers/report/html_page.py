@@ -36,26 +36,30 @@ def page(results: Results) -> str:
     found = results.study.findings(results.comparisons)
     used = {name for example in results.study.examples for name in example.pictures}
     rest = [drawing.name for drawing in results.study.drawings if drawing.name not in used]
-    sections = (
+    every = (
         ("found", "What was found", _summary(results.ledger, found)),
         ("tables", "The paper's table", "".join(map(table_html, results.study.tables(results.comparisons)))),
         ("examples", "Examples and rivals", _examples(results)),
-        ("blends", "Pairs, edge by edge", table_html(results.blends)),
+        ("blends", "Pairs, edge by edge", table_html(results.blends) if results.study.examples else ""),
         ("figures", "Other figures", "".join(_picture(results, name) for name in rest)),
         ("ledger", "Every claim", ledger_html(results.ledger)),
         ("how", "How this was made", _made(results)),
     )
+    # A paper without a study has claims and nothing else.
+    sections = tuple(section for section in every if section[2])
+    examples = ", every example run again, every rival measured" if results.study.examples else ""
     links = "".join(f"<a href='#{name}'>{escape(heading)}</a>" for name, heading, _ in sections)
     body = "".join(f"<section id='{name}'><h2>{escape(h)}</h2>{content}</section>" for name, h, content in sections)
     return f"""<!DOCTYPE html>
 <html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width, initial-scale=1">
 <meta http-equiv="Content-Security-Policy" content="{_NOTHING_FROM_OUTSIDE}">
-<title>{escape(title)}: claims, examples and rivals</title><style>{_asset("page.css")}</style></head><body>
+<title>{escape(title)}: claims{", examples and rivals" if examples else ""}</title>
+<style>{_asset("page.css")}</style></head><body>
 <header><h1>{escape(title)} <small>{escape(published.rstrip(")"))}</small></h1>
-<p class="lead">Every printed claim decided, every example run again, every rival measured.
+<p class="lead">Every printed claim decided{examples}.
 {escape(results.study.preface)}</p><nav>{links}</nav></header>
 <main>{body}</main>
-<script>{viewer_script()}</script><script>{_asset("page.js")}</script>
+<script>{viewer_script() if examples else ""}</script><script>{_asset("page.js")}</script>
 </body></html>
 """
 
@@ -72,8 +76,9 @@ def _summary(ledger: Ledger, found: Sequence[Finding]) -> str:
         f"<details{' open' if i < _OPEN else ''}><summary>{escape(f.short)}</summary>{_paragraph(f.detail)}</details>"
         for i, f in enumerate(found)
     )
+    study = f"<div class='findings'><h3>The method, run beside its rivals</h3>{items}</div>" if items else ""
     return f"""<div class="tiles"><div class="tile"><b>{counts["printed"]}</b>printed claims</div>{tiles}</div>
-<div class="columns"><div class="findings"><h3>The method, run beside its rivals</h3>{items}</div>
+<div class="columns">{study}
 <div><h3>{heading}</h3><ul class="failures">{"".join(failures) or "<li>nothing</li>"}</ul></div></div>"""
 
 
@@ -103,6 +108,8 @@ def _paragraph(text: str) -> str:
 
 def _examples(results: Results) -> str:
     parts = [_example(results, example, results.comparisons[example.task.name]) for example in results.study.examples]
+    if not parts:
+        return ""
     return f"<p class='note'>{escape(METHODS_NOTE)}</p>{''.join(parts)}"
 
 
@@ -163,8 +170,8 @@ def _inlined(path: Path) -> tuple[str, int, int]:
 
 def _made(results: Results) -> str:
     versions = "".join(f"<li>{escape(name)} <b>{escape(text)}</b></li>" for name, text in results.environment.items())
-    return f"""<p>To repeat it: <code>{escape(results.command)}</code>, or <code>make report</code> in a checkout, which
-installs the exact versions of <code>constraints.txt</code> first. No random number is drawn anywhere in this run, so
-there is no seed to set; numbers are the same at every run on one machine, times aside. <code>numbers.json</code> and
-<code>report.md</code> beside this page hold all of them, and the pictures for print.</p>
+    return f"""<p>To repeat it: <code>{escape(results.command)}</code>, with the versions below. No random number is
+drawn
+anywhere in this run, so there is no seed to set; numbers are the same at every run on one machine, times aside.
+<code>numbers.json</code> and <code>report.md</code> beside this page hold all of them, and the pictures for print.</p>
 <ul class="versions">{versions}</ul>"""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from html import escape
 
-from semispline.papers.ledger import Claim, Decision, Ledger, Verdict
+from semispline.papers.ledger import Claim, Decision, Ledger, Notation, Verdict
 from semispline.papers.report.formulas import mathml, text_html
 from semispline.papers.report.ledger_words import (
     consequence_text,
@@ -12,7 +12,9 @@ from semispline.papers.report.ledger_words import (
     counts_text,
     evidence_words,
     mutants_text,
+    print_lines,
     residual_of,
+    words,
 )
 
 
@@ -26,8 +28,10 @@ def ledger_html(ledger: Ledger) -> str:
         for name, count in shown
     )
     pairs = zip(ledger.paper.claims, ledger.decisions, strict=True)
-    claims = "\n".join(_claim_html(claim, decision) for claim, decision in pairs)
-    return f"<p>{escape(counts_text(ledger))}</p><p class='filters'>{filters}</p>\n{claims}"
+    claims = "\n".join(_claim_html(claim, decision, ledger.paper.notation) for claim, decision in pairs)
+    meanings = "".join(f"<li>{escape(line)}</li>" for line in words())
+    told = f"<details><summary>What the words mean</summary><ul>{meanings}</ul></details>"
+    return f"<p>{escape(counts_text(ledger))}</p>{told}<p class='filters'>{filters}</p>\n{claims}"
 
 
 def _mutants_and_reasons(decision: Decision) -> str:
@@ -36,13 +40,14 @@ def _mutants_and_reasons(decision: Decision) -> str:
     return "; ".join((f"{mutants_text(decision)} noticed", *reasons)) if decision.mutation.tried else ""
 
 
-def _claim_html(claim: Claim, decision: Decision) -> str:
+def _claim_html(claim: Claim, decision: Decision, notation: Notation) -> str:
     verdict = str(decision.verdict or "no answer")
     rows: list[tuple[str, str]] = [("where", escape(claim.where))]
-    rows += [("printed", mathml(f.relation)) for f in claim.formulas]
+    rows += [(heading, f"<pre>{escape(text)}</pre>") for heading, text in print_lines(claim)]
+    rows += [("printed", mathml(f.relation, notation)) for f in claim.formulas]
     residual = residual_of(decision)
-    rows += [("residual", mathml(residual))] if residual is not None else []
-    rows += [("correct", mathml(f.relation)) for f in claim.corrected_formulas]
+    rows += [("residual", mathml(residual, notation))] if residual is not None else []
+    rows += [("correct", mathml(f.relation, notation)) for f in claim.corrected_formulas]
     texts = [
         ("correction", correction_text(claim)),
         ("counterexample", decision.counterexample),

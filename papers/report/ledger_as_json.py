@@ -45,6 +45,7 @@ def ledger_record(ledger: Ledger, second: Recheck | None = None) -> dict[str, An
                 "corrected_formulas": [str(f.relation) for f in claim.corrected_formulas],
                 "consequence": consequence_text(decision.consequence),
                 "measured": dict(decision.consequence.measured) if decision.consequence else {},
+                "measured_corrected": dict(decision.consequence.corrected) if decision.consequence else {},
                 "remark": claim.remark,
                 "mutants": {
                     "tried": decision.mutation.tried,

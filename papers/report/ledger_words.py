@@ -4,12 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
-from semispline.papers.ledger import Claim, Consequence, Decision, Ledger, ReadingDecision, Strength, Verdict
+from sympy import preorder_traversal
 
-# Below this a measured miss is rounding: the referee's own limits are 1e-9 degrees and 1e-9 of the curvature.
-NOISE = 1e-9
-# How a measurement is named that was repeated with the correction.
-_CORRECTED = " with the corrected formula"
+from semispline.papers.ledger import Claim, Consequence, Decision, Ledger, Print, ReadingDecision, Strength, Verdict
 
 
 def evidence_text(decision: Decision) -> str:
@@ -37,16 +34,40 @@ def strength_text(decision: Decision) -> str:
     return max(reading.strength for reading in decision.readings).text if decision.readings else ""
 
 
+def print_lines(claim: Claim) -> list[tuple[str, str]]:
+    r"""Return what is printed as LaTeX or as code, beside it what was read of it, or why it was read by hand.
+
+    Examples
+    --------
+    >>> from semispline.papers.ledger import Print
+    >>> claim = Claim("eq-1", "Section 1", "..", Verdict.HOLDS, printed=Print("2at", r"2 \cdot a \cdot t"))
+    >>> print_lines(claim)
+    [('as printed', '2at'), ('read as', '2 \\cdot a \\cdot t')]
+    """
+    prints = [claim.printed] if claim.printed is not None else _code_lines(claim)
+    lines = (("as printed", "text"), ("read as", "echo"), ("read by hand", "by_hand"))
+    return [(heading, text) for one in prints for heading, name in lines if (text := getattr(one, name).strip("\n "))]
+
+
+def _code_lines(claim: Claim) -> list[Print]:
+    """Return the lines of code that formulas contain, each once."""
+    nodes = (node for formula in claim.formulas for node in preorder_traversal(formula.relation))
+    return list(dict.fromkeys(n.printed for n in nodes if isinstance(getattr(n, "printed", None), Print)))
+
+
 def consequence_text(consequence: Consequence | None) -> str:
     """Return a measured consequence in one sentence."""
     if consequence is None:
         return ""
-    measured = {name: value for name, value in consequence.measured.items() if not name.endswith(_CORRECTED)}
-    corrected = {name: value for name, value in consequence.measured.items() if name.endswith(_CORRECTED)}
-    # A whole number is a count, and 0 of something is no rounding.
-    zero = [name for name, value in measured.items() if abs(value) < NOISE and not isinstance(value, int)]
+
+    def is_rounding(value: float) -> bool:
+        # A whole number is a count, and 0 of something is no rounding.
+        return abs(value) < consequence.rounding and not isinstance(value, int)
+
+    measured, corrected = consequence.measured, consequence.corrected
+    zero = [name for name, value in measured.items() if is_rounding(value)]
     seen = [f"{name} {value:.3g}" for name, value in measured.items() if name not in zero]
-    left = [f"{name} {value:.3g}" for name, value in corrected.items() if abs(value) >= NOISE]
+    left = [f"{name} with the corrected formula {x:.3g}" for name, x in corrected.items() if not is_rounding(x)]
     parts = [", ".join(seen + left)] if seen or left else []
     if zero:
         parts.append(f"nothing but rounding in {_listed([name.partition(' [')[0] for name in zero])}")
@@ -88,7 +109,11 @@ def counts_text(ledger: Ledger) -> str:
     n = ledger.counts()
     verdicts = ", ".join(f"{n[verdict]} {verdict}" for verdict in Verdict)
     told = f", {n['consistent']} found consistent with what is printed and no more" if n["consistent"] else ""
-    causes = f"what is not true as printed has {n['causes']} causes; " if n["causes"] else ""
+    others = n[Verdict.HOLDS_IF] + n[Verdict.FAILS] + n[Verdict.AMBIGUOUS]
+    caused = sum(len(decisions) for _, decisions in ledger.causes())
+    causes = (
+        f"of the {others} that do not hold as they stand {caused} have {n['causes']} causes; " if n["causes"] else ""
+    )
     kinds = ", ".join(f"{number} {kind}" for kind, number in sorted(ledger.mutants_by_kind().items()))
     return (
         f"{n['printed']} printed claims, {n['decided']} decided, {n['proved']} of them proved or disproved exactly"
@@ -97,6 +122,22 @@ def counts_text(ledger: Ledger) -> str:
         f"without a reason, {n['mutants_equivalent']} say the same as the formula, {n['mutants_undecidable']} change "
         "printed data on which nothing else printed depends (each with its reason)."
     )
+
+
+_PROVING = [strength for strength in Strength if strength is not Strength.CONSISTENT]
+
+
+def words() -> list[str]:
+    """Return what verdicts and strengths mean, one a line."""
+    return [
+        *(f"{verdict}: {verdict.text}." for verdict in Verdict),
+        "Evidence, the strongest first: " + "; ".join(strength.text for strength in _PROVING) + ".",
+        f"{Strength.CONSISTENT.text}: numbers agree, or something of the kind exists; that proves nothing, and counts "
+        "apart.",
+        "proof, disproved: the cases prove the claim, or one exact case is against it; otherwise cases were checked.",
+        "vacuous: a check without a single instance, which is a failure of the check; changed: another verdict than "
+        "the recorded one.",
+    ]
 
 
 def evidence_words(reading: ReadingDecision) -> str:

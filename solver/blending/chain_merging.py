@@ -69,7 +69,8 @@ def merged_pieces(pieces: list[Piece], joined: JoinedPieces, *, closed: bool) ->
         for stretch, new in _stretches(run, pieces, joined, closed=closed):
             found += new
             inside += [joint for k in stretch[1:] if (joint := joined.joints[k]) is not None]
-    return MergedPieces(tuple(found), first, tuple(inside))
+    # Where none is merged the chain begins as it did.
+    return MergedPieces(tuple(found), first, tuple(inside)) if inside else MergedPieces(tuple(pieces), 0, ())
 
 
 def _goes_on(joint: Joint | None, before: Piece, after: Piece) -> bool:
@@ -119,7 +120,7 @@ def _as_one(run: list[Piece], joined: JoinedPieces, longest: float) -> list[Piec
     if conic is None:
         return None
     count = ceil(conic.turn / longest - _NEAR)
-    if count >= len(run) and conic.turn > longest:
+    if count >= len(run):
         return None
     return [
         standard(replace(whole, jets=jets_of_rows(_arc(conic, k, count)), along=Basis(2, _QUADRATIC)))

@@ -77,7 +77,7 @@ class Chain:
         if conic:
             return self._strip(joined if lengths is None else _with_lengths(joined, lengths), *conic)
         merged = merged_pieces(pieces, joined, closed=self.closed)
-        if len(merged.pieces) < len(pieces):
+        if merged.inside:
             joined = joined_pieces(
                 list(merged.pieces), closed=self.closed, tolerance=self.tolerance, ends_on=self.ends_on
             )

@@ -33,7 +33,7 @@ _MOST_RAISED = 8
 # Bezier points of the step that falls from 1 to 0.
 _STEP = np.array([1.0, 1.0, 1.0, 0.0, 0.0, 0.0])
 _STEP_DEGREE = 5
-# Sine of the angle at which a blend may leave the end of its contact beside the curve.
+# Angle, in radians, at which a blend may leave the end of its contact beside the curve.
 _BESIDE = 1e-3
 _MOST_DEGREE = 25
 # The rows beside the contacts, and those of the contacts.
@@ -42,6 +42,8 @@ _ROWS = ((1, 0), (-2, -1))
 _SAME_WEIGHTS = 1e-12
 # How many derivatives are kept at knots, at most.
 _INNER_ORDER = 2
+# Of the range of v: a knot that is so near to where the step ends is there.
+_SAME_PLACE = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
@@ -129,14 +131,13 @@ def _scale(surface: BSplineSurface, last: FloatArray, which: int, tangent: Float
     contact, beside, width = (0, 1, knots[p + 1] - knots[1]) if which == 0 else (-1, -2, knots[-2] - knots[-p - 2])
     step = last[beside, :3] / last[beside, 3] - last[contact, :3] / last[contact, 3]
     own = p / width * last[beside, 3] / last[contact, 3] * step * (1 if which == 0 else -1)
-    speed = float(np.linalg.norm(own))
-    sine = float(np.linalg.norm(np.cross(own, tangent))) / (speed * float(np.linalg.norm(tangent)))
-    if sine > _BESIDE or own @ tangent < 0:
+    angle = float(np.arctan2(np.linalg.norm(np.cross(own, tangent)), own @ tangent))
+    if angle > _BESIDE:
         raise EdgeError(
-            f"end curve: the blend leaves its contact {np.degrees(np.arctan2(sine, np.sign(own @ tangent))):.2g} "
-            "degrees beside the old end edge; that cannot be kept"
+            f"end curve: the blend leaves its contact {np.degrees(angle):.2g} degrees beside the old end edge; that "
+            "cannot be kept"
         )
-    return float(np.linalg.norm(tangent)) / speed - 1
+    return float(np.linalg.norm(tangent) / np.linalg.norm(own)) - 1
 
 
 def _faded(
@@ -144,13 +145,14 @@ def _faded(
 ) -> BSplineSurface:
     """Return the surface with its end moved by a change of its homogeneous points, which fades out along v."""
     start, stop = (float(x) for x in surface.domain[1])
-    reach = share * (stop - start)
-    at = start + reach if end == 0 else stop - reach
+    own_end, fades = (start, stop) if end == 0 else (stop, start)
+    at = own_end + share * (fades - own_end)
     along = Basis(surface.degree_v, surface.knots_v)
     breaks, spans = bezier_pieces(_weighted(surface), along)
+    # A knot beside it is where it ends, and stays as smooth as it is.
+    nearest = float(breaks[np.abs(breaks - at).argmin()])
+    at = nearest if abs(nearest - at) <= _SAME_PLACE * (stop - start) else at
     places = np.unique(np.append(breaks, at))
-    near = places[np.abs(places - at) <= 1e-9 * (stop - start)]
-    places = np.setdiff1d(places, near[near != at])
     q = along.degree
     is_rational, last = surface.weights is not None, _weighted(surface)[:, 0 if end == 0 else -1, 3]
     is_even = all(_is_even(spans, beside, contact) for beside, contact in _ROWS)
@@ -164,11 +166,9 @@ def _faded(
         v = low + (high - low) * t
         local = (v - breaks[k]) / (breaks[k + 1] - breaks[k])
         rows = np.einsum("na,kad->knd", bernstein(q, local), spans[k])
-        from_end = (v - start if end == 0 else stop - v) / reach
-        if from_end.mean() < 1:
-            step = bernstein(_STEP_DEGREE, np.clip(from_end, 0.0, 1.0)) @ _STEP
-            rows = _with_change(rows, change, scales, step, last, is_even=is_even)
-        pieces.append(bezier_points(rows))
+        from_end = (v - own_end) / (at - own_end)
+        step = bernstein(_STEP_DEGREE, np.clip(from_end, 0.0, 1.0)) @ _STEP
+        pieces.append(bezier_points(_with_change(rows, change, scales, step, last, is_even=is_even)))
     smooth = [_smoothness(along, place) for place in places[1:-1]]
     net, basis = joined_spans(pieces, places, smooth)
     points, weights = euclidean(net)

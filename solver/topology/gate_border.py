@@ -140,7 +140,7 @@ def _crease(edge: Any, faces: list[Any]) -> tuple[float, FloatArray]:
     normals = [np.cross(jet[:, 1], jet[:, 2]) for jet in jets]
     if len(normals) != 2:
         return 180.0, jets[0][0, 0]
-    sine = np.linalg.norm(np.cross(*normals), axis=1)
+    sine = np.linalg.norm(np.cross(normals[0], normals[1]), axis=1)
     # Which way faces look is no matter here.
     angle = np.degrees(np.arctan2(sine, np.abs((normals[0] * normals[1]).sum(axis=1))))
     worst = int(angle.argmax())

@@ -1,14 +1,14 @@
 """Contact: the chain rule against composed polynomials, the rows against Cox-de Boor at all four pairs of ends."""
 
 from fractions import Fraction
-from itertools import combinations
+from itertools import combinations, pairwise
 from math import prod
 from random import Random
 
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from sympy import Matrix, Rational, Symbol, cancel, diag, diff, expand, factorial, symbols
+from sympy import Matrix, Poly, Rational, Symbol, cancel, diag, diff, expand, factorial, interpolate, symbols
 from sympy.polys.constructor import construct_domain
 
 from semispline.derivations.contact import (
@@ -249,3 +249,44 @@ def test_with_p2_zero_the_rows_are_those_of_contact_rows(order):
     jets = sum((A**i * table for (i, j), table in tables.items() if j == 0), Matrix.zeros(order + 1, order + 1))
     rows = rows_from_derivatives(order, P, h) * jets * end_derivatives(order, Q, H)
     assert (rows - contact_rows(order, P, h, Q, H)).applyfunc(cancel) == Matrix.zeros(order + 1, order + 1)
+
+
+def de_boor(degree, knots, points, span, x):
+    """Value at x of the piece on one span, by the triangle: no basis functions, no derivatives."""
+    level = list(points[span - degree : span + 1])
+    for step in range(1, degree + 1):
+        level = [
+            a + (x - left) / (knots[j + degree + 1 - step] - left) * (b - a)
+            for j, (a, b) in enumerate(pairwise(level), start=span - degree + step)
+            for left in (knots[j],)
+        ]
+    return level[0]
+
+
+def inwards(degree, end, distances, rows, order):
+    """Coefficients of a spline by the distance from its end, read off values inside its first span alone."""
+    clamped = [Rational(0)] * (degree + 1)
+    # One more knot in front at the end, so that the span has the same index; no value depends on it.
+    before = [-x for x in distances[degree::-1]]
+    knots = [*clamped, *distances[:degree]] if end == "start" else [*before, *clamped]
+    points = rows[: degree + 1] if end == "start" else rows[: degree + 1][::-1]
+    sign = 1 if end == "start" else -1
+    at = [distances[0] * Rational(i, degree + 1) for i in range(degree + 1)]
+    x = Symbol("x")
+    values = [(y, de_boor(degree, knots, points, degree, sign * y)) for y in at]
+    return [Poly(interpolate(values, x), x).coeff_monomial(x**d) for d in range(order + 1)]
+
+
+@pytest.mark.parametrize(("end", "base_end"), [("start", "start"), ("end", "start"), ("start", "end"), ("end", "end")])
+def test_rows_from_the_pieces_join_values_of_both_splines(end, base_end):
+    # From the definition of contact: P(x) and R(-a x), x the way out of the base, agree up to x^2; from values alone.
+    shape, h, H = Rational(5, 3), list(map(Rational, (2, 5, 6, 9, 10))), list(map(Rational, (3, 4, 8, 11)))
+    base_rows = list(map(Rational, (7, -2, 5, 1, 3)))
+    for p, q in ((2, 1), (3, 3), (4, 2)):
+        known = dict(zip((*span_symbols(2), *span_symbols(2, "H")), (*h[:2], *H[:2]), strict=True))
+        matrix = contact_rows_from_pieces(2, p, q, end, base_end).subs({A: shape, **known})
+        # A base of degree 1 has two rows next to its end; the third one must not count.
+        rows = [*(matrix * Matrix(base_rows[:3])), Rational(4), Rational(-1)]
+        blend = inwards(p, end, h, rows, 2)
+        base = inwards(q, base_end, H, base_rows, 2)
+        assert blend == [(-shape) ** d * c for d, c in enumerate(base)]

@@ -57,15 +57,32 @@ def test_verify_a_folder_and_write_both_files(made_up_paper, tmp_path):
     assert "### eq-2" in (tmp_path / "r.md").read_text()
 
 
-def test_a_paper_without_certificates_says_so(made_up_paper, tmp_path):
+def test_checks_that_export_nothing_are_told(made_up_paper, tmp_path):
     result = run("verify", made_up_paper(), "--json", tmp_path / "l.json", "--certificates", tmp_path / "c")
     assert result.exit_code == 0, result.output
     assert "0 identities exported; 2 not expressible" in result.output
     record = json.loads((tmp_path / "l.json").read_text())
     wanted = {"identities_exported": 0, "identities_agreed": 0, "rechecked": 0, "not_expressible": 2}
     assert wanted.items() <= record["counts"].items()
-    assert all("no certificates" in claim["recheck"]["not_expressible"] for claim in record["claims"])
+    assert all("no certificate has been written" in claim["recheck"]["not_expressible"] for claim in record["claims"])
     assert (tmp_path / "c" / "check.gp").is_file()
+
+
+@pytest.mark.coq
+def test_the_kernel_of_coq_is_asked_and_what_it_says_is_told(tmp_path):
+    assert run("new-paper", tmp_path / "p").exit_code == 0
+    options = ("--json", tmp_path / "l.json", "--certificates", tmp_path / "c", "--recheck", "coq")
+    result = run("verify", tmp_path / "p", *options)
+    assert result.exit_code == 0, result.output
+    record = json.loads((tmp_path / "l.json").read_text())
+    found = [claim["recheck"]["kernel"] for claim in record["claims"]]
+    counts = record["counts"]
+    assert counts["kernel_checked"] == sum(one["whole"] for one in found) > 0
+    assert counts["kernel_inexpressible"] == sum(bool(one["inexpressible"]) for one in found)
+    said = next(line for line in result.output.splitlines() if line.startswith("Coq 8"))
+    assert f"{counts['kernel_checked']} records checked as a whole by its kernel" in said
+    done = subprocess.run(["sh", "check.sh"], cwd=tmp_path / "c/coq", capture_output=True, text=True, check=False)
+    assert (done.returncode, set(done.stdout.splitlines())) == (0, {"Closed under the global context"})
 
 
 def test_a_second_system_that_is_not_known(made_up_paper):
@@ -125,6 +142,43 @@ def test_a_check_without_an_answer_is_exit_status_3_whatever_the_others_say(made
     assert "eq-2: found fails, recorded holds" in result.stderr
 
 
+def test_any_folder_is_reproduced_as_a_page_of_its_claims(made_up_paper, tmp_path):
+    folder = made_up_paper()
+    result = run("reproduce", folder, "--out", tmp_path / "report")
+    assert result.exit_code == 0, result.output
+    assert {path.name for path in (tmp_path / "report").iterdir()} == {
+        "index.html", "numbers.json", "RECORDS.md", "report.md",
+    }  # fmt: skip
+    page = (tmp_path / "report" / "index.html").read_text()
+    assert "The sum is n^2/2." in page
+    assert "rival" not in page
+    assert "### eq-2" in (tmp_path / "report" / "RECORDS.md").read_text()
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "arguments", "message"),
+    [
+        ("study.py", "def study():\n    return 1\n", ("reproduce", "--out"), "study returned a int, expected a Study"),
+        (
+            "erratum.py",
+            "def erratum(ledger, version):\n    return lodger\n",
+            ("verify", "--erratum"),
+            "erratum.py:2: found",
+        ),
+        ("certificates.py", "def export(paper):\n    return []\n", ("verify", "--certificates"), "expected an Export"),
+    ],
+)
+def test_more_files_of_a_folder_are_used_and_their_mistakes_told(
+    made_up_paper, tmp_path, name, text, arguments, message
+):
+    folder = made_up_paper()
+    (folder / name).write_text(text)
+    command, option = arguments
+    result = run(command, folder, option, tmp_path / "out")
+    assert result.exit_code == 2, result.output
+    assert message in result.stderr
+
+
 @pytest.mark.parametrize(("verdict", "status"), [("holds", 0), ("fails", 1), (None, 3)])
 def test_reproduce_ends_as_verify_does(monkeypatch, made_up_paper_once, verdict, status):
     ledger = verify(str(made_up_paper_once), workers=1)
@@ -148,6 +202,47 @@ def test_an_output_that_cannot_be_written_is_found_before_the_work(made_up_paper
     assert result.exit_code == 2
     assert "does not exist" in result.stderr
     assert "printed claims" not in result.output
+
+
+def test_drafts_are_shown_with_what_they_lack_and_the_others_are_decided(made_up_paper):
+    claims = made_up_paper() / "claims.py"
+    text = claims.read_text()
+    claims.write_text(text.replace('Correction("n(n+1)/2", (Part(CHECK, pr.RIGHT),)),', "None,"))
+    result = run("verify", claims.parent)
+    assert (result.exit_code, result.stdout) == (2, "")
+    assert "eq-2: fails without a correction" in result.stderr
+    result = run("verify", claims.parent, "--draft")
+    assert result.exit_code == 0, result.output
+    for line in (
+        "1 printed claims, 1 decided",
+        "eq-2 (Section 1): draft, recorded as fails",
+        "    0 true, 9 false (exact rational instances, no proof)",
+        "    residual of the first: -1/2",
+        "  amounts to: fails",
+        "  missing: fails without a correction, expected what is true instead, with its check",
+        "1 draft, 1 complete",
+    ):
+        assert line in result.output
+
+
+@pytest.mark.parametrize("option", ["--json", "--recheck"])
+def test_drafts_are_shown_and_nothing_else(made_up_paper_once, option):
+    result = run("verify", made_up_paper_once, "--draft", option, "pari")
+    assert result.exit_code == 2
+    assert f"--draft: found {option} beside it" in result.stderr
+
+
+def test_a_mistake_in_a_check_is_exit_status_2_and_no_verdict(made_up_paper):
+    claims = made_up_paper() / "claims.py"
+    claims.write_text(claims.read_text().replace("residual = (formula", "residual = (formola"))
+    result = run("verify", claims.parent)
+    assert result.exit_code == 2
+    assert f"{claims}:17: found NameError" in result.stderr
+    assert "eq-1: found no answer, recorded holds" in result.stderr
+
+
+def test_the_help_says_that_a_folder_is_run():
+    assert "run as Python" in " ".join(run("verify", "--help").output.replace("│", " ").split())
 
 
 def test_a_broken_record_is_exit_status_2(made_up_paper):

@@ -7,9 +7,16 @@ from itertools import pairwise
 from typing import Any
 
 from semispline.derivations.bezier import blossom, de_casteljau, division_curve
-from semispline.papers.ledger import Claim, Formula, Meaning, bernstein, given, interpret
+from semispline.papers.checks import bernstein
+from semispline.papers.ledger import (
+    Claim,
+    Formula,
+    Meaning,
+    given,
+    interpret,
+)
 from semispline.papers.lin2014 import printed as pr
-from semispline.papers.lin2014.certificates.counts import DEGREE, row_count_cases
+from semispline.papers.lin2014.certificates.subpatch_counts import DEGREE, row_count_cases
 from semispline.papers.recheck import Draft, Statement, Text, different, identity, positive, text, total
 
 DEGREES = ((1, 1, 1), (2, 2, 1), (1, 3, 2), (3, 3, 1), (2, 1, 3), (3, 3, 2))

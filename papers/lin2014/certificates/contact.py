@@ -13,7 +13,7 @@ from typing import Any
 
 import sympy as sp
 
-from semispline.derivations.contact import contact_rows
+from semispline.derivations.contact import contact_rows, contact_rows_from_pieces
 from semispline.derivations.splines import end_derivatives, span_symbols
 from semispline.papers.ledger import Claim, Formula, given
 from semispline.papers.lin2014 import printed as pr
@@ -250,18 +250,45 @@ def excess_cases(formula: Formula | None, side: Side, printed: Formula) -> Itera
     )
 
 
+def solved_rows(side: Side, row: int) -> Iterator[Identity]:
+    """Yield that the rows which the checks solve from the pieces of degree p and q have the derivative that they need.
+
+    The other witness of those rows, in `derivations`, solves them by the same code.
+    """
+    for k, k_b in PAIRS:
+        matrix = contact_rows_from_pieces(row, k - 1, k_b - 1, side)
+        rows = (
+            (text(letter), str(total(as_text(matrix[i, j]) * as_text(BASE_ROWS[side][j]) for j in range(i + 1))))
+            for i, letter in enumerate(ROWS[side][: row + 1])
+        )
+        blend, base = Lets("c"), Lets("d")
+        jets = (
+            curve_jet(end_jets(blend, k - 1, [Text("h1"), Text("h2")], row, side), [as_text(x) for x in ROWS[side]]),
+            curve_jet(end_jets(base, k_b - 1, [Text("H1"), Text("H2")], row), [as_text(x) for x in BASE_ROWS[side]]),
+        )
+        found, wanted = (derivative(jet, row) for jet in jets)
+        yield identity(
+            f"orders {k}, {k_b}: derivative {row} of the rows solved from the pieces",
+            found,
+            Text(f"{'(-a)' if side == 'start' else 'a'}^{row}") * wanted,
+            where=(*rows, *blend.pairs, *base.pairs),
+            own=False,
+        )
+
+
 def condition(side: Side, row: int) -> Any:
     """Return the draft of a condition that holds."""
 
     def draft(claim: Claim) -> Draft:
-        return Draft([row_cases(claim.formulas[0], side, row)], believed=(INDUCTION,))
+        cases = [*row_cases(claim.formulas[0], side, row), *solved_rows(side, row)]
+        return Draft([cases], believed=(INDUCTION,))
 
     return draft
 
 
 def cond_2_2(claim: Claim) -> Draft:
     """Return (2.2), right for k = 4."""
-    corrected = row_cases(claim.corrected_formulas[0], "end", 1)
+    corrected = [*row_cases(claim.corrected_formulas[0], "end", 1), *solved_rows("end", 1)]
     return Draft([row_cases(claim.formulas[0], "end", 1)], corrected, (INDUCTION,))
 
 
@@ -271,7 +298,7 @@ def second_row(side: Side) -> Any:
     def draft(claim: Claim) -> Draft:
         printed = [reading.parts[0].formula for reading in claim.readings]
         true, *excesses = claim.corrected_formulas
-        correction = [*row_cases(true, side, 2)]
+        correction = [*row_cases(true, side, 2), *solved_rows(side, 2)]
         for excess, formula in zip(excesses, printed, strict=True):
             correction += excess_cases(excess, side, given(formula))
         readings = [row_cases(formula, side, 2, "normal", equal=False) for formula in printed]

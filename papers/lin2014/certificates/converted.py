@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from fractions import Fraction
 from itertools import zip_longest
 from typing import Any
@@ -20,6 +20,35 @@ from semispline.papers.recheck import Draft, Statement, Text, identity, knots, n
 RULE = "v_1 .. v_n are the inner knots of both curves, each once, and the rule pairs 1 and 2, 3 and 4, and so on"
 
 Vector = list[Fraction]
+
+
+def averaging(claim: Claim) -> Draft:
+    """Return the averages by pairs, the last of which may not exist, and those of all neighbours."""
+    relation = given(claim.readings[0].parts[0].formula).relation
+    pair = [entry.indices[0] for entry in sorted(relation.rhs.atoms(sp.Indexed), key=str)]
+    before = Text("2*(i - 1)", 2)
+    used: list[Statement] = [
+        identity("every pair: its first knot", min(pair, key=lambda e: e.subs(pr.i, 1)), before + 1),
+        identity("every pair: its second knot", max(pair, key=lambda e: e.subs(pr.i, 1)), before + 2),
+    ]
+    last = text(max(pair, key=lambda e: e.subs(pr.i, 1)))
+    missing = positive(
+        "n = 2 q + 1, i = q + 1: the second knot would have an index above n",
+        Text(f"({last}) - (2*q + 1)", 1),
+        where=((text(pr.i), "q + 1"),),
+        nonnegative=("q",),
+        affirmed=False,
+    )
+    complete = [
+        identity("n = 2 q or 2 q + 1, i = q: its last knot is v_2q", last, Text("2*q", 2), where=((text(pr.i), "q"),)),
+    ]
+    first, second = Text("(v + (v + g))/2", 2), Text("((v + g) + (v + g + h))/2", 2)
+    sliding: list[Statement] = [
+        positive("neighbours: a mean lies above the first knot", first - "v", positive=("g", "h", "v")),
+        positive("and the next one above it", second - first, positive=("g", "h", "v")),
+        positive("and below the last knot", Text("v + g + h", 1) - second, positive=("g", "h", "v")),
+    ]
+    return Draft([[*used, missing], [*used, *complete], sliding])
 
 
 def mismatched(_: Claim) -> Draft:
@@ -83,8 +112,7 @@ def after_conversion(claim: Claim) -> Draft:
             no_more.append(identity(f"{label}: as many as both curves have", Text(f"{len(rows)} - {len(both)}", 1), 0))
     converted = claim.corrected_formulas[0].relation.rhs
     correction: list[Statement] = [
-        positive("a mean lies above the first of its two knots", Text("(v + (v + g))/2 - v", 1), positive=("g",)),
-        positive("and below the second one", Text("(v + g) - (v + (v + g))/2", 1), positive=("g",)),
+        *between(),
         identity("one knot for each pair", converted, Text("N_u + 1*q", 1)),
     ]
     for label, a, b in _vectors():
@@ -95,9 +123,17 @@ def after_conversion(claim: Claim) -> Draft:
     return Draft([saved(given(claim.readings[0].parts[0].formula)), no_more], correction, (RULE,))
 
 
+def between() -> Iterator[Statement]:
+    """Yield that the mean of two knots lies between them."""
+    yield positive("a mean lies above the first of its two knots", Text("(v + (v + g))/2 - v", 1), positive=("g",))
+    yield positive("and below the second one", Text("(v + g) - (v + (v + g))/2", 1), positive=("g",))
+
+
 def few_knots(_: Claim) -> Draft:
-    """Return for which pairs of vectors the rule has a pair: n >= 2."""
-    cases: list[Statement] = []
+    """Return that the rule has a pair for every n >= 2, and for which pairs of vectors it has one."""
+    room = Text("2 + r - 2 + 1", 1)
+    last = positive("every n = 2 + r: v_2, the second of a pair, is one of v_1 .. v_n", room, nonnegative=("r",))
+    cases: list[Statement] = [last, *between()]
     for label, one, other in _vectors():
         n = len({*one, *other})
         if n >= 2:
@@ -125,7 +161,7 @@ def direction(claim: Claim) -> Draft:
     for n, equal in (("2*q", True), ("(2*q + 1)", False)):
         for here, there in ((first, places[1]), (second, places[0])):
             label = f"n = {n.strip('()')}: v_{here} in one direction and in the other one"
-            pairs.append(identity(label, Text(f"({here})*1", 2), mirrored(there, n), equal=equal))
+            pairs.append(identity(label, Text(here, 1), mirrored(there, n), equal=equal))
     neighbours: list[Statement] = [
         identity("neighbours, every n: the first of mean i", Text(i), Text(f"n + 1 - (n - {i} + 1)", 1)),
         identity("neighbours, every n: the second one", Text(f"{i} + 1", 1), Text(f"n + 1 - (n - {i})", 1)),
@@ -133,7 +169,8 @@ def direction(claim: Claim) -> Draft:
     return Draft([pairs, neighbours], believed=(RULE,))
 
 
-DRAFTS = {
+DRAFTS: dict[str, Callable[[Claim], Draft]] = {
+    "sec-3.averaging": averaging,
     "sec-1.mismatched": mismatched,
     "sec-1.after-conversion": after_conversion,
     "sec-3.averaging-few": few_knots,

@@ -15,8 +15,11 @@ from semispline.papers.lin2014.checks.printed_pairs import WITH_MIDDLE_CURVE, in
 from semispline.papers.lin2014.printed import CUBIC
 from semispline.papers.recheck import Draft, Statement, Text, identity, knots, positive, text
 
-ROOTS = "that the curves meet in their ends alone: isolation of real roots"
-BOUNDARIES = "that boundaries of the pieces add up, and lengths of rows: counts of edges and points"
+# Records of which something is left out, and what.
+IN_PART = {
+    "fig-3.curves": "that the curves meet in their ends alone: isolation of real roots",
+    "fig-3.pieces": "that boundaries of the pieces add up, and lengths of rows: counts of edges and points",
+}
 
 
 def vector_cases(formula: Formula, key: str) -> Iterator[Statement]:
@@ -173,7 +176,7 @@ def curves_of_figure_3(claim: Claim) -> Draft:
         for r, value in enumerate((*side.coefficients, side.start, side.end)):
             cases.append(positive(f"{name}: number {r} above 0", text(value)))
             cases.append(positive(f"{name}: number {r} below 1", Text(f"1 - {text(value)}", 1)))
-    return Draft([cases], left_out=ROOTS)
+    return Draft([cases], left_out=IN_PART["fig-3.curves"])
 
 
 def parameters_of_figure_3(claim: Claim) -> Draft:
@@ -195,7 +198,7 @@ def pieces_of_figure_3(_: Claim) -> Draft:
     found = areas(trimming.hole())
     cases: list[Statement] = [positive(f"{name}: area", text(area)) for name, area in found.items()]
     cases.append(identity("areas sum to 1", " + ".join(text(area) for area in found.values()), 1))
-    return Draft([cases], left_out=BOUNDARIES)
+    return Draft([cases], left_out=IN_PART["fig-3.pieces"])
 
 
 def first_split(claim: Claim) -> Draft:

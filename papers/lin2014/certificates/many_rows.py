@@ -1,20 +1,30 @@
-"""What becomes of the least energy when rows are added, and where it lies over alpha and beta between facing bases."""
+"""What becomes of the least energy when rows, or knots along them, are added."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from fractions import Fraction
 from typing import Any
 
 import sympy as sp
 
 from semispline.derivations.splines import end_derivatives
-from semispline.papers.ledger import Claim, Formula, clamped, given
-from semispline.papers.lin2014.certificates.energy import NO_ENERGY, fewer_rows, one_minimum
-from semispline.papers.lin2014.certificates.surfaces import INDUCTION, SPACES, spaces
+from semispline.papers.checks import clamped
+from semispline.papers.ledger import Claim, Formula, given
+from semispline.papers.lin2014.certificates.counts import union_of_knots
+from semispline.papers.lin2014.certificates.knot_vectors import nested_pairs
+from semispline.papers.lin2014.certificates.least_energies import QUADRATIC, least_blend, least_strip
+from semispline.papers.lin2014.certificates.minima import NO_ENERGY, one_minimum
+from semispline.papers.lin2014.certificates.spline_steps import INDUCTION, SPACES, insertion, spaces
 from semispline.papers.lin2014.checks import energy
-from semispline.papers.lin2014.checks import facing_bases as facing
-from semispline.papers.lin2014.checks.printed_pairs import WITH_MIDDLE_CURVE, merged, printed_pair
+from semispline.papers.lin2014.checks import fewer_control_points as fewer
+from semispline.papers.lin2014.checks.printed_pairs import (
+    PRINTED_PAIRS,
+    WITH_MIDDLE_CURVE,
+    inner_knots,
+    merged,
+    printed_pair,
+)
 from semispline.papers.lin2014.printed import CUBIC
 from semispline.papers.recheck import (
     Draft,
@@ -23,7 +33,7 @@ from semispline.papers.recheck import (
     Text,
     as_text,
     identity,
-    integral,
+    integral_text,
     not_zero,
     positive,
     text,
@@ -35,7 +45,69 @@ CUBICS = (
     "H'' (f - H)'' is zero, by parts, since H'''' is"
 )
 LAYER = "middle rows give nothing in a direction that is orthogonal to all splines over the averaged knots"
-LEAST = "the least energy of a strip is at the solution of its normal equation"
+
+
+def fewer_rows(claim: Claim) -> Draft:
+    """Return least energies without and with a middle curve, and their difference as a sum of two squares."""
+    few, more = fewer.least_energies(*fewer.DATA).values()
+    cases: list[Statement] = [
+        *least_strip("no middle curve", 5, fewer.DATA, few),
+        *least_strip("one middle curve", 6, fewer.DATA, more),
+    ]
+    for label, data in (
+        ("a step at rest", (0, 0, 0, 1, 0, 0)),
+        ("a slope that stops", (0, 1, 0, 0, 0, 0)),
+        ("curvature at both ends", (0, 0, 1, 0, 0, 1)),
+    ):
+        where = tuple((text(letter), str(number)) for letter, number in zip(fewer.DATA, data, strict=True))
+        gain = as_text(few) - as_text(more)
+        if (few - more).subs(dict(zip(fewer.DATA, data, strict=True))) > 0:
+            cases.append(positive(f"{label}: 6 rows cost more than 7", gain, where=where, affirmed=False))
+        else:
+            cases.append(positive(f"{label}: 6 rows cost no more than 7", 1 - gain, where=where))
+    squares, nested = claim.corrected_formulas
+    correction: list[Statement] = [
+        identity("any contact data", squares.relation.rhs, as_text(few) - as_text(more)),
+        positive("which is never negative", squares.relation.rhs, over=_squares(squares.relation.rhs), strict=False),
+    ]
+    value = "c + 2*g*x + h*x^2"
+    correction.append(
+        identity(
+            "one control point more: value at 0 less value at -g/h",
+            nested.relation.rhs,
+            Text(f"c - ({value})", 1),
+            where=(("x", "-g/h"),),
+        )
+    )
+    return Draft([cases], correction, (QUADRATIC,))
+
+
+def _squares(expression: Any) -> list[Term]:
+    return [
+        Term(coefficient=text(c), squares=(text(sp.Mul(*rest).base),))
+        for c, rest in (term.as_coeff_mul() for term in sp.Add.make_args(expression))
+    ]
+
+
+def fairness(_: Claim) -> Draft:
+    """Return knot lines in the printed pairs, and least energies over the rule's knots and over all."""
+    lines: list[Statement] = [*union_of_knots()]
+    for name, keys in PRINTED_PAIRS.items():
+        vectors = [set(inner_knots(key)) for key in keys]
+        both = len(set.union(*vectors))
+        lines += [
+            positive(f"{name}: {both} inner knots against {len(v)}", Text(f"{both} - {len(v)}", 1)) for v in vectors
+        ]
+    less: list[Statement] = []
+    energies = []
+    for label, (blend, points, energy_) in zip(("5/12", "1/3, 1/2"), energy.middle_knot_blends(), strict=True):
+        free = [n for n, (i, _) in enumerate(blend.index) if i == 3]
+        less += least_blend(f"middle curve over {label}", blend, points, free, energy_)
+        energies.append(as_text(energy_))
+    label = "orders 4, 2, inner knots 1/2 and 1/3: less energy on all knots"
+    less.append(positive(label, energies[0] - energies[1], affirmed=False))
+    return Draft([lines, [*less, *insertion(), *nested_pairs()]], believed=(QUADRATIC, INDUCTION, SPACES))
+
 
 # A clamped cubic with spans of length 1; those of length h have h times the integrals of functions over spans.
 _UNIT = [Fraction(max(i - 3, 0)) for i in range(11)]
@@ -80,7 +152,8 @@ def fewer_better(claim: Claim) -> Draft:
     few = fewer_rows(claim)
     formula = given(claim.readings[1].parts[0].formula)
     (first,) = few.readings
-    return Draft([first, [*to_zero(formula), *outside()]], few.correction, (LEAST, CUBICS, LAYER, INDUCTION, SPACES))
+    believed = QUADRATIC, CUBICS, LAYER, INDUCTION, SPACES
+    return Draft([first, [*to_zero(formula), *outside()]], few.correction, believed)
 
 
 def layer(formula: Formula) -> Iterator[Statement]:
@@ -88,16 +161,16 @@ def layer(formula: Formula) -> Iterator[Statement]:
     yield from least_cubic()
     ends = end_derivatives(2, CUBIC - 1, (sp.Symbol("h"), 2 * sp.Symbol("h")))[:, 2]
     for d, wanted in enumerate(("0", "0", "3/h^2")):
-        yield identity(f"B_2 at u = 0: derivative {d}", Text(f"({text(ends[d])})*1", 2), Text(wanted, 2), own=False)
+        yield identity(f"B_2 at u = 0: derivative {d}", ends[d], Text(wanted, 2), own=False)
     third = (_UNIT, 2, 2)
-    yield identity("the integral of B_2'' is 0", Text(f"{integral(CUBIC, third)} + 0", 1), 0, own=False)
+    yield identity("the integral of B_2'' is 0", integral_text(CUBIC, third), 0, own=False)
     # x is the spline with its Greville abscissae for control points.
     means = [sum(_UNIT[i + 1 : i + 4], Fraction(0)) / 3 for i in range(6)]
-    parts = [as_text(mean) * as_text(integral(CUBIC, (_UNIT, i, 0), third)) for i, mean in enumerate(means)]
+    parts = [as_text(mean) * integral_text(CUBIC, (_UNIT, i, 0), third) for i, mean in enumerate(means)]
     yield identity(
         "the integral of x B_2'' is 0, so that of H'' B_2'' is for every cubic H", total(parts), 0, own=False
     )
-    square = as_text(integral(CUBIC, third, third))
+    square = integral_text(CUBIC, third, third)
     true = Text("(h^2/3)^2*(delta_0^2 + delta_1^2)", 2) * square / Text("h^3", 3)
     yield identity("every h and both ends", formula.relation.rhs, true)
     for data in ((0, 0, 1, 0, 0, 1), (0, 1, 2, 3, -1, 0)):
@@ -105,6 +178,7 @@ def layer(formula: Formula) -> Iterator[Statement]:
             found = energy.end_energy(CUBIC, m, data)
             where = (*_ends(data), ("h", f"1/{m - 2}"), *_lacks(data))
             label = f"{m + 1} rows, end data {data}"
+            yield from least_strip(label, m, data, found)
             yield positive(f"{label}: more than the cubic", Text(f"{text(found)} - (e_H)", 1), where=where)
             above = Text(f"e_H + {as_text(formula.relation.rhs).at(2)} - {as_text(found).at(2)}", 1)
             yield positive(f"{label}: no more than that", above, where=where)
@@ -130,60 +204,16 @@ def over_rows(claim: Claim) -> Draft:
         where = (*_ends(data), *_lacks(data))
         for m in (6, 10, 18):
             found = energy.end_energy(CUBIC, m, data)
+            never += least_strip(f"{label}, {m + 1} rows", m, data, found)
             more = Text(f"{text(found)} - (e_H)", 1)
             never.append(positive(f"{label}: {m + 1} rows cost more than the cubic", more, where=where, affirmed=False))
         never.append(not_zero(f"{label}: the cubic has another second derivative", "delta_0", where=where, own=False))
     correction = layer(claim.corrected_formulas[0])
-    return Draft([one_minimum(2), never], correction, (INDUCTION, NO_ENERGY, LEAST, CUBICS))
+    return Draft([one_minimum(2), never], correction, (INDUCTION, NO_ENERGY, QUADRATIC, CUBICS))
 
 
-def facing_pairs(claim: Claim) -> Draft:
-    """Return where the energy over alpha^2, beta^2 is least between straight plates, every gap and pair of angles."""
-    relation = claim.formulas[0].relation
-    total_, _, (a, b) = facing.strip_energy()
-    exchanged = {facing.COS_THETA: facing.COS_PHI, facing.COS_PHI: facing.COS_THETA}
-    where = (
-        ("a_least", text(relation.rhs)),
-        ("b_least", text(relation.rhs.subs(exchanged, simultaneous=True))),
-    )
-    least = [sp.Symbol("a_least"), sp.Symbol("b_least")]
-    moved = total_.subs({a: least[0] + sp.Symbol("x"), b: least[1] + sp.Symbol("y")}, simultaneous=True)
-    there = total_.subs({a: least[0], b: least[1]}, simultaneous=True)
-    form = sp.hessian(total_, (a, b)) / 2
-    around = Text(f"({text(form[0, 0])})*x^2 + 2*({text(form[0, 1])})*x*y + ({text(form[1, 1])})*y^2", 1)
-    determinant = Text(f"({text(form[0, 0])})*({text(form[1, 1])}) - ({text(form[0, 1])})^2", 1)
-    angle = (("c_between", "(1 - t^2)/(1 + t^2)"),)
-    cases: list[Statement] = [
-        identity("the energy around its least point", as_text(moved) - as_text(there), around, where=where, own=False),
-        positive(
-            "which is one, at every angle between the two ways", determinant, where=angle, nonnegative=("t",), own=False
-        ),
-        positive("along alpha^2 too", form[0, 0], own=False),
-    ]
-    for label, angles in facing.PLATES.items():
-        cases += _plates(label, where, angles)
-    return Draft([cases], believed=(LEAST,))
-
-
-def _plates(label: str, least: Any, angles: Any) -> Iterator[Statement]:
-    """Yield the signs of alpha^2 and beta^2 at one pair of angles, given by cosines and sines, over a gap of 1."""
-    (c, s), (c_2, s_2) = angles
-    names = (facing.COS_THETA, facing.COS_PHI, facing.COS_BETWEEN, facing.GAP)
-    cosines = tuple((text(n), text(x)) for n, x in zip(names, (c, c_2, c * c_2 + s * s_2, 1), strict=True))
-    meets = all(39 * one > 25 * other * (c * c_2 + s * s_2) for one, other in ((c, c_2), (c_2, c)))
-    flags: dict[str, Any] = {"own": meets, "meets": meets}
-    for number in (c, c_2):
-        yield positive(f"{label}: an acute angle", number, own=False)
-    for name, letter in (("a_least", "alpha^2"), ("b_least", "beta^2")):
-        where = (*cosines, *least)
-        if meets:
-            yield positive(f"{label}: {letter} is positive", name, where=where)
-        elif name == "a_least":
-            yield positive(f"{label}: {letter} is negative", Text(f"-{name}", 1), where=where, affirmed=False, **flags)
-
-
-DRAFTS = {
+DRAFTS: dict[str, Callable[[Claim], Draft]] = {
+    "sec-1.fairness": fairness,
     "sec-3.fewer-better": fewer_better,
     "sec-3.minimum-over-rows": over_rows,
-    "sec-4.facing": facing_pairs,
 }

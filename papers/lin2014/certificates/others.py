@@ -8,9 +8,10 @@ from typing import Any
 import sympy as sp
 
 from semispline.derivations.splines import end_derivatives, span_symbols
-from semispline.papers.ledger import Claim, bernstein, given, union
+from semispline.papers.checks import bernstein, union
+from semispline.papers.ledger import Claim, given
 from semispline.papers.lin2014.certificates.contact import INDUCTION, induction
-from semispline.papers.lin2014.certificates.surfaces import SPACES, spaces
+from semispline.papers.lin2014.certificates.spline_steps import SPACES, spaces
 from semispline.papers.lin2014.checks.hartmann import ROUNDING
 from semispline.papers.lin2014.checks.other_methods import JUMP
 from semispline.papers.lin2014.checks.printed_pairs import PRINTED_PAIRS, printed_pair
@@ -21,6 +22,8 @@ _CIRCLE = (("C", "(1 - t^2)/(1 + t^2)"), ("S", "2*t/(1 + t^2)"))
 # Hartmann's weight: A and B stand for (1-t)^(n+1) and t^(n+1).
 _F = Text("mu*A/(mu*A + nu*B)", 2)
 POWERS = "a derivative takes one power of t away from t^(n+1) g, g with derivatives of every order at 0"
+LIMIT = "a limit of slopes that are not positive is not"
+CIRCLE = "the leading coefficient of x^2 + y^2 is a^2 + b^2, positive for real a, b that are not both zero"
 NO_SINE = "no quotient of polynomials solves y'' = -y, as its degree falls by two"
 
 
@@ -90,11 +93,7 @@ def cubic(_: Claim) -> Draft:
     """Return that the six end conditions of a cubic with two inner knots are independent."""
     ends = end_derivatives(2, 3, span_symbols(2))
     cases: list[Statement] = [*induction()]
-    cases += [
-        identity(f"entry {d}, {i} above the diagonal", Text(f"({text(ends[d, i])})*1", 2), 0)
-        for d in range(3)
-        for i in range(d + 1, 3)
-    ]
+    cases += [identity(f"entry {d}, {i} above the diagonal", ends[d, i], 0) for d in range(3) for i in range(d + 1, 3)]
     cases += [positive(f"entry {d} of the diagonal", ends[d, d], positive=span_symbols(2)) for d in range(3)]
     cases.append(
         positive(
@@ -200,8 +199,7 @@ def cylinders(_: Claim) -> Draft:
         positive("b alone", "b^2", positive=("b",), affirmed=False),
     ]
     line = total(bernstein(r, 3, Text("t")) * Text(f"{r}/3", 2) for r in range(4))
-    believed = "the leading coefficient of x^2 + y^2 is a^2 + b^2, positive for real a, b that are not both zero"
-    return Draft([circle, [identity("a line with four rows", line, Text("t"))]], believed=(believed,))
+    return Draft([circle, [identity("a line with four rows", line, Text("t"))]], believed=(CIRCLE,))
 
 
 def cone(_: Claim) -> Draft:
@@ -286,9 +284,7 @@ def inference(claim: Claim) -> Draft:
             meets=False,
         )
     )
-    return Draft(
-        [[*hull(), *directions(formulas)], convex], believed=(POWERS, "a limit of slopes that are not positive is not")
-    )
+    return Draft([[*hull(), *directions(formulas)], convex], believed=(POWERS, LIMIT))
 
 
 DRAFTS: dict[str, Callable[[Claim], Draft]] = {

@@ -11,13 +11,18 @@ import sympy as sp
 from semispline.derivations.contact import contact_rows
 from semispline.derivations.energy import energy_matrix
 from semispline.derivations.splines import span_symbols
-from semispline.papers.ledger import Claim, Formula, Sample, clamped, given, union
+from semispline.papers.checks import clamped, union
+from semispline.papers.ledger import Claim, Formula, given
 from semispline.papers.lin2014 import printed as pr
 from semispline.papers.lin2014.certificates.contact import INDUCTION, closed_derivative, induction, row_cases
-from semispline.papers.lin2014.certificates.energy import FUBINI, NO_ENERGY
-from semispline.papers.lin2014.certificates.surfaces import UNROLLED, triangle_step
+from semispline.papers.lin2014.certificates.least_energies import QUADRATIC, entries, least_blend
+from semispline.papers.lin2014.certificates.linear_system import FUBINI
+from semispline.papers.lin2014.certificates.spline_steps import INDUCTION as RECURRENCE
+from semispline.papers.lin2014.certificates.spline_steps import sharp_continuity
+from semispline.papers.lin2014.certificates.sums import UNROLLED, triangle_step
 from semispline.papers.lin2014.checks import closed_seam as seam
 from semispline.papers.lin2014.checks.contact_rows import w_kr1
+from semispline.papers.lin2014.checks.samples import Sample
 from semispline.papers.recheck import (
     Draft,
     Lets,
@@ -26,7 +31,6 @@ from semispline.papers.recheck import (
     as_text,
     different,
     identity,
-    minimum,
     span_of,
     text,
     total,
@@ -159,7 +163,7 @@ def _with_knot(lets: Lets, order: int, vector: list[Fraction], points: list[Text
 
 def order_of_evaluation(_: Claim) -> Draft:
     """Return triangles first along u: on the columns as they stand, and after all rows have been given all knots."""
-    as_they_are: list[Statement] = [*triangle_step()]
+    as_they_are: list[Statement] = [*triangle_step(), *sharp_continuity(own=False)]
     merged_first: list[Statement] = [*triangle_step()]
     for order in (2, 3, 4):
         for one_vector in (False, True):
@@ -185,7 +189,7 @@ def order_of_evaluation(_: Claim) -> Draft:
         sides = _along_first(one, sample), _across_first(other, sample, merged, rows)
         label = f"order {order}, over the merged knots"
         merged_first.append(identity(label, *sides, where=[*one.pairs, *other.pairs], wanted=False))
-    return Draft([as_they_are, merged_first], believed=(UNROLLED,))
+    return Draft([as_they_are, merged_first], believed=(UNROLLED, RECURRENCE))
 
 
 def closing(formula: Formula) -> Iterator[Statement]:
@@ -209,24 +213,28 @@ def closing(formula: Formula) -> Iterator[Statement]:
 
 def free_middle() -> Iterator[Statement]:
     """Yield the middle curve of least energy between two closed contacts: its equations, and its ends, which differ."""
-    surface, points = seam.middle_curve()
-    heights = {place: Fraction(str(point)) for place, point in zip(surface.index, points, strict=True)}
-    matrix = energy_matrix(surface)
-    free = [n for n, (i, _) in enumerate(surface.index) if i == 3]
+    blend, points = seam.middle_curve()
+    free = [n for n, (i, _) in enumerate(blend.index) if i == 3]
+    yield from least_blend("a middle curve", blend, [(point,) for point in points], free)
+    derived = energy_matrix(blend)
+    matrix, letters = entries(blend)
     for n in free:
-        slope = total(
-            as_text(matrix[n, c]) * as_text(heights[place]) for c, place in enumerate(surface.index) if matrix[n, c]
+        place = blend.index[n]
+        yield identity(
+            f"the derived entry of control point {place[1]} with itself",
+            derived[n, n],
+            matrix[place, place][0],
+            where=letters,
+            own=False,
         )
-        yield identity(f"the energy is stationary in control point {surface.index[n][1]}", slope, 0, own=False)
-    yield minimum("and has one minimum", matrix.extract(free, free), own=False)
-    ends = [heights[surface.index[n]] for n in (free[0], free[-1])]
+    ends = [points[n] for n in (free[0], free[-1])]
     yield different("ends of the middle curve", *ends)
 
 
 def closed_blend(claim: Claim) -> Draft:
     """Return the seam without a middle curve, and with one that (11) alone has found."""
     formula = given(claim.readings[0].parts[0].formula)
-    return Draft([closing(formula), free_middle()], believed=(FUBINI, NO_ENERGY))
+    return Draft([closing(formula), free_middle()], believed=(FUBINI, QUADRATIC))
 
 
 DRAFTS = {

@@ -21,18 +21,20 @@ from semispline.derivations.bezier import (
     expanded_rows,
     row_degrees,
 )
-from semispline.papers.ledger import (
+from semispline.papers.checks import (
     WITHIN,
+    bernstein,
+    bernstein_polynomial,
+    coefficient,
+    is_one,
+)
+from semispline.papers.ledger import (
     Case,
     Formula,
     Meaning,
     UndefinedError,
-    bernstein,
-    bernstein_polynomial,
-    coefficient,
     difference_case,
     given,
-    is_one,
 )
 from semispline.papers.lin2014 import printed as pr
 from semispline.papers.lin2014.checks.bezier_patch import (

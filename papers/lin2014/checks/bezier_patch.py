@@ -14,20 +14,22 @@ from typing import Any
 import sympy as sp
 
 from semispline.derivations.bezier import de_casteljau, generic_patch
-from semispline.papers.ledger import (
+from semispline.papers.checks import (
     SAME,
     WITHIN,
+    bernstein,
+    bernstein_polynomial,
+    coefficient,
+    is_one,
+)
+from semispline.papers.ledger import (
     Case,
     Formula,
     Meaning,
     UndefinedError,
-    bernstein,
-    bernstein_polynomial,
-    coefficient,
     difference_case,
     given,
     indexed,
-    is_one,
 )
 from semispline.papers.lin2014 import printed as pr
 

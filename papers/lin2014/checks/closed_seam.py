@@ -20,6 +20,7 @@ from semispline.derivations.problem import ExactBase, blend_problem, exact_minim
 from semispline.derivations.splines import span_symbols
 from semispline.papers.ledger import Case, Consequence, Formula, as_expression, given
 from semispline.papers.lin2014 import printed as pr
+from semispline.papers.lin2014.checks.consequences import on_surface
 from semispline.papers.lin2014.checks.converted_blends import pair_means
 from semispline.papers.lin2014.checks.energy import basis, u_basis
 from semispline.papers.lin2014.checks.measured_energy import COMMON_TERMS, with_normal_equation
@@ -121,4 +122,4 @@ def seam_gap() -> Consequence:
         ends = [surface_points(surface, u, np.full_like(u, v)) for v in (low, high)]
         gap = float(np.linalg.norm(ends[0] - ends[1], axis=1).max())
         measured[f"gap at the seam, {count} middle curves [radius of the first cylinder]"] = gap / 40.0
-    return Consequence("C2 blends between the closed curves that stand for Fig. 10, least energy (11) alone", measured)
+    return on_surface("C2 blends between the closed curves that stand for Fig. 10, least energy (11) alone", measured)

@@ -5,8 +5,8 @@ condition is right, exactly; the figures may show such bases.
 
 (3.1) as printed gives the blend the second derivative across the contact that the base has, along the normal, times
 (w_{k_r+1} - w_s) / u_2. So curvature stays continuous where the base is straight across the contact (zero times
-anything), or where that factor is 1. Parametric continuity takes rulings that are straight and accelerate away from
-the contact by just the right amount; at constant speed, the usual parametrisation, it is never reached.
+anything), or where that factor is 1. Parametric continuity takes a base that is straight across and changes its
+speed at the contact by just the right amount; at constant speed, the usual parametrisation, it is never reached.
 
 For C2 the coordinates are decided one by one, so that one symbolic letter a row stands for any control points. For G2
 only the coordinate along the normal counts: there R_0 and R_1 agree, since R_w is a multiple of R_1 - R_0 and tangent,
@@ -43,8 +43,9 @@ from semispline.papers.lin2014.printed import CUBIC
 # as a condition says, as one example has them, or at constant speed (R_ww = 0); for the others the one along the
 # normal, on bases that are curved across, with any knots or with spans as a condition says, or straight.
 Kind = Literal[
-    "any", "step", "step of squares", "example", "constant speed", "curved", "spans of U", "equal spans", "straight"
-]
+    "any", "step", "step of squares", "faster", "turning back", "constant speed", "curved", "spans of U", "equal spans",
+    "straight",
+]  # fmt: skip
 
 _BLEND = {"start": (pr.P_0, pr.P_1, pr.P_2), "end": (pr.P_m, pr.P_m1, pr.P_m2)}
 _BASE = {"start": (pr.R_0, pr.R_1, pr.R_2), "end": (pr.S_0, pr.S_1, pr.S_2)}
@@ -95,8 +96,9 @@ def for_which_bases(side: Side, m: int, *, parametric: bool, squares: bool) -> C
             (f"rows of constant speed, any knots, {curves}", "constant speed", False),
         )
         if not squares:
-            label = f"rows 0, 1, 11 on a line, knots 1/5 and 2/5 after the contact, {curves}"
-            kinds = (*kinds, (label, "example", True))
+            on_lines = "on a line, knots {} after the contact, " + curves
+            kinds += ((f"rows 0, 1, 11 {on_lines.format('1/5 and 2/5')}", "faster", True),)
+            kinds += ((f"rows 0, 3, 1 {on_lines.format('1 and 2')}", "turning back", True),)
     else:
         kinds = (
             (f"any rows, spans as the condition says, {curves}", "equal spans" if squares else "spans of U", True),
@@ -125,7 +127,7 @@ def _check(kinds: tuple[tuple[str, Kind, bool], ...], method: str, side: Side, m
         except UndefinedError as error:
             return str(error)
 
-    return Check(cases, Strength.SYMBOLIC_ORDER, method, proof=True, probe=probe)
+    return Check(cases, Strength.GENERAL, method, proof=True, probe=probe)
 
 
 def _row_2_case(label: str, formula: Formula | None, side: Side, m: int, kind: Kind, parametric: bool) -> Case:
@@ -187,7 +189,8 @@ def _spans_of(kind: Kind, m: int) -> tuple[Any, Any]:
         return _BASE_H[0], 2 * _BASE_H[0]
     if kind == "spans of U":
         return _BASE_H[0], _uniform(m)[1]
-    return (sp.Rational(1, 5), sp.Rational(2, 5)) if kind == "example" else (_BASE_H[0], _BASE_H[1])
+    examples = {"faster": (sp.Rational(1, 5), sp.Rational(2, 5)), "turning back": (sp.Integer(1), sp.Integer(2))}
+    return examples.get(kind, tuple(_BASE_H))
 
 
 def _step_of(kind: Kind, m: int) -> Any:
@@ -196,7 +199,8 @@ def _step_of(kind: Kind, m: int) -> Any:
     return {
         "step": u_2 * h_2 / (h_1 * (u_2 - h_2)),
         "step of squares": h_2 * (u_1 + h_1) / (u_1 * (2 * h_1 - h_2)),
-        "example": sp.Integer(10),
+        "faster": sp.Integer(10),
+        "turning back": sp.Rational(-2, 3),
         "constant speed": h_2 / h_1,
     }.get(kind)
 
@@ -237,17 +241,19 @@ def excess_of_c2_check(m: int, *, squares: bool) -> Check:
         yield Case("any rows and knots", residual == 0, residual=residual.as_expr() if residual else sp.Integer(0))
 
     method = "P_uu by the printed row less R_ww, both by end derivatives, any rows and knots"
-    return Check(cases, Strength.SYMBOLIC_ORDER, method, proof=True, probe=difference)
+    return Check(cases, Strength.GENERAL, method, proof=True, probe=difference)
 
 
-_STEP = "the control points of the base step as R_2 - R_1 = s (R_1 - R_0) all along the contact, s = "
+_STEP = "the control points of each base step as R_2 - R_1 = s (R_1 - R_0) all along the contact, at S alike, s = "
+_SPEED = (
+    ": the base is straight across there and its speed changes by just that much, upwards if s > 0; if s < 0 its "
+    "control points turn back"
+)
 # Under which condition a printed row 2 is right in a figure, m = 6 for C2; H_1, H_2 are the distances of the first two
 # inner knots of the base from the contact.
 STEPS = {
-    False: _STEP
-    + "H_2 / (2 H_1 (1/2 - H_2)): so H_2 is less than u_2 = 1/2, and the rulings are straight and accelerate",
-    True: _STEP + "4 H_2 (1/4 + H_1) / (2 H_1 - H_2): so H_2 is less than 2 H_1, and the rulings are straight and "
-    "accelerate",
+    False: _STEP + "H_2 / (2 H_1 (1/2 - H_2)), H_2 other than u_2 = 1/2" + _SPEED,
+    True: _STEP + "4 H_2 (1/4 + H_1) / (2 H_1 - H_2), H_2 other than 2 H_1" + _SPEED,
 }
 SPANS = {
     False: "the first two spans of the base across the contact are together as long as those of the blend, or the base "

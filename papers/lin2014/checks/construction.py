@@ -13,28 +13,31 @@ import sympy as sp
 from semispline.derivations.contact import A, contact_rows
 from semispline.derivations.counts import domain_ends, functions_on, last_knot
 from semispline.derivations.splines import X, basis_pieces, end_derivative_step, end_derivatives, span_symbols
+from semispline.papers.checks import (
+    Counting,
+    clamped,
+    contained,
+    de_boor,
+    insertion_cases,
+    net_ring,
+    sharp_continuity_cases,
+    union,
+)
 from semispline.papers.ledger import (
     Case,
     Check,
-    Counting,
     Formula,
     Meaning,
     Strength,
     UndefinedError,
-    clamped,
-    contained,
-    de_boor,
     difference_case,
     given,
-    insertion_cases,
-    net_ring,
     premises,
-    sharp_continuity_cases,
-    union,
 )
 from semispline.papers.lin2014 import printed as pr
 from semispline.papers.lin2014.checks.contact_rows import ORDERS
 from semispline.papers.lin2014.checks.energy import u_basis
+from semispline.papers.lin2014.checks.printed_numbers import added_cases
 from semispline.papers.lin2014.checks.printed_pairs import (
     PRINTED_PAIRS,
     WITH_MIDDLE_CURVE,
@@ -98,7 +101,8 @@ def nested_space_cases() -> Iterator[Case]:
 
 
 def knot_line_cases() -> Iterator[Case]:
-    """Yield printed pairs of contact curves: the union of their inner knots is larger than either."""
+    """Yield that the union of two different vectors has knots that one lacks, and printed pairs: larger than either."""
+    yield from premises(added_cases())
     for name, keys in PRINTED_PAIRS.items():
         vectors = [set(inner_knots(key)) for key in keys]
         union_of_knots = set.union(*vectors)
@@ -238,7 +242,7 @@ def row_check_of(row: Callable[[Any, Any], Any]) -> Check:
             off = printed.subs(pr.m, m) - row(*ends)
             yield Case(label, bool(off == 0), own=own, residual=off)
 
-    return Check(cases, Strength.SYMBOLIC_ORDER, _ROWS_SET, proof=True)
+    return Check(cases, Strength.GENERAL, _ROWS_SET, proof=True)
 
 
 def middle_count_check(count: int) -> Check:
@@ -254,7 +258,7 @@ def middle_count_check(count: int) -> Check:
             if end - start - 1 == count:
                 yield Case(label, bool(printed == last), own=own, residual=printed - last)
 
-    return Check(cases, Strength.SYMBOLIC_ORDER, _ROWS_SET, proof=True)
+    return Check(cases, Strength.GENERAL, _ROWS_SET, proof=True)
 
 
 def paired_cases(last_pair: Callable[[Any], Any]) -> Callable[[Formula | None], Iterator[Case]]:

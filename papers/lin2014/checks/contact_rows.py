@@ -49,7 +49,7 @@ def row_check(side: Side, row: int, mode: Mode = "all") -> Check:
     """Return the check of the condition for row 0, 1 or 2 counted from the contact at `side`."""
     return Check(
         partial(_row_cases, side, row, mode),
-        Strength.SYMBOLIC_ORDER,
+        Strength.GENERAL,
         ("what the row gives along the normal, against the one " if mode == "normal" else "the row ")
         + "from end derivatives and the chain rule for symbolic orders and knots, and from the Cox-de Boor "
         "pieces for each pair of orders from 2 to 8"
@@ -87,7 +87,7 @@ def derivative_check(surface: Literal["P", "R"], order: int) -> Check:
     """Return the check of an end derivative of the blend or of the base."""
     return Check(
         partial(_derivative_cases, surface, order),
-        Strength.SYMBOLIC_ORDER,
+        Strength.GENERAL,
         "end derivatives for a symbolic order (by induction from the recurrence), and those of the Cox-de Boor pieces "
         "for each order from 2 to 8, over symbolic knots",
         proof=True,
@@ -290,7 +290,7 @@ def mirror_check(row: int) -> Check:
 
     return Check(
         cases,
-        Strength.SYMBOLIC_ORDER,
+        Strength.GENERAL,
         "the printed row at R, mirrored, and at S, for symbolic orders; for k = 2 to 8 with the printed index",
         proof=True,
     )

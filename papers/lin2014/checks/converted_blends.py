@@ -17,6 +17,7 @@ import sympy as sp
 
 from semispline.papers.ledger import Case, Check, Consequence, Counterexample, Formula, Strength, given
 from semispline.papers.lin2014 import printed as pr
+from semispline.papers.lin2014.checks.consequences import on_surface
 from semispline.papers.lin2014.checks.printed_numbers import CONTACTS
 from semispline.papers.lin2014.checks.printed_pairs import inner_knots
 from semispline.papers.lin2014.printed import CUBIC
@@ -104,7 +105,7 @@ def converted_cases(formula: Formula | None) -> Iterator[Case]:
 
 CONVERTED_CHECK = Check(
     converted_cases,
-    Strength.SYMBOLIC_ORDER,
+    Strength.GENERAL,
     "where a mean of two knots lies, for every pair of vectors; multiplicities counted on printed and other vectors",
     proof=True,
 )
@@ -150,19 +151,27 @@ def saving_consequence() -> Consequence:
         name = figure.replace("fig-", "Fig. ")
         first, second = (inner_knots(key) for key in pair)
         rows = 6 + int(counts[figure])
-        direct = rows * (together(first, second).total() + CUBIC)
+        of_contacts = 3 * (len(first) + len(second) + 2 * CUBIC)
+        averages = {word: len(rule(merged_once(first, second))) for word, rule in UNPAIRED.items()}
+        own = {word: of_contacts + (rows - 6) * (number + CUBIC) for word, number in averages.items()}
         converted = {word: rows * (_inner_knots(figure, word)[1] + CUBIC) for word in UNPAIRED}
-        averages = UNPAIRED["dropped"](merged_once(first, second))
-        own = 3 * (len(first) + len(second) + 2 * CUBIC) + (rows - 6) * (len(averages) + CUBIC)
-        measured |= {f"{name}, own knots": own, f"{name}, knots of both": direct}
-        if len(set(converted.values())) == 1:
-            measured[f"{name}, converted"] = converted["dropped"]
-        else:
-            kinds: dict[int, list[str]] = {}
-            for word, number in converted.items():
-                kinds.setdefault(number, []).append(word)
-            measured |= {f"{name}, converted ({' or '.join(words)})": n for n, words in kinds.items()}
-    return Consequence("Control points with the printed knots, by what becomes of an unpaired knot", measured)
+        measured |= _by_reading(f"{name}, own knots", own)
+        measured[f"{name}, knots of both"] = rows * (together(first, second).total() + CUBIC)
+        measured |= _by_reading(f"{name}, converted", converted)
+    return on_surface("Control points with the printed knots, by what becomes of an unpaired knot", measured)
+
+
+def _by_reading(name: str, found: dict[str, int]) -> dict[str, int]:
+    """Return a count, or one for each of those that the readings of the rule give."""
+    kinds: dict[int, list[str]] = {}
+    for word, number in found.items():
+        kinds.setdefault(number, []).append(word)
+    if len(kinds) == 1:
+        return {name: next(iter(kinds))}
+    # Where no knot is left without a partner all readings that pair are one.
+    pairing = [word for word in UNPAIRED if word != "each with the next"]
+    said = {number: "in pairs" if words == pairing else " or ".join(words) for number, words in kinds.items()}
+    return {f"{name} ({words})": number for number, words in said.items()}
 
 
 def converted_counterexample() -> Counterexample:
@@ -174,7 +183,11 @@ def converted_counterexample() -> Counterexample:
 
 
 def few_knots_cases() -> Iterator[Case]:
-    """Yield pairs of vectors, true where the rule gives the middle curve an inner knot."""
+    """Yield every number of knots from 2 on, then pairs of vectors, true where the rule gives a knot."""
+    place, gap = sp.symbols("v g", positive=True)
+    mean = pair_means((place, place + gap))[0]
+    inside = bool((mean - place).is_positive and (place + gap - mean).is_positive)
+    yield Case("every n from 2 on: v_1 and v_2 are a pair, and their mean lies between them", inside)
     for label, (first, second) in _all_pairs().items():
         v = merged_once(first, second)
         yield Case(f"{label}: n = {len(v)}", bool(pair_means(v)), own=len(v) >= 2, meets=len(v) >= 2)

@@ -8,7 +8,7 @@ from functools import cache
 from typing import Any
 
 from semispline.derivations.counts import domain_ends, functions_on, last_knot
-from semispline.papers.ledger import Counting, clamped
+from semispline.papers.checks import Counting, clamped
 from semispline.papers.lin2014 import printed as pr
 from semispline.papers.lin2014.printed import CUBIC
 

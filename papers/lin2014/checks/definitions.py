@@ -13,29 +13,30 @@ from typing import Any
 
 import sympy as sp
 
-from semispline.papers.ledger import (
+from semispline.papers.checks import (
     SAME,
     WITHIN,
+    clamped,
+    coefficient,
+    de_boor,
+    net_ring,
+    rational_points,
+    spline_basis,
+    triangle_cases,
+)
+from semispline.papers.ledger import (
     Case,
     Check,
     Formula,
     Meaning,
-    Sample,
     Strength,
     UndefinedError,
-    clamped,
-    coefficient,
-    de_boor,
     difference_case,
     given,
     indexed,
-    net_ring,
-    rational_points,
-    samples,
-    spline_basis,
-    triangle_cases,
 )
 from semispline.papers.lin2014 import printed as pr
+from semispline.papers.lin2014.checks.samples import Sample, samples
 from semispline.papers.lin2014.printed import CUBIC
 
 THIRD = Fraction(1, 3)
@@ -172,10 +173,10 @@ SUM_METHOD = (
     "whose coefficients are the basis functions by induction on the order; run at rational parameters and knots of "
     "orders 2 to 4 as well"
 )
-SURFACE_CHECK = Check(surface_cases, Strength.SYMBOLIC_ORDER, SUM_METHOD, proof=True)
-CURVE_CHECK = Check(curve_cases, Strength.SYMBOLIC_ORDER, SUM_METHOD, proof=True)
+SURFACE_CHECK = Check(surface_cases, Strength.GENERAL, SUM_METHOD, proof=True)
+CURVE_CHECK = Check(curve_cases, Strength.GENERAL, SUM_METHOD, proof=True)
 
 
 def base_check(letter: str) -> Check:
     """Return the check of (7) or (9)."""
-    return Check(base_cases(letter), Strength.SYMBOLIC_ORDER, SUM_METHOD, proof=True)
+    return Check(base_cases(letter), Strength.GENERAL, SUM_METHOD, proof=True)

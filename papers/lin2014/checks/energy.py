@@ -18,7 +18,16 @@ from sympy.polys.matrices import DomainMatrix
 from semispline.derivations.energy import Basis, ExactSurface, energy_matrix, gram_matrix
 from semispline.derivations.problem import ExactBase, blend_problem, exact_minimum
 from semispline.derivations.splines import X, end_derivatives
-from semispline.papers.ledger import Case, Formula, Meaning, as_expression, as_fraction, clamped, difference_case, given
+from semispline.papers.checks import clamped
+from semispline.papers.ledger import (
+    Case,
+    Formula,
+    Meaning,
+    as_expression,
+    as_fraction,
+    difference_case,
+    given,
+)
 from semispline.papers.lin2014 import printed as pr
 from semispline.papers.lin2014.printed import CUBIC
 
@@ -169,25 +178,34 @@ def crease_cases() -> Iterator[Case]:
         yield Case(label, flat == 2, own=meets, meets=meets)
 
 
+def _strip(k: int, m: int, data: tuple[Any, ...]) -> tuple[sp.Matrix, list[int], list[int], sp.Matrix]:
+    """Return the energy matrix of a strip, its set and its free rows, and what the contact data make of the former."""
+    space = u_basis(k, m)
+    spans = [space.knots[k + r - 1] for r in (1, 2)]
+    solve = end_derivatives(2, k - 1, spans).inv()
+    at_start = solve * sp.Matrix(data[:3])
+    at_end = solve * sp.Matrix([data[3], -data[4], data[5]])
+    known = [0, 1, 2, m - 2, m - 1, m]
+    return gram_matrix(2, space, space), known, free_rows(m, 2), sp.Matrix([*at_start, *at_end[::-1]])
+
+
 def end_energy(k: int, m: int, data: tuple[Any, ...]) -> Any:
     """Return the least bending energy of a strip of m + 1 rows: section 3 in one dimension, C2 on both sides.
 
     `data` are position, first and second derivative at the start, then the same at the end.
     """
-    space = u_basis(k, m)
-    gram = gram_matrix(2, space, space)
-    spans = [space.knots[k + r - 1] for r in (1, 2)]
-    solve = end_derivatives(2, k - 1, spans).inv()
-    at_start = solve * sp.Matrix(data[:3])
-    at_end = solve * sp.Matrix([data[3], -data[4], data[5]])
-    fixed = [*at_start, *at_end[::-1]]
-    known, free = [0, 1, 2, m - 2, m - 1, m], free_rows(m, 2)
-    values = sp.Matrix(fixed)
+    gram, known, free, values = _strip(k, m, data)
     energy = (values.T * gram.extract(known, known) * values)[0]
     if free:
         right = gram.extract(free, known) * values
         energy -= (right.T * gram.extract(free, free).inv() * right)[0]
     return sp.expand(energy)
+
+
+def middle_row(data: tuple[Any, ...]) -> Any:
+    """Return the one free row of the cubic strip of least energy with a middle curve; `data` as for `end_energy`."""
+    gram, known, free, values = _strip(CUBIC, 6, data)
+    return -(gram.extract(free, known) * values)[0] / gram.extract(free, free)[0]
 
 
 def positive_definite_cases(order: int) -> Iterator[Case]:
@@ -243,26 +261,28 @@ def substituted(order: int, geometric: bool, *, flat: bool = False) -> sp.Poly:
 def shape_cases() -> Iterator[Case]:
     """Yield pairs of planar plates, true where the least energy over all alpha and beta belongs to a G1 blend.
 
-    Along the axis of the plates the energy is a quadratic polynomial in a = alpha^2 and b = beta^2; where its minimum
-    over a, b >= 0 lies at a = b = 0 the cross derivative of the blend vanishes there, and there is no tangent plane.
+    Along the axis of the plates the energy is a quadratic polynomial in a = alpha^2 and b = beta^2. Where its minimum
+    over a, b >= 0 lies at a = b = 0 the blend does not move along the axis at all: it leaves both plates at right
+    angles.
     """
     a, b = sp.symbols("a b", real=True)
-    for label, gap, into_b, meets in (
-        ("plates that face each other over a gap of 2", 2, 1, True),
-        ("plates that face each other over a gap of 1", 1, 1, True),
-        ("parallel plates, the blend turns round by 180 degrees", 0, -1, False),
+    gap = sp.Symbol("d", positive=True)
+    for label, distance, into_b, meets in (
+        ("plates that face each other, over every gap", gap, 1, True),
+        ("parallel plates, the blend turns round by 180 degrees", sp.Integer(0), -1, False),
     ):
         # The first plate is left towards +x with x_u = a, the second one entered with x_u = into_b * b.
-        energy = end_energy(4, 6, (0, a, 0, gap, into_b * b, 0))
+        energy = end_energy(CUBIC, 6, (0, a, 0, distance, into_b * b, 0))
         best = sp.solve([sp.diff(energy, a), sp.diff(energy, b)], [a, b], dict=True)[0]
-        yield Case(label, bool(best[a] > 0 and best[b] > 0), own=meets, meets=meets)
+        yield Case(label, bool(best[a].is_positive and best[b].is_positive), own=meets, meets=meets)
 
 
 @cache
-def middle_knot_energies() -> tuple[Any, Any]:
-    """Return least energies of a C2 blend with the rule's middle knot 5/12, and with the union {1/3, 1/2} there.
+def middle_knot_blends() -> tuple[tuple[ExactSurface, Any, Any], ...]:
+    """Return C2 blends of least energy with the rule's middle knot 5/12, and with the union {1/3, 1/2} there.
 
-    Cubic across, linear along, so that it stays small; a base with a ridge and a flat one.
+    Bases, control points and energy of each. Cubic across, linear along, so that they stay small; a base with a ridge
+    and a flat one.
     """
     a, b = basis(2, Fraction(1, 2)), basis(2, Fraction(1, 3))
     found = []
@@ -273,9 +293,15 @@ def middle_knot_energies() -> tuple[Any, Any]:
             ExactBase(across, tuple(tuple((x + dx * i, j, z) for j, z in enumerate(heights)) for i in range(3)))
             for x, dx, heights in ((0, -1, (0, 1, 0)), (2, 1, (0, 0, 0)))
         ]
-        least, _ = exact_minimum(blend_problem(2, surface, *sides), 1, 1)
-        found.append(as_expression(least))
-    return found[0], found[1]
+        least, points = exact_minimum(blend_problem(2, surface, *sides), 1, 1)
+        found.append((surface, points, as_expression(least)))
+    return tuple(found)
+
+
+def middle_knot_energies() -> tuple[Any, Any]:
+    """Return the least energies with the rule's middle knot, and with the union there."""
+    (*_, rule), (*_, union) = middle_knot_blends()
+    return rule, union
 
 
 def strain_cases(formula: Formula | None) -> Iterator[Case]:

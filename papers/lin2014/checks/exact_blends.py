@@ -8,6 +8,7 @@ from typing import Any
 
 from semispline.papers.baselines import BlendTask
 from semispline.papers.ledger import Consequence
+from semispline.papers.lin2014.checks.consequences import on_surface
 from semispline.papers.lin2014.examples.exact import Circle, exact_example
 from semispline.papers.lin2014.examples.section5 import example
 from semispline.papers.reproduction import ROUNDING
@@ -73,4 +74,4 @@ def exact_contact(figure: int, what: str) -> Consequence:
         "relative curvature jump": max(c.curvature_jump_relative for c in contacts),
         "crease inside [degrees]": max((c.angle_degrees for c in result.creases), default=0.0),
     }
-    return Consequence(what, measured)
+    return on_surface(what, measured)

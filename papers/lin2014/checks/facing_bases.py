@@ -1,4 +1,4 @@
-"""Deciding how often the least energy over alpha and beta lies where a blend has no tangent plane, on strips.
+"""Deciding how often the least energy over alpha and beta lies where a blend leaves a base at an angle, on strips.
 
 Two bases face each other if the way out of each makes an acute angle with the chord from contact to contact. The
 family: straight strips of unit speed in one plane, theta and phi the angles, with signs, that the way out of R and
@@ -9,6 +9,7 @@ and beta^2 along these ways, and P_uu = 0. Its energy is quadratic in a = alpha^
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
@@ -19,6 +20,7 @@ import sympy as sp
 
 from semispline.papers.ledger import Case, Check, Consequence, Counterexample, Formula, Strength, given
 from semispline.papers.lin2014.checks import energy
+from semispline.papers.lin2014.checks.consequences import on_surface
 from semispline.papers.lin2014.printed import CUBIC
 
 COS_THETA, COS_PHI, COS_BETWEEN, BEST = sp.symbols("c_theta c_phi c_between a_best", real=True)
@@ -91,7 +93,7 @@ def _best_of(relation: Any, angles: tuple[tuple[Any, Any], tuple[Any, Any]]) -> 
 
 FACING_CHECK = Check(
     facing_cases,
-    Strength.SYMBOLIC_ORDER,
+    Strength.GENERAL,
     "the exact energy of strips between straight plates of unit speed, for every gap and pair of exit angles, k = 4 "
     "and one middle curve",
     proof=True,
@@ -111,11 +113,24 @@ def facing_shares() -> Consequence:
     measured: dict[str, float] = {}
     for m in (5, 6):
         measured[f"share of exit angles below 90 degrees, {m - 5} middle curves"] = _share(m)
+    measured["crease at alpha = 0 between plates at 74 and 37 degrees [degrees]"] = _crease(*list(PLATES.values())[-1])
     wants = json.loads((Path(__file__).parents[1] / "shapes.json").read_text(encoding="utf-8"))["facing"]["wants"]
     measured |= {"random facing pairs of the suite": wants["told"], "of these": wants["not positive"]}
-    return Consequence(
+    return on_surface(
         "Pairs for which (11) is least at alpha^2 <= 0 or beta^2 <= 0: the family, and docs/shapes.md", measured
     )
+
+
+def _crease(theta: tuple[Any, Any], phi: tuple[Any, Any]) -> float:
+    """Return the angle between the way out of R and the blend of least energy with alpha = 0, gap 1, one middle curve.
+
+    Rows 0 to 2 are one then, and the blend leaves them towards row 3.
+    """
+    b = sp.Symbol("b", real=True)
+    data = [(0, 0, 0, end, b * into, 0) for end, into in zip((1, 0), phi, strict=True)]
+    (best,) = sp.solve(sum(energy.end_energy(CUBIC, 6, along) for along in data).diff(b), b)
+    x, y = (float(energy.middle_row(along).subs(b, best)) for along in data)
+    return math.degrees(math.acos((x * theta[0] + y * theta[1]) / math.hypot(x, y)))
 
 
 def _share(m: int, steps: int = 400) -> float:

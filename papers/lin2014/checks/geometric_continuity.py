@@ -38,7 +38,7 @@ def general_check(order: int) -> Check:
     """Return the check of (15) for order 1, of (16) for order 2: the conditions with general functions of v."""
     return Check(
         partial(_general_cases, order),
-        Strength.SYMBOLIC_ORDER,
+        Strength.GENERAL,
         f"the chain rule of order {order} for P(u, v) = R(w(u, v), v~(u, v)); for any R and P with a common curve, "
         + ("tangent planes" if order == 1 else "second fundamental forms")
         + " and the solution for p_i, q_i where they agree; instances judged by the implicit equation of the base and "
@@ -51,7 +51,7 @@ def special_check(order: int) -> Check:
     """Return the check of (17) for order 1, of (18) for order 2: a blend that leaves the base backwards."""
     return Check(
         partial(_special_cases, order),
-        Strength.SYMBOLIC_ORDER,
+        Strength.GENERAL,
         "the chain rule with p_1 = -alpha^2, since w falls where u grows",
         proof=True,
     )

@@ -22,8 +22,17 @@ from typing import Any
 import sympy as sp
 
 from semispline.derivations.splines import X, basis_pieces, end_derivatives
-from semispline.papers.ledger import Case, Check, Consequence, Formula, Strength, clamped, contained, given
+from semispline.papers.checks import clamped, contained
+from semispline.papers.ledger import (
+    Case,
+    Check,
+    Consequence,
+    Formula,
+    Strength,
+    given,
+)
 from semispline.papers.lin2014.checks import energy
+from semispline.papers.lin2014.checks.consequences import on_surface
 from semispline.papers.lin2014.checks.converted_blends import pair_means
 from semispline.papers.lin2014.checks.measured_energy import least_energy
 from semispline.papers.lin2014.checks.printed_pairs import WITH_MIDDLE_CURVE, merged, printed_pair
@@ -92,7 +101,7 @@ def _lacks(data: tuple[int, ...]) -> tuple[Any, Any]:
 
 EXTRA_CHECK = Check(
     extra_cases,
-    Strength.SYMBOLIC_ORDER,
+    Strength.GENERAL,
     "the energy of a strip that has the prescribed second derivatives, for every span h; least energies of strips",
     proof=True,
 )
@@ -126,7 +135,7 @@ def to_zero_cases(formula: Formula | None) -> Iterator[Case]:
 
 
 TO_ZERO_CHECK = Check(
-    to_zero_cases, Strength.SYMBOLIC_ORDER, "the cubic between two ends, which has the least energy", proof=True
+    to_zero_cases, Strength.GENERAL, "the cubic between two ends, which has the least energy", proof=True
 )
 
 
@@ -145,7 +154,7 @@ def rows_over_averages() -> Consequence:
         for count in counts:
             value, points = least_energy(continuity, count)
             measured[f"energy (11), {continuity}, {count} middle curves, {points} control points"] = value
-    return Consequence("Blends of the made pair, every middle curve over the averaged knots", measured)
+    return on_surface("Blends of the made pair, every middle curve over the averaged knots", measured)
 
 
 def curvature_is_lost() -> Consequence:
@@ -154,4 +163,4 @@ def curvature_is_lost() -> Consequence:
     for continuity, count in (("C2", 1), ("C2", 8), ("C2", 32), ("C1", 32)):
         value, _ = least_energy(continuity, count, all_knots=True)
         measured[f"energy (11), {continuity}, {count} middle curves"] = value
-    return Consequence("Blends of the made pair, middle curves over the knots of both contacts", measured)
+    return on_surface("Blends of the made pair, middle curves over the knots of both contacts", measured)

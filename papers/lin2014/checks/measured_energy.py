@@ -9,6 +9,7 @@ from typing import TypeAlias
 import numpy as np
 
 from semispline.papers.ledger import Consequence
+from semispline.papers.lin2014.checks.consequences import on_surface
 from semispline.papers.lin2014.checks.energy import printed_system
 from semispline.papers.lin2014.checks.measured_rows import made_blend
 from semispline.papers.lin2014.examples.made_pair import made_pair
@@ -38,7 +39,7 @@ def parameter_dependence() -> Consequence:
         over_parameters, over_area = _strain(version)
         measured[f"over the parameters, {name}"] = over_parameters
         measured[f"over the surface, {name}"] = over_area
-    return Consequence("The G2 blend of the made pair, one and the same surface, in two parametrisations", measured)
+    return on_surface("The G2 blend of the made pair, one and the same surface, in two parametrisations", measured)
 
 
 def _strain(surface: SemiStructuredSurface) -> tuple[float, float]:
@@ -76,7 +77,7 @@ def union_knots() -> Consequence:
         f"energy (11), {own.surface.n_control_points} control points": own.energy,
         f"energy (11) on the union of knots, {refined.surface.n_control_points} control points": refined.energy,
     }
-    return Consequence("C2 blends of the made pair, the middle curve by the paper's rule and on all knots", measured)
+    return on_surface("C2 blends of the made pair, the middle curve by the paper's rule and on all knots", measured)
 
 
 def other_direction() -> Consequence:
@@ -87,7 +88,7 @@ def other_direction() -> Consequence:
         "energy (11), middle knot 0.6, as from the other end": back.energy,
         "largest displacement": _largest_change(there.surface, back.surface),
     }
-    return Consequence("C2 blends of the cylinders with the knots of Fig. 8, the last knot dropped", measured)
+    return on_surface("C2 blends of the cylinders with the knots of Fig. 8, the last knot dropped", measured)
 
 
 def zero_system() -> Consequence:
@@ -106,7 +107,7 @@ def zero_system() -> Consequence:
         "least energy": result.energy,
         "largest displacement": _largest_change(result.surface, surface),
     }
-    return Consequence("(14) over the printed knots of Fig. 5: A and B are zero, every X solves it", measured)
+    return on_surface("(14) over the printed knots of Fig. 5: A and B are zero, every X solves it", measured)
 
 
 def single_integrals() -> Consequence:
@@ -114,7 +115,7 @@ def single_integrals() -> Consequence:
     A, _ = printed_system("vv")
     result = made_blend("C2")
     measured = {"rank of A": float(A.rank()), "unknown control points": float(A.rows), "least energy": result.energy}
-    return Consequence("(14) over the printed knots of Fig. 5 with C_vv^T C_vv: A is singular still", measured)
+    return on_surface("(14) over the printed knots of Fig. 5 with C_vv^T C_vv: A is singular still", measured)
 
 
 def third_term() -> Consequence:
@@ -126,7 +127,7 @@ def third_term() -> Consequence:
         "least energy": result.energy,
         "largest displacement": _largest_change(result.surface, surface),
     }
-    return Consequence("The middle curve of the made pair's C2 blend from the system with C_uv^T C_vv", measured)
+    return on_surface("The middle curve of the made pair's C2 blend from the system with C_uv^T C_vv", measured)
 
 
 Term: TypeAlias = tuple[int, tuple[int, int], tuple[int, int]]
@@ -182,6 +183,6 @@ def vector_lengths() -> Consequence:
     curves = made_blend().surface.control_curves
     lengths = {"of b_3j by the printed index": 2, "of b_{m-3,j} by the printed index": 4, "that row 3 has": 3}
     measured = {f"entries {name}": float(len(curves[i].control_points)) for name, i in lengths.items()}
-    return Consequence(
+    return on_surface(
         "The lists C_uu and C_vv for the made pair's blend, m = 6, where rows 3 and m-3 are one", measured
     )

@@ -15,6 +15,7 @@ import sympy as sp
 
 from semispline.papers.ledger import Consequence, Formula
 from semispline.papers.lin2014 import printed as pr
+from semispline.papers.lin2014.checks.consequences import on_surface
 from semispline.papers.lin2014.checks.contact_rows import Side, t_ks1, u_before, u_last, w_kr1
 from semispline.papers.lin2014.examples.made_pair import made_pair
 from semispline.papers.reproduction import cad_verdict, turn_between
@@ -109,13 +110,13 @@ def measured_rows(
         "turn of the normal across the contact [degrees]": turn_between(*ends, flipped=flipped),
         "curvature jump [1/length]": contact.curvature_jump,
         "relative curvature jump": contact.curvature_jump_relative,
-        "relative curvature jump with the corrected formula": kept.curvature_jump_relative,
     }
+    corrected = {"relative curvature jump": kept.curvature_jump_relative}
     if continuity == "C2":
         measured["relative C1 residual"] = contact.c1_residual
         measured["relative C2 residual"] = contact.c2_residual
-        measured["relative C2 residual with the corrected formula"] = kept.c2_residual
-    return Consequence(what, measured, {"Open CASCADE": cad_verdict(*ends, flipped=flipped)})
+        corrected["relative C2 residual"] = kept.c2_residual
+    return on_surface(what, measured, corrected, {"Open CASCADE": cad_verdict(*ends, flipped=flipped)})
 
 
 def rewritten_base(formulas: Mapping[int, Formula]) -> Consequence:
@@ -139,4 +140,4 @@ def rewritten_base(formulas: Mapping[int, Formula]) -> Consequence:
         blended = with_printed_rows((written, other), same, "start", formulas)
         contact = measure_contact(written, Base(blended, "u0"), flip="no")
         measured[f"relative curvature jump, the base {name}"] = contact.curvature_jump_relative
-    return Consequence("The made pair with rows 1 and 2 as printed; one base, written in three ways", measured)
+    return on_surface("The made pair with rows 1 and 2 as printed; one base, written in three ways", measured)

@@ -10,6 +10,7 @@ import numpy as np
 
 from semispline.derivations.bezier import de_casteljau, division_curve, division_rows
 from semispline.papers.ledger import Consequence
+from semispline.papers.lin2014.checks.consequences import on_surface
 from semispline.papers.lin2014.checks.measured_rows import made_blend
 from semispline.solver.judge import curve_points
 
@@ -51,7 +52,7 @@ def top_last_row() -> Consequence:
         return [*division_rows(net, _FUNCTION, "top")[:-1], division_curve(net, _FUNCTION, 0, 3)]
 
     change = _largest_change(wrong, lambda net: division_rows(net, _FUNCTION, "top"))
-    return Consequence(
+    return on_surface(
         f"{_PATCH}: with Q_0^n as last row the far edge of the top sub-patch falls on the dividing curve",
         {"largest displacement": change},
     )
@@ -65,7 +66,7 @@ def missing_first_row() -> Consequence:
 
     change = _largest_change(read, lambda net: division_rows(net, _FUNCTION, "top"))
     # Exact, so that zero is no rounding: a whole number.
-    return Consequence(
+    return on_surface(
         f"{_PATCH}: a reader takes the edge v = 1 of the patch for Q_n^0, with its m + 1 points, and loses nothing",
         {"largest displacement": change or 0},
     )
@@ -79,7 +80,7 @@ def one_function_for_all() -> Consequence:
     function = curve_points(curve.degree, curve.knots, unit[:, None], v)
     wrong = function * curve.control_points.sum(axis=0)
     change = np.linalg.norm(wrong - curve_points(curve.degree, curve.knots, curve.control_points, v), axis=1).max()
-    return Consequence(
+    return on_surface(
         "The middle curve of the made pair's blend (extent 8), each control point weighted by B_3",
         {"largest displacement": float(change)},
     )

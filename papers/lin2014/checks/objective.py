@@ -16,16 +16,15 @@ from semispline.derivations.contact import A, contact_rows
 from semispline.derivations.energy import SECOND_DERIVATIVES, stationarity_condition, thin_plate_density
 from semispline.derivations.shape import total_degrees
 from semispline.derivations.splines import end_derivative_step, end_derivatives, span_symbols
+from semispline.papers.checks import coefficient, identity_cases
 from semispline.papers.ledger import (
     Case,
     Check,
     Formula,
     Meaning,
     Strength,
-    coefficient,
     difference_case,
     given,
-    identity_cases,
     premises,
 )
 from semispline.papers.lin2014 import printed as pr
@@ -70,7 +69,7 @@ def gram_entry_cases(formula: Formula | None) -> Iterator[Case]:
 
 GRAM_CHECK = Check(
     gram_entry_cases,
-    Strength.SYMBOLIC_ORDER,
+    Strength.GENERAL,
     "the mixed second derivative of (11) by two control points with abstract basis functions, integrated term by term "
     "(Fubini); and entries of the exact energy, bicubic, printed knots of Fig. 5",
     proof=True,
@@ -112,9 +111,7 @@ def _positive_cases() -> Iterator[Case]:
     in u; rows 0 and 1 are zero, so P and P_u vanish at u = 0; hence P = 0, and with it every control point, for basis
     functions are independent. So the quadratic form of the free rows is positive definite.
     """
-    hessian = sp.hessian(thin_plate_density(), SECOND_DERIVATIVES)
-    positive = all(entry > 0 for entry in hessian.diagonal())
-    yield Case("(11) is a sum of squares", bool(hessian.is_diagonal() and positive))
+    yield _square_case()
     ends = end_derivatives(1, pr.k - 1, span_symbols(1))
     above = sp.Symbol("r", integer=True, nonnegative=True)
     determinant = sp.factor(ends.det().subs(pr.k, 2 + above))
@@ -123,11 +120,17 @@ def _positive_cases() -> Iterator[Case]:
     yield _line_case()
 
 
+def _square_case() -> Case:
+    hessian = sp.hessian(thin_plate_density(), SECOND_DERIVATIVES)
+    positive = all(entry > 0 for entry in hessian.diagonal())
+    return Case("(11) is a sum of squares", bool(hessian.is_diagonal() and positive))
+
+
 def minimum_check(order: int) -> Check:
     """Return the check that the free rows of a blend with C1 or C2 contact have exactly one minimum."""
     return Check(
         lambda _: unique_minimum_cases(order),
-        Strength.SYMBOLIC_ORDER,
+        Strength.GENERAL,
         "a blend of zero energy with zero contact rows is zero, for every order, knots and number of rows; pivots of "
         "the exact energy matrix for k = 4",
         proof=True,
@@ -153,7 +156,7 @@ def normal_equation_cases(formula: Formula | None) -> Iterator[Case]:
 
 NORMAL_EQUATION_CHECK = Check(
     normal_equation_cases,
-    Strength.SYMBOLIC_ORDER,
+    Strength.GENERAL,
     "the derivative of the quadratic form by free control point r, for every count",
     proof=True,
 )
@@ -184,7 +187,7 @@ def degree_check(order: int, geometric: bool) -> Check:
 
     return Check(
         cases,
-        Strength.SYMBOLIC_ORDER,
+        Strength.GENERAL,
         "the degree of the rows in alpha and beta for symbolic orders and knots, put into the quadratic form; the term "
         "of highest degree is an energy, not zero; the exact energy of a strip, k = 4",
         proof=True,
@@ -232,25 +235,48 @@ def objective_degree(rows: list[Any], geometric: bool) -> int:
     return int(max(in_points, total_degrees(power, power)[1]))
 
 
-def single_minimum_of_shape_cases() -> Iterator[Case]:
-    """Yield why a blend with positive a and b is G1, and plates whose least energy has such a and b, or has not.
+def shape_minimum_cases() -> Iterator[Case]:
+    """Yield why (11) has a least value over alpha and beta, and which of them make a G1 blend; then plates.
 
-    Plates that face each other have positive a and b over every gap, by which the whole figure is scaled. That a least
-    energy exists for any two bases is not shown.
+    Rows 1 and 2 are polynomials in a = alpha^2, the last two such in b = beta^2, and a moves row 1 by a multiple of
+    R_w. So the control points move in a space of rows 1 .. m-1, rows 0 and m staying where they are. There the energy
+    is positive definite: a surface of zero energy is linear in u on each v-line, and is zero where it vanishes at u = 0
+    and u = 1. As a, b or a free control point grow beyond every bound, so do the control points, and with them the
+    energy, of any two regular bases. So it takes its least value on the closed set a, b >= 0; where that has a, b > 0
+    the blend is G1.
     """
-    yield from premises(geometric_continuity.special_contact_cases(1))
-    a, b, gap = sp.symbols("a b d", positive=True)
-    strip = energy.end_energy(4, 6, (0, a, 0, gap, b, 0))
-    best = sp.solve([sp.diff(strip, a), sp.diff(strip, b)], [a, b], dict=True)[0]
-    yield Case("plates that face each other, over every gap", bool(best[a].is_positive and best[b].is_positive))
+    yield from premises([*geometric_continuity.special_contact_cases(2), _square_case(), _line_case(), _chord_case()])
+    yield _row_1_case()
     yield from energy.shape_cases()
 
 
+def _chord_case() -> Case:
+    """Decide that a line which is 0 at u = 0 and u = 1 is zero, and that rows 0 and m alone enter these values."""
+    a, b, u = sp.symbols("a b u")
+    line = a + b * u
+    zero = sp.solve([line.subs(u, 0), line.subs(u, 1)], [a, b], dict=True) == [{a: 0, b: 0}]
+    values = end_derivatives(1, pr.k - 1, span_symbols(1))[0, :]
+    alone = values == sp.Matrix([[1, 0]]) and end_derivative_step(1)[0, :].is_zero_matrix
+    return Case("a line that is zero at both ends is zero; rows 0 and m are the ends", bool(zero and alone))
+
+
+def _row_1_case() -> Case:
+    """Decide that row 1 is R_0 - c alpha^2 R_w, c positive for every order and knots."""
+    h, base_h = span_symbols(1), span_symbols(1, "H")
+    row = (contact_rows(1, pr.k - 1, h, pr.k_r - 1, base_h) * sp.Matrix([pr.R_0, pr.R_1]))[1]
+    slope = (end_derivatives(1, pr.k_r - 1, base_h)[1, :] * sp.Matrix([pr.R_0, pr.R_1]))[0]
+    factor = sp.cancel((pr.R_0 - row) / (A * slope))
+    over = sp.Symbol("r", integer=True, nonnegative=True)
+    label = "any regular bases, every order and knots: row 1 is R_0 - c alpha^2 R_w, c > 0"
+    return Case(label, bool(factor.subs(pr.k, 2 + over).is_positive))
+
+
 SHAPE_CHECK = Check(
-    lambda _: single_minimum_of_shape_cases(),
-    Strength.RATIONAL,
-    "checked on plates, the energy an exact polynomial in alpha^2, beta^2; that positive alpha^2, beta^2 mean G1 is "
-    "proved for any base",
+    lambda _: shape_minimum_cases(),
+    Strength.GENERAL,
+    "why there is a least energy, and that it is that of a G1 blend where alpha, beta are not zero, for any regular "
+    "bases, every order and knots; plates, the energy an exact polynomial in alpha^2, beta^2",
+    proof=True,
 )
 
 
@@ -341,7 +367,7 @@ def direction_check(sign: int) -> Check:
 
     text = "R_w" if sign > 0 else "-R_w"
     method = f"row 1 solved from P_u = {text} with the end derivatives, every order and knots"
-    return Check(cases, Strength.SYMBOLIC_ORDER, method, proof=True)
+    return Check(cases, Strength.GENERAL, method, proof=True)
 
 
 @cache

@@ -47,7 +47,7 @@ def one_surface_check(*, flat: bool) -> Check:
     what = "along the normal" if flat else "all coordinates, and P_uu against the base"
     return Check(
         partial(_cases, flat),
-        Strength.SYMBOLIC_ORDER,
+        Strength.GENERAL,
         "row 2 before and after w is counted in other units, and a knot is inserted into the first span by Boehm's "
         f"rule; {what}, every order, knots and base",
         proof=True,

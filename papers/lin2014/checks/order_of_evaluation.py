@@ -6,7 +6,9 @@ from collections.abc import Iterator, Sequence
 from fractions import Fraction
 from typing import Any
 
-from semispline.papers.ledger import Case, Sample, clamped, de_boor, net_ring, union
+from semispline.papers.checks import clamped, de_boor, net_ring, sharp_continuity_cases, union
+from semispline.papers.ledger import Case, premises
+from semispline.papers.lin2014.checks.samples import Sample
 
 _AT = (Fraction(2, 7), Fraction(3, 7))
 
@@ -20,7 +22,14 @@ def _surfaces(order: int) -> Iterator[tuple[str, Sample]]:
 
 
 def columns_first_cases() -> Iterator[Case]:
-    """Yield surfaces, true where de Boor's triangle first along u, on columns as they stand, gives another point."""
+    """Yield surfaces, true where de Boor's triangle first along u, on columns as they stand, gives another point.
+
+    First along u, any one vector V serves for the last step. Clamped vectors of one length that differ have each some
+    knot more often than the other one has; so where some V_i is not V some spline over it is rougher at such a knot
+    than all splines over V, for every order. With it for P_i, the other rows zero, the surface is N_i times that
+    spline, and what was found is N_i times one over V.
+    """
+    yield from premises(sharp_continuity_cases())
     for order in (2, 3, 4):
         for label, sample in _surfaces(order):
             net = net_ring(*sample.sizes)

@@ -8,7 +8,8 @@ from typing import Any
 import sympy as sp
 
 from semispline.derivations.splines import end_derivatives, span_symbols
-from semispline.papers.ledger import Case, Formula, contained, given, union
+from semispline.papers.checks import contained, union
+from semispline.papers.ledger import Case, Formula, given
 from semispline.papers.lin2014 import printed as pr
 from semispline.papers.lin2014.checks.printed_pairs import PRINTED_PAIRS, printed_pair
 

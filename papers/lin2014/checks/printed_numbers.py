@@ -12,9 +12,18 @@ from typing import Any
 
 import sympy as sp
 
-from semispline.papers.ledger import Case, Consequence, Counterexample, Formula, as_fraction, clamped, contained, given
+from semispline.papers.checks import clamped, contained
+from semispline.papers.ledger import (
+    Case,
+    Consequence,
+    Counterexample,
+    Formula,
+    as_fraction,
+    given,
+)
 from semispline.papers.lin2014 import printed as pr
 from semispline.papers.lin2014 import printed_figures as printed
+from semispline.papers.lin2014.checks.consequences import on_surface
 from semispline.papers.lin2014.checks.printed_pairs import WITH_MIDDLE_CURVE, inner_knots, merged
 from semispline.papers.lin2014.printed import CUBIC
 
@@ -79,7 +88,7 @@ def knot_10_counterexample() -> Counterexample:
 def knot_10_consequence() -> Consequence:
     """Return what a curve over the vector as printed lacks: its domain starts at the fourth knot."""
     start = float(pr.KNOTS["fig-10.first"][CUBIC - 1])
-    return Consequence(
+    return on_surface(
         "The contact curve over the vector as printed: its functions sum to 1 from the fourth knot on",
         {"start of the domain": start, "share of the closed curve that is lost": start},
     )

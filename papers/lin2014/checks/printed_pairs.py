@@ -7,7 +7,8 @@ from functools import cache
 
 import sympy as sp
 
-from semispline.papers.ledger import as_fraction, clamped
+from semispline.papers.checks import clamped
+from semispline.papers.ledger import as_fraction
 from semispline.papers.lin2014 import printed as pr
 from semispline.papers.lin2014.printed import CUBIC
 

@@ -10,10 +10,8 @@ import sympy as sp
 
 from semispline.derivations.properties import least_bernstein_coefficient, partition_residuals, supports
 from semispline.derivations.splines import X, basis_pieces
-from semispline.papers.ledger import (
+from semispline.papers.checks import (
     WITHIN,
-    Case,
-    as_expression,
     clamped,
     coefficient,
     contact_at_knot,
@@ -23,15 +21,15 @@ from semispline.papers.ledger import (
     insertion_cases,
     locality_induction_cases,
     net_ring,
-    premises,
     rational_points,
-    samples,
     sharp_continuity_cases,
     spline_basis,
     triangle_cases,
     union,
 )
+from semispline.papers.ledger import Case, as_expression, premises
 from semispline.papers.lin2014 import printed as pr
+from semispline.papers.lin2014.checks.samples import samples
 from semispline.papers.lin2014.printed import CUBIC
 
 HALF, THIRD = Fraction(1, 2), Fraction(1, 3)

@@ -107,7 +107,7 @@ def excess_check(side: Side, printed: Formula) -> Check:
     """Return the check of what a printed row 2 gives along the normal less what G2 asks, for symbolic orders."""
     return Check(
         partial(_excess_cases, side, printed),
-        Strength.SYMBOLIC_ORDER,
+        Strength.GENERAL,
         "second end derivatives of rows along the normal, the blend's by the printed row, for symbolic orders and knots"
         + ("; u_{m-3} is the last inner knot, as for k = 4" if side == "end" else ""),
         proof=True,
@@ -147,14 +147,8 @@ def normal_counterexample(side: Side, formulas: Sequence[Formula]) -> Counterexa
             if found is not None:
                 own = dict(zip(BLEND_H[:2], (sp.Rational(1, 3), sp.Rational(2, 3)), strict=True))
                 mine = _counterexample_at(side, formulas, (CUBIC, CUBIC), own)
-                return found if mine is None else replace(found, own=_beside(mine, found))
+                return found if mine is None else replace(found, own=str(mine))
     return None
-
-
-def _beside(mine: Counterexample, other: Counterexample) -> str:
-    """Return a counterexample in words, without the values that another one has too."""
-    new = ", ".join(f"{name} = {value}" for name, value in mine.values if (name, value) not in other.values)
-    return f"{new}, the rest the same: printed {mine.printed}, true {mine.true}"
 
 
 _X1, _Z2 = sp.symbols("x_1 z_2", real=True)

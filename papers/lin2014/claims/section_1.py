@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from semispline.papers.checks import count_check
 from semispline.papers.ledger import (
     Case,
     Check,
@@ -14,7 +15,6 @@ from semispline.papers.ledger import (
     Strength,
     ambiguous,
     consistent,
-    count_check,
     definition,
     holds,
     holds_if,
@@ -89,12 +89,12 @@ CLAIMS: tuple[Claim, ...] = (
     ambiguous("sec-1.after-conversion", "Sections 1 and 2",
               "The blend, which can be exchanged as a B-spline surface, does without the knots that direct insertion "
               "adds.",
-              Reading((part(Check(converted.saved_cases, Strength.SYMBOLIC_ORDER, "control points counted for every "
+              Reading((part(Check(converted.saved_cases, Strength.GENERAL, "control points counted for every "
                                   "order and number of knots", proof=True), converted.SAVED_OWN),),
-                      label="as a semi-structured surface, rows on their own knots"),
+                      label="a semi-structured surface, rows on their own knots"),
               Reading((part(Check(converted.no_more_cases, Strength.RATIONAL, "inner knots of all rows and of both "
                                   "contact curves, printed knots: one counterexample is enough", proof=True)),),
-                      label="as a classical surface, once it is converted"),
+                      label="a classical surface, once it is converted"),
               correction=Correction("With a middle curve the converted blend has one inner knot more than both contact "
                                     "curves together for each pair of the rule: more as soon as there are two "
                                     "different inner knots, whether knots are shared or the vectors equal. Without one "
@@ -111,11 +111,11 @@ CLAIMS: tuple[Claim, ...] = (
                       "printed pairs, by exact rank"))),
     holds_if("sec-1.rolling-ball", _RELATED, "A rolling-ball blend meets its bases with G1 at the most.",
              "the curvature of the base across the contact is not that of the ball",
-             part(Check(other_methods.jump_cases, Strength.SYMBOLIC_ORDER, "the curvature of a circle, every radius",
+             part(Check(other_methods.jump_cases, Strength.GENERAL, "the curvature of a circle, every radius",
                         proof=True), other_methods.JUMP),
              part(proved(other_methods.g2_cases, "zeros of the jump, every radius and curvature of the base"))),
     ambiguous("sec-1.quintic", _RELATED, "For G2, a Bezier curve across must be quintic.",
-              Reading((part(Check(other_methods.hermite_cases, Strength.SYMBOLIC_ORDER,
+              Reading((part(Check(other_methods.hermite_cases, Strength.GENERAL,
                                   "rank of the six end conditions, every degree", proof=True), pr.QUINTIC),),
                       label="for a method that prescribes two derivatives at both ends, as for C2"),
               Reading((part(proved(other_methods.quartic_cases, "points, tangents and curvatures at both ends, exactly",
@@ -171,7 +171,7 @@ CLAIMS: tuple[Claim, ...] = (
                   "Bezier curves, impossible with C-curves (sec-1.ref-11), exact and rational for Hartmann's between "
                   "spline bases (sec-1.hartmann-nurbs)"),
     holds("sec-1.ball-circular", _RELATED, "A rolling ball leaves a circular surface: its sections are circles.",
-          part(Check(other_methods.canal_cases, Strength.SYMBOLIC_ORDER,
+          part(Check(other_methods.canal_cases, Strength.GENERAL,
                      "the envelope of balls of radius r(t) around a spine, both conditions solved", proof=True),
                other_methods.SECTION_SQUARED),
           remark="For a ball of variable radius too, in the plane across the spine at -r r'/s along it, s the speed of "

@@ -7,6 +7,7 @@ from fractions import Fraction
 
 import sympy as sp
 
+from semispline.papers.checks import clamped, count_check, identity_cases, proof_check
 from semispline.papers.ledger import (
     Case,
     Check,
@@ -17,20 +18,14 @@ from semispline.papers.ledger import (
     Numbers,
     Part,
     Reading,
-    Sample,
     Strength,
     Verdict,
-    clamped,
     consistent,
-    count_check,
     data_formula,
     given,
-    identity_cases,
     number_changes,
     premises,
-    proof_check,
     proved,
-    question,
 )
 from semispline.papers.lin2014 import printed as pr
 from semispline.papers.lin2014.checks import order_of_evaluation, representation
@@ -38,6 +33,7 @@ from semispline.papers.lin2014.checks.counts import knot_count_instances
 from semispline.papers.lin2014.checks.definitions import CURVE_CHECK, SURFACE_CHECK, curve_instances
 from semispline.papers.lin2014.checks.measured_section_2 import one_function_for_all
 from semispline.papers.lin2014.checks.printed_numbers import CONTACTS
+from semispline.papers.lin2014.checks.samples import Sample
 from semispline.papers.lin2014.printed_figures import MIDDLE_CURVES
 
 _WHERE = "Section 2, definition"
@@ -256,10 +252,11 @@ CLAIMS = (
             Reading(
                 (
                     Part(
-                        question(
+                        proved(
                             order_of_evaluation.columns_first_cases,
-                            "triangles first along u on columns of control points, rows of equal length, any control "
-                            "points; orders 2 to 4",
+                            "smoothness at a knot that one vector has more often, every order and knots; triangles "
+                            "first along u on columns of control points, rows of equal length, any control points, "
+                            "orders 2 to 4",
                         )
                     ),
                 ),

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 import sympy as sp
 from sympy import Eq
 
+from semispline.papers.checks import count_check
 from semispline.papers.ledger import (
     Case,
     Check,
@@ -18,7 +19,6 @@ from semispline.papers.ledger import (
     Reading,
     Strength,
     ambiguous,
-    count_check,
     definition,
     holds,
     holds_if,
@@ -57,7 +57,7 @@ TRUE_STRAIN = Formula(
 )
 # (2.1) with u_1 = 0.
 ROW_1_AT_ZERO = Formula(Eq(pr.P_1, pr.P_0, evaluate=False), (pr.P_0, pr.P_1))
-_STRAIN_CHECK = Check(energy.strain_cases, Strength.SYMBOLIC_ORDER, "scaling a parameter", proof=True)
+_STRAIN_CHECK = Check(energy.strain_cases, Strength.GENERAL, "scaling a parameter", proof=True)
 # (11) for the strain energy: the integrands, where lengths and angles are kept.
 PLATE_IS_STRAIN = Formula(
     Eq(pr.kappa_1**2 + pr.kappa_2**2, pr.P_uu**2 + 2 * pr.P_uv**2 + pr.P_vv**2),
@@ -156,7 +156,7 @@ CLAIMS: tuple[Claim, ...] = (
               cause="energy-for-quality",
               remark="(11) itself does depend on the parametrisation, and so does the blend of least energy."),
     ambiguous("sec-3.thin-plate", _ENERGY, "The thin-plate energy (11) approximates the strain energy.",
-              Reading((part(Check(objective.isometric_cases, Strength.SYMBOLIC_ORDER,
+              Reading((part(Check(objective.isometric_cases, Strength.GENERAL,
                                   "first and second fundamental form", proof=True), PLATE_IS_STRAIN),),
                       label="for a parametrisation that keeps lengths and angles"),
               Reading((part(proved(objective.planar_cases, "(11) of plane pieces, whose strain energy is zero")),),
@@ -165,7 +165,7 @@ CLAIMS: tuple[Claim, ...] = (
               remark="No bound holds in general: the ratio is unbounded for plane pieces whose nets are not affine."),
     holds_if("eq-11", _ENERGY, "The thin-plate energy as the integral of |P_uu|^2 + 2|P_uv|^2 + |P_vv|^2.",
              "the surface is C1, that is, no inner knot has the full multiplicity of its degree",
-             part(Check(objective.density_cases, Strength.SYMBOLIC_ORDER, "the sum of squared principal curvatures "
+             part(Check(objective.density_cases, Strength.GENERAL, "the sum of squared principal curvatures "
                         "of surfaces that keep lengths and angles; rotation of (u, v)", proof=True), pr.EQ_11),
              part(proved(objective.crease_cases,
                          "C1 splines that are lines on each span, every order and knots; null space of exact Gram "
@@ -191,14 +191,14 @@ CLAIMS: tuple[Claim, ...] = (
                       label="the second knot, as Definition 1 numbers them, which is 0"),
               remark="One letter, two numberings: Definition 1 counts all knots from u_0, (13) only the inner ones."),
     holds_if("sec-3.m-bound", _BLEND, "With m >= k + 1 the layout of (13) is possible.", "k >= 4",
-             part(Check(construction.layout_cases, Strength.SYMBOLIC_ORDER,
+             part(Check(construction.layout_cases, Strength.GENERAL,
                         "rows of the first and last curves for every k >= 4 and every m admitted, and for k = 2 to 7; "
                         "for smaller k an example is enough", proof=True), pr.M_BOUND),
              cause="indices-for-cubics",
              remark="Six different rows need m >= 5, whatever k is. For k = 3 the bound admits m = 4, where curve 2 "
              "would need both knot vectors; for k > 4 it asks for more than is needed."),
     holds("sec-3.uniform-knots", _BLEND, "u_i = i / (m - k + 2) spaces the inner knots uniformly.",
-          part(Check(construction.uniform_knot_cases, Strength.SYMBOLIC_ORDER,
+          part(Check(construction.uniform_knot_cases, Strength.GENERAL,
                      "equal spans from 0 to 1 by as many knots as there are, for every m and k; instances", proof=True),
                pr.UNIFORM_KNOT)),
     holds("sec-3.three-curves", _BLEND, "The first three curves have the knots of R's contact curve, the last of S.",
@@ -220,9 +220,9 @@ CLAIMS: tuple[Claim, ...] = (
                   "more rows over averaged knots contain no other: there the least energy is 3 d^2 / (3 h)^3 at least, "
                   "h the span of U and d the part of a contact curve that splines over the averages leave out, and "
                   "grows beyond every bound.",
-                  (Part(Check(fewer.difference_cases, Strength.SYMBOLIC_ORDER, _STRIPS + ", all contact data",
+                  (Part(Check(fewer.difference_cases, Strength.GENERAL, _STRIPS + ", all contact data",
                               proof=True), fewer.FEWER_COSTS_MORE),
-                   Part(Check(fewer.nested_cases, Strength.SYMBOLIC_ORDER, "the minimum of a quadratic energy over "
+                   Part(Check(fewer.nested_cases, Strength.GENERAL, "the minimum of a quadratic energy over "
                               "one more control point", proof=True), fewer.NESTED))),
               counterexample=fewer.fewer_counterexample, consequence=many.rows_over_averages,
               cause="energy-for-quality",
@@ -246,7 +246,8 @@ CLAIMS: tuple[Claim, ...] = (
               "surfaces it is measured."),
     ambiguous("sec-1.fairness", "Section 1",
               "Inserting knots until both contact curves share theirs worsens the fairness.",
-              Reading((part(question(construction.knot_line_cases, "knot lines counted in the printed pairs")),),
+              Reading((part(proved(construction.knot_line_cases, "multiplicities of any knot in two vectors and in "
+                                   "their union; knot lines counted in the printed pairs")),),
                       label="if fairness means few knot lines, across which a cubic is C2 only, then by definition"),
               Reading((part(question(_fairness_cases, "least energy (11), exactly; one counterexample is enough")),
                        part(proved(construction.nested_space_cases,
@@ -265,20 +266,20 @@ CLAIMS: tuple[Claim, ...] = (
           part(count_check(inner_knots_count(), _INSIDE), pr.INNER_LAST)),
     ambiguous("sec-3.averaging", _MIDDLE,
               "The inner knots of P_3 are the averages (v_{2i-1} + v_{2i})/2 of adjacent knots of V_n.",
-              Reading((part(Check(construction.paired_cases(lambda n: (n + 1) // 2), Strength.SYMBOLIC_ORDER, _AVERAGED,
+              Reading((part(Check(construction.paired_cases(lambda n: (n + 1) // 2), Strength.GENERAL, _AVERAGED,
                                   proof=True),
                             pr.AVERAGED_KNOT),), label="pairs until V_n is used up, as printed"),
-              Reading((part(Check(construction.paired_cases(lambda n: n // 2), Strength.SYMBOLIC_ORDER, _AVERAGED,
+              Reading((part(Check(construction.paired_cases(lambda n: n // 2), Strength.GENERAL, _AVERAGED,
                                   proof=True),
                             pr.AVERAGED_KNOT),), label="complete pairs, the last knot dropped where n is odd"),
-              Reading((part(Check(construction.sliding_cases, Strength.SYMBOLIC_ORDER, _AVERAGED, proof=True)),),
+              Reading((part(Check(construction.sliding_cases, Strength.GENERAL, _AVERAGED, proof=True)),),
                       label="each knot with the next one"),
               cause="knots-rule",
               remark="No range of i is printed. For Figs. 5, 8 and 9 n = 3: v_4 does not exist. Dropping the last knot "
               "makes the blend depend on the direction of v."),
     ambiguous("sec-3.averaging-direction", _MIDDLE,
               "The knots of P_3 follow from those of the two contact curves, whichever way v runs.",
-              Reading((part(Check(converted.mirrored_pair_cases, Strength.SYMBOLIC_ORDER, _MIRRORED, proof=True),
+              Reading((part(Check(converted.mirrored_pair_cases, Strength.GENERAL, _MIRRORED, proof=True),
                             pr.AVERAGED_KNOT),),
                       label="pairs from v_1 on, and the last knot of an odd number dropped, kept or averaged with v_e"),
               Reading((part(proved(lambda: converted.mirrored_neighbour_cases(None), _MIRRORED)),),
@@ -287,14 +288,14 @@ CLAIMS: tuple[Claim, ...] = (
               remark="Pairs agree exactly where n is even. In Figs. 5, 8 and 9 n = 3: read from the other end the "
               "blend is another one. Our own examples pair from both ends, so that the middle three make one mean."),
     holds_if("sec-3.averaging-few", _MIDDLE, "The rule gives P_3 inner knots.", "V_n has two knots or more",
-             part(question(converted.few_knots_cases, "the rule on vectors with no, one and more knots, shared ones "
-                           "and equal vectors among them", Strength.RATIONAL)),
+             part(proved(converted.few_knots_cases, "the first pair of every number of knots; the rule on vectors with "
+                         "no, one and more knots, shared ones and equal vectors among them")),
              cause="knots-rule",
              remark="With n = 0 or 1 there are no adjacent knots, and P_3 is one polynomial piece whatever the bases "
              "do. For equal vectors the averages are still new: the blend of two bases that one classical surface "
              "could join directly gets knots that neither has."),
     holds("sec-3.middle-ends", _MIDDLE, "l-fold v_s and v_e complete the averages to a clamped knot vector.",
-          part(Check(construction.bezier_end_cases, Strength.SYMBOLIC_ORDER,
+          part(Check(construction.bezier_end_cases, Strength.GENERAL,
                      "where the domain starts and ends and values there, every order and count; end points by de "
                      "Boor's triangle", proof=True), CLAMP)),
     definition("sec-3.sides", "Section 3, continuity conditions",

@@ -274,8 +274,9 @@ CLAIMS = (
              counterexample=partial(row_counterexample, "end", 1, pr.COND_2_2, least_order=5),
              cause="indices-for-cubics",
              remark="For k > 4 (2.2) puts row m-1 on row m, so that P_u = 0 at S; for k < 4 P_u is a multiple of S_t, "
-             "by another factor than beta^2. At alpha = 0 rows 0 and 1 of the blend coincide and it has no tangent "
-             "plane at the contact; nothing in the method keeps the search away from there (see sec-4.unconstrained)."),
+             "by another factor than beta^2. At alpha = 0 rows 0 and 1 of the blend are one, and P_u = 0: it leaves "
+             "the base at an angle, in general; nothing in the method keeps the search away from there (see "
+             "sec-4.unconstrained)."),
     Claim("sec-3.one-surface", _WHERE,
           "(3.1) is a condition on two surfaces: it gives one row 2, up to the tangent plane, however the base is "
           "written.", Verdict.FAILS,
@@ -296,7 +297,7 @@ CLAIMS = (
           "as the paper says of knot insertion: w_{k_r} - w_s becomes smaller, and row 2 moves."),
     Claim("sec-3.sufficient-g2", _WHERE, "(1.1) to (3.2) together suffice for G2.", Verdict.FAILS,
           (Reading((*_PRINTED_FIRST_ROWS, _normal_part("start", pr.COND_3_1), _normal_part("end", pr.COND_3_2)),
-                   label="as printed"),
+                   label="all six as they are printed"),
            Reading((*_PRINTED_FIRST_ROWS, _normal_part("start", pr.COND_3_1_SQUARES),
                     _normal_part("end", pr.COND_3_2_SQUARES)),
                    label="(3.1) and (3.2) with both distances squared, if the scan lost that")),
@@ -311,7 +312,7 @@ CLAIMS = (
                               "The made pair with rows 1 and 2 as printed, the rest as in the checked G2 blend"),
           cause="second-derivative",
           remark="Three of the six fail, each alone: (3.1), and (3.2) likewise, as printed and with squares, and "
-          "(2.2) for k other than 4; for k > 4 it puts row m-1 on row m, so that there is no tangent plane. When they "
+          "(2.2) for k other than 4; for k > 4 it puts row m-1 on row m, so that P_u = 0 at S. When they "
           "suffice: k = 4 for (2.2), and what cond-3.1 and cond-3.2 say for (3.1) and (3.2)."),
     ambiguous("sec-3.parametric-c1", "Section 3, parametric continuity",
               "With alpha = beta = 1 the G1 conditions become C1 conditions.",

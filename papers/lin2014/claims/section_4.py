@@ -143,7 +143,7 @@ def _initial_cases(formula: Formula | None) -> Iterator[Case]:
 SHAPE_ONE = Formula(
     Eq(pr.alpha, 1), (pr.alpha,), equivalent={"Eq(alpha, -1)": "alpha stands in the conditions by its square alone"}
 )
-_CVV = Check(_cvv_cases, Strength.SYMBOLIC_ORDER, "lengths of rows, of any numbers of control points", proof=True)
+_CVV = Check(_cvv_cases, Strength.GENERAL, "lengths of rows, of any numbers of control points", proof=True)
 # Unknown rows of X, 3 .. m-3.
 FIRST_UNKNOWN, LAST_UNKNOWN = Formula(Eq(pr.first, 3), (pr.first,)), Formula(Eq(pr.last, pr.m - 3), (pr.last, pr.m))
 _A, _B, _X, _N = objective.A_BLOCK, objective.B_BLOCK, objective.X_FREE, objective.N_KNOWN
@@ -220,11 +220,13 @@ CLAIMS: tuple[Claim, ...] = (
              "the energy over alpha^2, beta^2 is not least at zero",
              part(objective.SHAPE_CHECK),
              cause="energy-for-quality",
-             remark="alpha, beta = 0 must be kept out: for two parallel plates, joined by a turn of 180 degrees, the "
-             "least energy lies there, where the blend has no tangent plane at either contact. It may lie there "
-             "between bases that face each other too: sec-4.facing."),
+             remark="A least energy over alpha, beta exists for any regular bases. alpha, beta = 0 must be kept out: "
+             "there rows 0 and 1 are one, and P_u = 0. For two parallel plates, joined by a turn of 180 degrees, the "
+             "least energy lies there, and the blend stands at right angles on both. It may lie there between bases "
+             "that face each other too: sec-4.facing."),
     holds_if("sec-4.facing", _WHERE,
-             "Between bases that face each other the search ends at a blend with tangent planes, alpha, beta not zero.",
+             "Between bases that face each other the search ends at a blend with their tangent planes, alpha and beta "
+             "not zero.",
              "39 cos theta > 25 cos phi cos(theta - phi), and the same with theta and phi exchanged, these being the "
              "angles that the ways out of R and into S make with the chord (straight bases of unit speed)",
              part(facing.FACING_CHECK, facing.BEST_ALPHA),
@@ -232,7 +234,7 @@ CLAIMS: tuple[Claim, ...] = (
              remark="Facing: both angles are acute. With equal angles, in an arch or an S, the condition always holds; "
              "it fails first where one angle is half of the other, from the cosine 25/53 on, 62 degrees. There (11), "
              "over all alpha^2, is least where the blend would leave a base backwards, so that over alpha it is least "
-             "at alpha = 0."),
+             "at alpha = 0, where rows 0 to 2 are one and the blend leaves the base at an angle."),
     ambiguous("sec-4.initial-value", _WHERE, "The C2 solution is a blend among which the G2 search may start.",
               Reading((part(row_check("start", 1, "parametric"), PARAMETRIC_2_1),
                        part(row_check("start", 2, "parametric"), PARAMETRIC_3_1)),
@@ -240,7 +242,7 @@ CLAIMS: tuple[Claim, ...] = (
               Reading((part(row_check("start", 1, "parametric"), PARAMETRIC_2_1),
                        part(row_check("start", 2, "parametric"), PARAMETRIC_3_1_SQUARES)),
                       label="the same with both distances in (3.1) squared, if the scan lost that"),
-              Reading((part(Check(_initial_cases, Strength.SYMBOLIC_ORDER,
+              Reading((part(Check(_initial_cases, Strength.GENERAL,
                                   "C2 rows solved from end derivatives, put into the corrected G2 conditions, every "
                                   "order and knots", proof=True), SHAPE_ONE),),
                       label="a surface that is C2, and the corrected conditions, alpha = beta = 1"),

@@ -60,7 +60,7 @@ _DIRECTION = tuple(
     part(
         Check(
             hartmann.direction_cases(end),
-            Strength.SYMBOLIC_ORDER,
+            Strength.GENERAL,
             "X_t at the contacts by the product rule, every n and mu",
             proof=True,
         ),
@@ -279,7 +279,7 @@ CLAIMS: tuple[Claim, ...] = (
         "along the normal matters, and it is zero whatever multiple of the base's is taken. So this figure says "
         "nothing for or against (3.1)."),
     ambiguous("fig-10.seam", "Fig. 10", "Blended from complete cylinders, the surface closes where v_s and v_e meet.",
-              Reading((part(Check(seam.closing_cases, Strength.SYMBOLIC_ORDER, "rows are combinations of the base's "
+              Reading((part(Check(seam.closing_cases, Strength.GENERAL, "rows are combinations of the base's "
                                   "rows with factors that do not depend on v, every order and knots", proof=True),
                             seam.JUMP_OF_ROW_1),),
                       label="without a middle curve, as the figure has it, if both bases close"),

@@ -77,14 +77,14 @@ _WHERE = "Appendix"
 
 _TANGENT_PLANES = Check(
     tangent_plane_cases,
-    Strength.SYMBOLIC_ORDER,
+    Strength.GENERAL,
     "(15) with p_1 = alpha^2; tangent planes for any regular base; for alpha = 0 and a singular base an example is "
     "enough",
     proof=True,
 )
 _JOIN = Check(
     join_cases,
-    Strength.SYMBOLIC_ORDER,
+    Strength.GENERAL,
     "on which side of the contact P_u points, any base and p_1, q_1; where a blend of a bent base lies",
     proof=True,
 )
@@ -92,7 +92,7 @@ _JOIN = Check(
 
 def _derived(order: int) -> Check:
     cases, probe = partial(derived_row_cases, order), partial(derived_row_probe, order)
-    return Check(cases, Strength.SYMBOLIC_ORDER, "solving for the row", proof=True, probe=probe)
+    return Check(cases, Strength.GENERAL, "solving for the row", proof=True, probe=probe)
 
 
 CLAIMS = (
@@ -103,10 +103,10 @@ CLAIMS = (
         "functions p_1, q_1 of v.",
         Verdict.HOLDS_IF,
         (Reading((Part(general_check(1), pr.EQ_15),), condition=_REGULAR),),
-        remark="Where p_1 vanishes P has no tangent plane, although the equation holds; where R_w vanishes smooth "
-        "continuations exist that satisfy no such equation. The equation does not see the sign of p_1: a fold "
-        "(p_1 > 0 when both surfaces lie on the positive side of their parameters) satisfies it too, as tangent planes "
-        "alone are compared; eq-17 is decided both ways.",
+        remark="Where p_1 vanishes P_u and P_v are parallel and give P no tangent plane, although the equation holds; "
+        "where R_w vanishes smooth continuations exist that satisfy no such equation. The equation does not see the "
+        "sign of p_1: a fold (p_1 > 0 when both surfaces lie on the positive side of their parameters) satisfies it "
+        "too, as tangent planes alone are compared; eq-17 is decided both ways.",
     ),
     Claim(
         "eq-16",
@@ -203,18 +203,19 @@ CLAIMS = (
               "(15) and (16) come to (17) and (18), with p_1 = -alpha^2, alpha constant and q_1 = p_2 = q_2 = 0.",
               Reading((part(proved(partial(special_contact_cases, 2), "tangent planes and second fundamental forms for "
                                    "any regular base, alpha not zero")),),
-                      label="as one choice that suffices"),
+                      label="one choice that suffices"),
               Reading((part(proved(special.only_special_cases, "blends with contact of order 2, judged by the implicit "
                                    "equation of the base: one counterexample is enough", Strength.RATIONAL)),),
-                      label="as all that they allow"),
+                      label="all that they allow"),
               consequence=special.special_choice_cost,
-              remark="The paper calls its conditions sufficient, and says no more. What the choice leaves out: p_1 and "
-              "q_1 that vary along the contact, where alpha, beta are two numbers, and p_2, a free function that moves "
-              "row 2 along R_w. By (11) that costs little; by the fairness of the shape p_2 is worth more, and the "
-              "default of this package searches it."),
+              remark="The paper calls its conditions sufficient, and says no more. What the choice leaves out: a p_1 "
+              "that varies along the contact, where alpha, beta are two numbers, and functions p_2, q_2, which move "
+              "row 2 along R_w and R_v; q_1 is not free where cubic bases have inner knots along the contact, since "
+              "P_uu then holds R_vv, which has kinks there. Numbers alone, or alpha^2 and beta^2 linear in v, save "
+              "little of (11); functions save up to a fifth, for rows of higher degree with more knots."),
     holds("sec-A.substitution", _WHERE, "p_1 = alpha^2, q_1 = p_2 = q_2 = 0 turn (15), (16) into (17), (18).",
-          part(Check(partial(substitution_cases, 1), Strength.SYMBOLIC_ORDER, "substitution", proof=True), pr.EQ_17),
-          part(Check(partial(substitution_cases, 2), Strength.SYMBOLIC_ORDER, "substitution", proof=True), pr.EQ_18),
+          part(Check(partial(substitution_cases, 1), Strength.GENERAL, "substitution", proof=True), pr.EQ_17),
+          part(Check(partial(substitution_cases, 2), Strength.GENERAL, "substitution", proof=True), pr.EQ_18),
           remark="The algebra is right; the choice of p_1, unless a minus is lost in it and in (17), is not: see "
           "eq-17."),
     fails("sec-A.17-gives-2.1", _WHERE, "(17) and the first end derivatives give (2.1).",

@@ -6,7 +6,7 @@ import pytest
 import sympy as sp
 
 from semispline.papers.ledger.loading import load_paper, paper_names
-from semispline.papers.ledger.record_checks import check_causes, check_record
+from semispline.papers.ledger.record_checks import check_causes, check_complete, check_record, same_ids
 from semispline.papers.ledger.records import (
     Case,
     Cause,
@@ -21,6 +21,7 @@ from semispline.papers.ledger.records import (
     Reading,
     Strength,
     Verdict,
+    natural_key,
 )
 
 x, y = sp.symbols("x y", real=True)
@@ -49,16 +50,15 @@ def labelled(*labels):
     ("claim", "message"),
     [
         (replace(GOOD, verdict="true"), "verdict 'true'"),
-        (replace(GOOD, statement=" "), "empty"),
         *(
-            (replace(GOOD, id=name), "id .*expected one such as")
-            for name in ("", "eq", "2.1", "cond-2", "sec-4", "x-1")
+            (replace(GOOD, id=name), "id .*expected letters, digits and")
+            for name in ("", " ", "eq 1", "-1", "eq/1", "../eq", "eq-1.", "Satz\u00e4", "a" * 81)
         ),
-        (with_check(strength=9), "strength 9, expected one of SYMBOLIC_ORDER"),
+        (with_check(strength=9), "strength 9, expected one of GENERAL"),
         (with_check(strength=Strength.FLOAT, proof=True), "a proof in floating point"),
         (with_check(strength=Strength.CONSISTENT, proof=True), "a proof by what is printed agreeing"),
-        (replace(GOOD, readings=(replace(GOOD.readings[0], condition="x > 0"),)), "holds with a condition"),
         (replace(GOOD, readings=labelled("one", "one"), verdict=Verdict.AMBIGUOUS), "with one label"),
+        (replace(GOOD, readings=GOOD.readings * 2), "without a label"),
         (with_formula(replace(FORMULA, equivalent={"Eq(y, 3*x)": "why"})), "which is not made"),
         (with_formula(replace(FORMULA, undecidable={"Eq(y, 3*x)": "why"})), "which is not made"),
         (with_formula(replace(FORMULA, equivalent={"Eq(y, -2*x)": " "})), "without a reason"),
@@ -70,13 +70,26 @@ def labelled(*labels):
         (with_formula(Formula(sp.Eq(y, 2 * x), (x,))), r"undeclared \['y'\]"),
         (with_formula(Formula(sp.Eq(y, 2), (x, y))), r"unused \['x'\]"),
         (with_formula(Formula(sp.Eq(y, 2 * x), (x, y), (x > 1, x < 0))), "no instance"),
+        (replace(GOOD, readings=(Reading((Part(replace(CHECK, method="")),)),)), "without a method"),
+    ],
+)
+def test_a_bad_record_is_refused(claim, message):
+    with pytest.raises(LedgerError, match=message):
+        check_record(claim)
+
+
+@pytest.mark.parametrize(
+    ("claim", "message"),
+    [
+        (replace(GOOD, verdict=None), "no verdict, expected one of holds, .*--draft"),
+        (replace(GOOD, statement=" "), "empty"),
+        (replace(GOOD, readings=(replace(GOOD.readings[0], condition="x > 0"),)), "holds with a condition"),
         (replace(GOOD, readings=()), "without a check"),
         (replace(GOOD, readings=(Reading(()),)), "without a check"),
-        (replace(GOOD, readings=(Reading((Part(replace(CHECK, method="")),)),)), "without a method"),
         (replace(GOOD, verdict=Verdict.HOLDS_IF), "without its condition"),
-        (replace(GOOD, verdict=Verdict.FAILS), "fails without correction, counterexample, consequence"),
+        (replace(GOOD, verdict=Verdict.FAILS), "fails without a counterexample"),
+        (replace(with_check(search=lambda formula: None), verdict=Verdict.FAILS), "fails without a correction"),
         (replace(GOOD, verdict=Verdict.AMBIGUOUS), "at least 2"),
-        (replace(GOOD, readings=GOOD.readings * 2), "without a label"),
         (replace(GOOD, readings=(), verdict=Verdict.NOT_CHECKABLE), "without a reason"),
         (replace(GOOD, readings=(), verdict=Verdict.DEFINITION), "definition without what it names"),
         (replace(GOOD, reason="the rows", verdict=Verdict.DEFINITION), "definition with readings"),
@@ -113,15 +126,36 @@ def labelled(*labels):
         ),
     ],
 )
-def test_a_bad_record_is_refused(claim, message):
+def test_what_is_missing_is_told_before_it_is_decided(claim, message):
+    check_record(claim)
     with pytest.raises(LedgerError, match=message):
-        check_record(claim)
+        check_complete(claim)
+
+
+def test_what_an_error_does_need_not_be_measured():
+    correction = Correction("y is 2x", (Part(CHECK, FORMULA),))
+    failing = replace(with_check(search=lambda formula: None), verdict=Verdict.FAILS, correction=correction)
+    check_complete(failing)
+
+
+@pytest.mark.parametrize("names", [("eq-1", "eq-1"), ("eq-1", "Eq-1"), ("eq-2", "lemma-1", "eq-02")])
+def test_ids_that_sort_as_one_are_seen(names):
+    assert same_ids([replace(GOOD, id=name) for name in names])
+    assert same_ids([replace(GOOD, id=name) for name in ("eq-2.3", "eq-2.30", "eq-23", "eq-A.1", "table-2")]) is None
+
+
+def test_ids_sort_as_papers_number_things():
+    names = ["app-A.1", "eq-1", "eq-2", "eq-2.3", "eq-2.10", "eq-2.10b", "eq-10", "thm-1"]
+    assert sorted(set(names), key=natural_key) == names
 
 
 @pytest.mark.parametrize(
     "claim",
     [
-        *(replace(GOOD, id=name) for name in ("def-1", "cond-3.2", "app-d1", "table-1.sizes", "sec-A.17-gives-2.1")),
+        *(
+            replace(GOOD, id=name)
+            for name in ("eq-2.3", "thm-1", "lemma-2", "alg-1", "eq-A.1", "table-2", "17", "sec-A.17-gives-2.1", "2a")
+        ),
         with_formula(replace(FORMULA, equivalent={"Eq(y, -2*x)": "why"})),
         with_check(strength=Strength.FLOAT),
         with_check(strength=Strength.CONSISTENT),
@@ -131,6 +165,7 @@ def test_a_bad_record_is_refused(claim, message):
 )
 def test_what_is_well_formed_passes(claim):
     check_record(claim)
+    check_complete(claim)
 
 
 SIGN = Cause("sign", "A sign", "It is plus.")

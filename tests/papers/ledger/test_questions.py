@@ -4,7 +4,7 @@ from fractions import Fraction
 
 import sympy as sp
 
-from semispline.papers.ledger.counts import Counting, count_check
+from semispline.papers.checks.counts import Counting, count_check
 from semispline.papers.ledger.mutation import explained
 from semispline.papers.ledger.questions import premises, proved, question, unconditional
 from semispline.papers.ledger.records import Case, Check, Formula, Strength

@@ -12,7 +12,6 @@ from semispline.papers.ledger.records import (
     Case,
     Cause,
     Check,
-    CheckFailedError,
     Claim,
     Consequence,
     Correction,
@@ -160,7 +159,7 @@ def test_a_check_without_an_instance_is_vacuous():
 
 def undecided(cases, time_limit=0.2):
     part = Part(Check(cases, Strength.RATIONAL, "given cases"))
-    return decide(Claim("c", "w", "s", Verdict.HOLDS, (Reading((part,)),)), time_limit)
+    return decide(Claim("c", "w", "s", Verdict.HOLDS, (Reading((part,)),)), time_limit=time_limit)
 
 
 def test_a_check_that_does_not_end_is_stopped_and_is_neither_a_pass_nor_a_no():
@@ -248,7 +247,7 @@ def test_mutants_of_each_kind_are_made():
 
 
 def test_a_check_that_sees_everything_leaves_no_survivor():
-    result = try_mutants(Part(Check(sum_cases, Strength.SYMBOLIC_ORDER, "expansion"), Formula(sp.Eq(y, 2 * x), (x, y))))
+    result = try_mutants(Part(Check(sum_cases, Strength.GENERAL, "expansion"), Formula(sp.Eq(y, 2 * x), (x, y))))
     assert result.tried >= 2
     assert result.survivors == ()
 
@@ -321,9 +320,10 @@ def test_a_residual_that_echoes_the_formula_kills_no_mutant():
     def cases(formula):
         yield Case("all x", True, residual=formula.relation.rhs)
 
-    part = Part(Check(cases, Strength.SYMBOLIC_ORDER, "nothing"), Formula(sp.Eq(y, 2 * x), (x, y)))
-    with pytest.raises(CheckFailedError, match="residual"):
-        try_mutants(part)
+    part = Part(Check(cases, Strength.GENERAL, "nothing"), Formula(sp.Eq(y, 2 * x), (x, y)))
+    found = try_mutants(part)
+    assert found.tried > 0
+    assert len(found.survivors) == found.tried
 
 
 def test_a_probe_does_not_stand_for_the_check():

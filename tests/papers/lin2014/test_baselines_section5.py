@@ -8,6 +8,7 @@ import json
 import numpy as np
 import pytest
 
+from helpers.sweeps import first_ones
 from semispline import blend
 from semispline.papers.baselines.registry import method, methods
 from semispline.papers.lin2014.examples.section5 import FIGURES, example
@@ -141,7 +142,7 @@ def compared():
     return get
 
 
-@pytest.mark.parametrize("figure", EACH_FIGURE)
+@pytest.mark.parametrize("figure", first_ones(1, EACH_FIGURE))
 def test_numbers_and_contact(figure, compared):
     rows = compared(figure)
     reasons = {name for name, row in rows.items() if row.reason}
@@ -253,6 +254,7 @@ def test_numbers_are_the_same_from_run_to_run(compared):
         assert one == two, name
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(importlib.util.find_spec("OCP") is None, reason="the extra cad is not installed")
 @pytest.mark.parametrize(
     ("figure", "gap", "angle"), [(6, 0.01, 0.5), pytest.param(11, 0.5, 6.0, marks=pytest.mark.slow)]

@@ -4,8 +4,9 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
+from scipy.interpolate import BSpline
 
-from semispline.papers.ledger.exact import clamped, de_boor
+from semispline.papers.checks.spline_values import clamped, de_boor
 from semispline.papers.lin2014.checks import closed_seam
 from semispline.papers.lin2014.checks.facing_bases import BEST_ALPHA, PLATES, _best_of, facing_shares
 from semispline.papers.lin2014.claims.section_4 import CLAIMS
@@ -49,6 +50,27 @@ def test_the_share_of_facing_pairs_is_that_of_a_fine_count():
     # Midpoints miss the border of a set by a cell at the most, over a length of some 10: 10 / 400.
     assert shares[1] == pytest.approx(float(np.mean(bad | bad.T)), abs=0.005)
     assert 0.15 < shares[1] < shares[0] < 0.25
+
+
+def test_the_crease_at_alpha_zero_by_least_squares():
+    """Rows 0 to 2 at the origin, the last three by beta^2; row 3 and beta^2 by SciPy and NumPy alone."""
+    knots = np.concatenate([[0.0] * 4, [0.25, 0.5, 0.75], [1.0] * 4])
+    functions = [BSpline(knots, row, 3).derivative(2) for row in np.eye(7)]
+    # Second derivatives are linear on each span: two Gauss points are exact for their squares.
+    offset = np.array([-1, 1]) / np.sqrt(3)
+    u = np.concatenate([(2 * s + 1 + offset) / 8 for s in range(4)])
+    bend = np.array([f(u) for f in functions]).T
+    # Row 4 is 1 - c_4 beta^2 along the way into S, row 5 1 - c_5 beta^2: P_u = beta^2, P_uu = 0 at u = 1.
+    way, exit_ = np.array([0.8, 0.6]), np.array([0.28, 0.96])
+    shift = -(bend[:, 4] * 0.25 + bend[:, 5] / 12)
+    fixed = bend[:, 4:].sum(axis=1)
+    columns = np.zeros((2 * len(u), 3))
+    columns[: len(u), 0], columns[len(u) :, 1] = bend[:, 3], bend[:, 3]
+    columns[: len(u), 2], columns[len(u) :, 2] = shift * way[0], shift * way[1]
+    (x, y, _), *_ = np.linalg.lstsq(columns, -np.concatenate([fixed, 0 * fixed]), rcond=None)
+    crease = np.degrees(np.arccos((x * exit_[0] + y * exit_[1]) / np.hypot(x, y)))
+    measured = facing_shares().measured["crease at alpha = 0 between plates at 74 and 37 degrees [degrees]"]
+    assert measured == pytest.approx(crease, abs=1e-9)
 
 
 def test_the_condition_of_the_record_is_that_of_its_formula():

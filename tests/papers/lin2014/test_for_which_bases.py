@@ -5,10 +5,11 @@ differences of a cubic piece.
 """
 
 from fractions import Fraction
+from itertools import pairwise
 
 import pytest
 
-from semispline.papers.ledger.exact import clamped, de_boor
+from semispline.papers.checks.spline_values import clamped, de_boor
 from semispline.papers.ledger.loading import load_paper
 
 
@@ -40,22 +41,37 @@ def test_planes_of_figure_5_may_be_blended_c2_as_printed():
 
 
 @pytest.mark.parametrize(
-    "spans", [(Fraction(1, 5), Fraction(2, 5)), (Fraction(1, 7), Fraction(3, 7)), (Fraction(1, 5), Fraction(3, 10))]
+    "spans",
+    [
+        (Fraction(1, 5), Fraction(2, 5)),
+        (Fraction(1, 7), Fraction(3, 7)),
+        (Fraction(1, 5), Fraction(3, 10)),
+        (Fraction(1), Fraction(5, 2)),
+    ],
 )
 @pytest.mark.parametrize("power", [1, 2])
 def test_c2_holds_for_one_step_of_the_rows_and_for_no_other(spans, power):
-    """The condition that the records name, from both sides; R_1 - R_0 = 1."""
+    """The condition that the records name, from both sides; R_1 - R_0 = 1, R_2 turns back if the step is negative."""
     h_1, h_2 = spans
     above, below = (h_2, 2 * h_1 * (Fraction(1, 2) - h_2)) if power == 1 else (h_2 * (1 + 4 * h_1), 2 * h_1 - h_2)
-    if below > 0:
-        step = above / below
-        for off in (Fraction(0), Fraction(1, 100), Fraction(-1, 100)):
-            _, second, _, true = contact((0, 1, 1 + step + off), spans, 6, power=power)
-            assert (second == true) == (off == 0)
+    # Where nothing is to divide by, no step does.
+    step = above / below if below else Fraction(1)
+    for off in (Fraction(0), Fraction(1, 100), Fraction(-1, 100)):
+        _, second, _, true = contact((0, 1, 1 + step + off), spans, 6, power=power)
+        assert (second == true) == (off == 0 and below != 0)
     # Constant speed: the base's own second derivative is zero, and the blend's is not.
     _, second, _, true = contact((0, h_1, h_1 + h_2), spans, 6, power=power)
     assert true == 0
     assert second != 0
+
+
+def test_control_points_that_turn_back_may_be_those_of_a_base_that_runs_on():
+    """Rows 0, 3, 1, the next ones far ahead: C2 as printed, and the base never stands still."""
+    _, second, _, true = contact((0, 3, 1), (Fraction(1), Fraction(2)), 6)
+    assert second == true != 0
+    knots, points = clamped(4, Fraction(1), Fraction(2), end=3), [Fraction(x) for x in (0, 3, 1, 40, 80, 120)]
+    along = [de_boor(4, knots, points, Fraction(n, 20)) for n in range(61)]
+    assert all(x < y for x, y in pairwise(along))
 
 
 @pytest.mark.parametrize(("m", "length"), [(6, Fraction(1, 2)), (5, Fraction(2, 3))])

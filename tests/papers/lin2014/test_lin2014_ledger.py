@@ -173,7 +173,7 @@ def _report_reads_as_an_erratum(ledger):
     for failure in failures:
         lines = [line for line in failure.splitlines()[1:] if line]
         heads = [line.split("**")[1] for line in lines]
-        assert heads == ["Printed:", "Wrong:", "Smallest counterexample:", "Correct:", "On a surface:"], failure
+        assert heads == ["Printed:", "Wrong:", "Smallest counterexample:", "Correct:", "What it does:"], failure
         assert "$`" in lines[3], failure
     cells = rows(text)
     for claim, decision in zip(ledger.paper.claims, ledger.decisions, strict=True):
@@ -202,7 +202,7 @@ def _outputs_are_complete(ledger):
         assert sum(claim["mutants"]["kinds"].values()) == tried
     assert set(ledger.mutants_by_kind()) == {"sign", "factor", "exponent", "index", "limit", "number", "knot"}
     html = ledger_html(ledger)
-    assert html.count("<details") == len(ledger.paper.claims)
+    assert html.count("<details class='claim") == len(ledger.paper.claims)
     formulas = re.findall("<math>.*?</math>", html)
     assert len(formulas) > 60
     for formula in formulas:

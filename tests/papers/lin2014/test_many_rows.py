@@ -5,7 +5,7 @@ from itertools import pairwise
 
 import pytest
 
-from semispline.papers.ledger.exact import clamped, de_boor
+from semispline.papers.checks.spline_values import clamped, de_boor
 from semispline.papers.lin2014.checks.many_rows import SPAN, _cubic_energy, _lacks, _third_function, rows_over_averages
 
 

@@ -4,7 +4,7 @@ from fractions import Fraction
 
 import pytest
 
-from semispline.papers.ledger.exact import clamped, de_boor
+from semispline.papers.checks.spline_values import clamped, de_boor
 from semispline.papers.lin2014 import printed as pr
 from semispline.papers.lin2014.checks import one_surface
 from semispline.papers.lin2014.checks.one_surface import one_surface_check, one_surface_counterexample, same_base_cases

@@ -2,64 +2,20 @@
 
 import json
 from dataclasses import replace
-from fractions import Fraction
 
 import pytest
-import sympy as sp
 
+from helpers.statements import RIGHT, WRONG, X
 from semispline.papers.recheck import (
     Export,
-    contained,
     different,
     identity,
-    knots,
-    minimum,
-    not_zero,
-    positive,
-    rank,
     write_certificates,
 )
 from semispline.papers.recheck.by_fractions import agrees
 from semispline.papers.recheck.files import read_certificates
-from semispline.papers.recheck.statements import Certificate, Identity, Reading, Term, as_record, from_record
+from semispline.papers.recheck.statements import Certificate, Identity, Reading, as_record, from_record
 from semispline.papers.recheck.verdicts import verdict_of
-
-X = sp.Symbol("x")
-MATRIX = [[2, 1, 0], [1, 2, 1], [0, 1, 2]]
-RIGHT = {
-    "identity": identity("a", (X**2 - 1) / (X - 1), X + 1),
-    "where": identity("a", "y^2", "x^2 + 2*x + 1", where=(("y", "x + 1"),)),
-    "different": different("a", X**2, X, conditions=("x > 1",)),
-    "not zero": not_zero("a", X - 1),
-    "positive": positive("a", (X + 2) / (X + 1) ** 2, nonnegative=("x",)),
-    "squares": positive("a", "x^2 - 2*x*y + y^2", over=[Term(coefficient="1", squares=("x - y",))], strict=False),
-    "number": positive("a", "1/2 - 1/3"),
-    "rank": rank("a", [[1, 2, 3], [2, 4, 6], [1, 0, 1]]),
-    "rank of functions": rank("a", [[X, 1], [X**2, X]]),
-    "contained": contained("a", [[1, 0], [0, 1], [1, 1]], [[2], [3], [5]]),
-    "not contained": contained("a", [[1, 0], [0, 1], [1, 1]], [[2], [3], [6]]),
-    "minimum": minimum("a", MATRIX),
-    "knots": knots("a", [0, 0, Fraction(1, 2), 1, 1], "single", order=2),
-}
-WRONG = {
-    "identity": replace(RIGHT["identity"], right="x + 2"),
-    "equal, though different": replace(RIGHT["identity"], equal=False),
-    "different, though equal": replace(RIGHT["different"], equal=True),
-    "a witness at which both are the same": replace(RIGHT["different"], at=(("x", "1"),)),
-    "a condition that the witness misses": replace(RIGHT["different"], conditions=("x < 0",)),
-    "a witness where a denominator vanishes": replace(different("a", 1 / (X - 1), X), at=(("x", "1"),)),
-    "a sign": replace(RIGHT["positive"], over=(Term(coefficient="-1"),)),
-    "another numerator": replace(RIGHT["positive"], over=(Term(coefficient="1", powers=(("x", 1),)),)),
-    "an odd power of a name without a sign": replace(RIGHT["positive"], nonnegative=()),
-    "rank": replace(RIGHT["rank"], rank=1),
-    "no kernel": replace(RIGHT["rank"], kernel=(("1",), ("1",), ("1",))),
-    "a minor that is zero": replace(RIGHT["rank"], rows=(0, 1)),
-    "a solution": replace(RIGHT["contained"], solution=(("2",), ("4",))),
-    "a separator": replace(RIGHT["not contained"], separator=("1", "0", "0")),
-    "a pivot": replace(RIGHT["minimum"], pivots=("2", "3/2", "-4/3")),
-    "another triangle": replace(RIGHT["minimum"], lower=(("1", "0", "0"), ("0", "1", "0"), ("0", "0", "1"))),
-    "knots": replace(RIGHT["knots"], numbers=("0", "0", "0", "1", "1")),
-}
 
 
 def pari_agrees(tmp_path, *statements):

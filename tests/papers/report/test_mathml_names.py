@@ -6,6 +6,7 @@ import pytest
 import sympy as sp
 
 from semispline.papers.ledger.number_lists import Knots
+from semispline.papers.ledger.records import Places
 from semispline.papers.report.formulas import latex, mathml, text_html
 
 
@@ -39,10 +40,22 @@ def test_knots_are_printed_as_they_were():
     assert "<mn>0.142857</mn>" in mathml(knots)
 
 
+def test_a_function_is_written_as_its_paper_does():
+    i, n, x = sp.symbols("i n x")
+    value = sp.Function("B")(i, n, x)
+    own = {"B": lambda arguments: Places(arguments[:1], arguments[1:2], arguments[2:])}
+    assert (latex(value, own), latex(value)) == ("B_{i}^{n}(x)", r"B{\left(i,n,x \right)}")
+    assert "msubsup" in mathml(value, own)
+    assert ElementTree.fromstring(mathml(value)).find(".//msubsup") is None
+    assert [e.text for e in ElementTree.fromstring(mathml(value)).iter("mo")] == ["(", ",", ",", ")"]
+
+
 @pytest.mark.parametrize(
     ("text", "html"),
     [
-        ("h1 and H2", "<i>h</i><sub>1</sub> and <i>H</i><sub>2</sub>"),
+        ("h_1 and H_2", "<i>h</i><sub>1</sub> and <i>H</i><sub>2</sub>"),
+        ("the H1 norm of C2 functions", "the H1 norm of C2 functions"),
+        ("lambda_0 = omega^2", "<i>λ</i><sub>0</sub> = <i>ω</i><sup>2</sup>"),
         ("kappa_1^2 < 2", "<i>κ</i><sub>1</sub><sup>2</sup> &lt; 2"),
         ("G2 or C1 by fig-5.c2, f(t) = i/k", "G2 or C1 by fig-5.c2, f(t) = i/k"),
     ],

@@ -197,6 +197,33 @@ def test_with_other_degrees_a_middle_curve_is_tried_where_alpha_is_constant_and_
     assert tried(blend(*pair, alpha_v="constant", middle_curves=0)) == [(5, 0, "constant")]
 
 
+def stated(ratio, *, at_end=(False, False), **options):
+    """A layout of a wedge, as if it were found."""
+    fair = FairSolution(1.0, 1.0, (0.0, 0.0), 1.0, 0.0, 1, {}, at_end=at_end)
+    said = BlendOptions(**({"degree_u": 5, "alpha_v": "constant"} | options))
+    return candidates.Layout(said, state_problem(*wedge(ratio)).problem, Found(1.0, 1.0, "reduced", fair=fair))
+
+
+@pytest.mark.parametrize(("ratio", "degree", "wanted"), [(1.9, 4, False), (2.1, 4, True), (1.9, 5, True)])
+def test_a_middle_curve_is_wanted_of_quintics_and_elsewhere_where_the_gap_doubles(ratio, degree, wanted):
+    assert candidates._may_want_a_middle_curve(stated(ratio, degree_u=degree)) is wanted
+    assert not candidates._may_want_a_middle_curve(stated(ratio, degree_u=degree, alpha_v="linear"))
+
+
+@pytest.mark.parametrize(
+    ("ratio", "alpha_v", "wanted"),
+    [
+        (1.4, "auto", True),
+        (1.6, "auto", False),
+        (1.6, "constant", True),
+        (1.4, "linear", False),
+    ],
+)
+def test_a_middle_curve_comes_first_at_an_end_unless_a_linear_alpha_is_tried(ratio, alpha_v, wanted):
+    assert candidates._wants_a_middle_curve_first(stated(ratio, at_end=(False, True)), alpha_v) is wanted
+    assert not candidates._wants_a_middle_curve_first(stated(ratio), alpha_v)
+
+
 def test_a_candidate_whose_folds_were_let_pass_is_not_called_less_fair():
     problem = state_problem(*wedge(1.0)).problem
     values = ((5.0, ()), (1.0, ("folds",)), (5.0, ()), (6.0, ()), (4.9, ()))

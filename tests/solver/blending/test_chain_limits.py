@@ -10,7 +10,7 @@ from helpers.chains import line as straight
 from semispline import Base, BSplineSurface, EdgeError, OptionError, chain
 from semispline.solver.blending.chain_coefficients import Coefficients, JoinedPieces, Joint
 from semispline.solver.blending.chain_pieces import Piece
-from semispline.solver.blending.chain_rows import _degree, assembled, positive_rows
+from semispline.solver.blending.chain_rows import _degree, assembled, positive_rows, well_told_width
 from semispline.solver.blending.end_faces import EndFace
 from semispline.solver.splines import Basis, basis_matrix
 
@@ -170,3 +170,52 @@ def test_the_degree_of_a_strip_is_that_of_its_formula(degrees, cubic, found):
         own.slopes[0, name, order] = 1.0
     piece = Piece(0, (0.0, 1.0), np.zeros((2, 3, 3)), Basis(2, np.array([0.0, 0, 0, 1, 1, 1])), degrees, np.zeros(2), 1)
     assert _degree(piece, own) == found
+
+
+def jets_along_a_line(length, *across):
+    """Of a contact along x, with derivatives across of these sizes, straight down."""
+    jets = np.zeros((1 + len(across), 2, 3))
+    jets[0, 1, 0] = length
+    for k, size in enumerate(across, start=1):
+        jets[k, :, 2] = -size
+    return jets, Basis(1, np.array([0.0, 0, 1, 1]))
+
+
+@pytest.mark.parametrize(
+    ("across", "width"),
+    [
+        # Half of 6: h s_1, h^2 s_2 / 2 or h^3 s_3 / 6 is 3 first.
+        ((2.0, 0.0, 0.0), 1.5),
+        ((0.5, 0.0, 0.0), 6.0),
+        ((1.0, 1.5, 0.0), 2.0),
+        ((0.1, 0.0, 18.0), 1.0),
+        ((0.25, 0.5, 0.144), 12**0.5),
+    ],
+)
+def test_a_strip_may_be_so_wide_that_it_leaves_a_contact_by_half_of_its_extent(across, width):
+    assert well_told_width(*jets_along_a_line(6.0, *across)) == pytest.approx(width, rel=1e-13)
+
+
+@pytest.mark.parametrize("radius", [1.0, 3.0])
+def test_the_extent_of_a_closed_contact_is_its_diameter(radius):
+    """A circle in half circles, whose middle control points lie at infinity."""
+    halves = np.array([[1, 0, 0, 1], [0, 1, 0, 0], [-1, 0, 0, 1], [0, -1, 0, 0], [1, 0, 0, 1.0]])
+    jets = np.stack([halves * [radius, radius, 1, 1], np.tile([0, 0, -0.5, 0], (5, 1))])
+    basis = Basis(2, np.array([0, 0, 0, 0.5, 0.5, 1, 1, 1.0]))
+    # Its points are seen at 64 steps: the cosine of half a step, on either side, is a part in 1000.
+    assert well_told_width(jets, basis) == pytest.approx(2 * radius, rel=1e-3)
+
+
+@pytest.mark.parametrize(("order", "length", "width"), [(3, 15.9, 1), (3, 16, 1), (3, 16.1, 4.025), (2, 100, 1)])
+def test_rows_of_third_order_are_taken_further_apart_where_a_face_is_four_times_too_small(order, length, width):
+    """2 high over a parameter of 1; half of its length is reached at a quarter of that."""
+    strip = chain(walls([straight((0, 0), (length, 0))])).strip(order)
+    assert strip.surface.domain[0] == pytest.approx((0, width), rel=1e-12)
+    assert strip.shown.domain[0] == (0, 1)
+    assert strip.surface.evaluate([width], [0.0])[0] == pytest.approx([0, 0, -2 * width], abs=1e-12)
+
+
+def test_a_ring_that_is_one_circle_begins_with_its_first_edge_and_ends_with_its_last():
+    strip = chain(walls(circle(2.0, (0, 100, 230, 360)))).strip(2)
+    assert (strip.place(0), strip.place(3)) == (strip.cuts[0], strip.cuts[-1])
+    assert strip.place(1) == pytest.approx(strip.cuts[1], rel=1e-9)

@@ -59,6 +59,22 @@ def test_a_contact_meets_its_end_face_at_a_sine_of_a_twentieth_at_least(speed, w
             assert np.abs(curve_of(jets, series())[1:, 1]).max() > 0.1
 
 
+@pytest.mark.parametrize(("size", "bend"), [(1.0, 0.0), (40.0, 0.0), (1.0, 500.0)])
+@pytest.mark.parametrize(("times", "moved"), [(0.8, False), (1.25, True)])
+def test_what_leaves_a_plane_by_less_than_a_part_in_1e12_stays(size, bend, times, moved):
+    """Of the speed across, or of the derivative itself where that is larger."""
+    jets = np.zeros((3, 4, 3))
+    jets[0, 1, 1] = 1.0
+    jets[1, 0, 0], jets[2, 0, 0] = size, bend
+    order = 2 if bend else 1
+    off = times * 1e-12 * max(size, bend)
+    jets[order, 0, 1] = off
+    found = steered(jets, series()[:, :3], EndFace.plane(np.array([0.0, 1.0, 0.0])))
+    expected = np.zeros(3)
+    expected[order] = -off if moved else 0.0
+    np.testing.assert_allclose(found[2], expected, rtol=1e-9, atol=0)
+
+
 def test_a_curve_steered_onto_a_curved_face_bends_with_it():
     """On a sphere of radius 2 about 0, at its pole: x . x = 4 gives x' . n = 0 and x'' . n = -x' . x' / 2."""
     sphere_there = EndFace(np.array([0.0, 0.0, 1.0]), np.diag([-0.5, -0.5, 0.0]))

@@ -62,6 +62,20 @@ def test_a_batch_measures_what_each_alone_does(inner):
     assert not measured.refused[[0, 1]].any()
 
 
+@pytest.mark.parametrize(("degrees", "refused"), [(59.9, 0), (60.1, FOLDS), (180.0, FOLDS)])
+def test_normals_that_turn_by_60_degrees_between_two_nodes_have_met_a_fold(degrees, refused):
+    problem = state_problem(*sheets(), **QUINTIC).problem
+    layers, _ = problem.shape_layers()
+    table = FairnessTable(problem, layers, across(problem.form.u, 6), along(problem.rows, 1))
+    rows, planes = table._planes(np.array([monomials(1.0, 1.0)]))
+    columns = planes[0].size // len(table.across.weights)
+    # P_u goes straight on, and from the fourth node on it is turned about P_v.
+    turn = np.repeat(np.where(np.arange(len(table.across.weights)) < 3, 0.0, np.radians(degrees)), columns)
+    planes[:3] = [np.cos(turn), 0 * turn, np.sin(turn)]
+    planes[3:6] = [0 * turn, np.ones_like(turn), 0 * turn]
+    assert (table._refused(rows, planes)[0] == FOLDS) == (refused == FOLDS)
+
+
 def test_six_nodes_on_the_span_of_a_quintic_are_too_few():
     # The trap that the number of nodes avoids: the usual rule of a node more than the degree.
     at = np.array([monomials(0.35, 2.0)])

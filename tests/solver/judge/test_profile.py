@@ -57,6 +57,20 @@ def test_the_profile_holds_the_worst_of_the_contact(heights):
     assert worse.gap >= profile.means["gap"]
 
 
+@pytest.mark.parametrize(("times", "is_worse"), [(0.5, False), (2.0, True)])
+def test_nothing_but_what_is_worse_in_a_profile_takes_the_place_of_what_was_found(times, is_worse):
+    a, b = strips([1.0, 2.0])
+    contact = measure_contact(a, b, order=2)
+    profile = measure_profile(a, b, contact)
+    found = with_worse(contact, replace(profile, values={"gap": times * profile.values["gap"]}))
+    if is_worse:
+        # The gap grows to 2 at the end of the edge.
+        assert found.gap == pytest.approx(4.0, rel=1e-6)
+        assert replace(found, gap=contact.gap, gap_at=contact.gap_at) == contact
+    else:
+        assert found == contact
+
+
 def roof_and_pipe(radius, angle):
     """A pipe about y, and beyond its rim at the height 0 a plane that leaves it at an angle; they meet in y."""
     r, half = radius, np.sqrt(0.5)

@@ -227,6 +227,7 @@ def test_a_straight_edge_that_slants_in_a_plane_is_moved(tmp_path):
         assert away == pytest.approx(1.0, abs=1e-7)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("far", ["31", "1000"])
 def test_the_largest_distance_does_not_hang_on_the_one_that_was_asked(far, tmp_path):
     # The shortest ruling of the slanted pin is 8 - 5 / 2 long.
@@ -240,6 +241,7 @@ def test_the_largest_distance_does_not_hang_on_the_one_that_was_asked(far, tmp_p
     assert 0.1 - 1e-6 <= free_points(a)[:, 2].min() < 0.11
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("far", ["7", "15", "1000"])
 def test_contacts_that_would_run_over_a_pole_are_refused_before_it(far, tmp_path):
     # A cap that holds the upper pole is cut off, and lies away from the seam.

@@ -71,6 +71,7 @@ def check(found, folder, faces):
     assert volume(back) == pytest.approx(found.gate.volume[1], rel=1e-6)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("distance", [1.0, pytest.param(2.0, marks=pytest.mark.slow)])
 def test_the_top_of_a_box_with_rounded_walls(distance, tmp_path):
     shape = box_with_four(4.0)
@@ -81,6 +82,7 @@ def test_the_top_of_a_box_with_rounded_walls(distance, tmp_path):
     assert len(found.faces) == 8
 
 
+@pytest.mark.slow
 def test_the_same_whichever_edge_is_named(tmp_path):
     shape = box_with_four(4.0)
     path = written(shape, tmp_path / "part.brep")
@@ -91,6 +93,7 @@ def test_the_same_whichever_edge_is_named(tmp_path):
     assert volumes[1] == pytest.approx(volumes[0], rel=1e-9)
 
 
+@pytest.mark.slow
 def test_straight_and_revolved_stretches_take_away_what_they_should(tmp_path):
     """Pappus: what an arc takes away is the section's area times the way of its centroid."""
     shape, d, r = box_with_four(4.0), 1.0, 4.0
@@ -109,6 +112,7 @@ def test_an_open_chain_ends_on_faces(tmp_path):
     assert found.gate.largest_tolerance <= 1.1e-7
 
 
+@pytest.mark.slow
 def test_a_slot_is_rounded_all_round(tmp_path):
     """Lines are extruded and arcs revolved, a face each."""
     found = rounded_there(slot(), in_slot, 2.0, tmp_path)
@@ -146,6 +150,7 @@ def test_closed_rims_of_bosses_holes_and_cones(distance, tmp_path):
             assert found.gate.largest_tolerance <= 1.1e-7
 
 
+@pytest.mark.slow
 def test_an_oblique_rim_is_rounded_too(tmp_path):
     """The seam of the cylinder and that of the blend meet the contact at different places."""
     shape = cut(cylinder(8, 30), half_space([0, 0, 20], [0.3, 0.2, 1]))
@@ -163,6 +168,7 @@ def wires_in_order(faces):
     )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("make", "wanted"),
     [
@@ -179,6 +185,7 @@ def test_wires_are_walked_in_their_order(make, wanted, tmp_path):
     assert wires_in_order([faces[n] for n in (*found.touched, *found.faces)])
 
 
+@pytest.mark.slow
 def test_an_edge_with_both_ends_on_one_face(tmp_path):
     """A half moon: its flat side ends the arcs above and below, and these end the upright edges."""
     shape = cut(cylinder(10, 20), half_space([4, 0, 0], [1, 0, 0]))
@@ -191,6 +198,7 @@ def test_an_edge_with_both_ends_on_one_face(tmp_path):
         assert found.gate.largest_tolerance <= 1.1e-7
 
 
+@pytest.mark.slow
 def test_contacts_are_exact_on_the_faces_of_the_solid(tmp_path):
     found = rounded_there(box_with_four(4.0), at_top, 1.0, tmp_path)
     contacts = contacts_in_solid(tmp_path / "out.step", found.faces)
@@ -243,12 +251,14 @@ def test_a_chain_that_runs_into_a_round_is_refused(tmp_path):
             round_edge(written(shape, tmp_path / "part.brep"), face, edge, 1.0, tmp_path / "out.step")
 
 
+@pytest.mark.slow
 def test_a_distance_that_is_too_large_says_how_far_both_faces_reach(tmp_path):
     path = written(box(20, 30, 40), tmp_path / "part.brep")
     with pytest.raises(EdgeError, match=r"face 0: 50 reaches .* below 30; face 2: 50 reaches .* below 20$"):
         round_edge(path, 0, "e0", 50.0, tmp_path / "out.step")
 
 
+@pytest.mark.slow
 def test_an_arc_is_moved_as_far_as_its_radius(tmp_path):
     shape = box_with_four(4.0)
     with pytest.raises(EdgeError, match=r"below 4$|below 4;"):

@@ -13,6 +13,7 @@ from OCP.TopoDS import TopoDS_Shell
 from helpers.gated import corner_blend, edge_rounded, placed, solid_of
 from helpers.parts import compound, graph_of, moved, written
 from helpers.solids import MODELS, box, box_with_fillet, cylinder, volume
+from helpers.sweeps import first_ones
 from semispline import (
     Base,
     BSplineCurve,
@@ -389,7 +390,9 @@ def test_an_area_that_stays_has_a_limit(share, is_same):
         next(x for x in parts(box(1, y, 1), "FACE") if np.ptp(box_of_face(x)[:, 2]) < 1e-9)
         for y in (1.0, 1 + share * 1e-9)
     ]
-    both = SimpleNamespace(kept={0: 0}, change=Change((), (), (), 0.0, ()), faces=([faces[0]], [faces[1]]), size=1.0)
+    both = SimpleNamespace(
+        kept={0: 0}, change=Change((), (), (), 0.0, ()), faces=([faces[0]], [faces[1]]), first=(0, 0), size=1.0
+    )
     if is_same:
         solid_gate._unchanged(both, GateReport(None), read_back=False)
     else:
@@ -420,7 +423,7 @@ def test_what_crossed_before_may_go_on_doing_so():
     assert found.is_sound, found.reason
 
 
-@pytest.mark.parametrize("share", [0.8, 1.25])
+@pytest.mark.parametrize("share", first_ones(1, [0.8, 1.25]))
 def test_an_end_on_a_curved_face_may_be_off_by_so_much(share, tmp_path, monkeypatch, read_here):
     shape = MODELS["round end r=3.0"]()
     path = written(shape, tmp_path / "part.brep")

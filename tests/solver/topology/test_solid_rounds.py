@@ -8,6 +8,7 @@ from typer.testing import CliRunner
 
 from helpers.parts import graph_of, written
 from helpers.solids import box, box_with_fillet, cut, cylinder, half_space, volume
+from helpers.sweeps import first_ones, first_rows
 from semispline import EdgeError, SolidError, round_edge
 from semispline.solver.cli import app
 from semispline.solver.topology.occ_parts import open_parts
@@ -37,7 +38,7 @@ def sharp_edges(shape):
 BOX = list(sharp_edges(box(20, 30, 40)))
 
 
-@pytest.mark.parametrize(("face", "edge", "length", "convex"), BOX)
+@pytest.mark.parametrize(("face", "edge", "length", "convex"), first_rows(2, BOX))
 def test_each_edge_of_a_box_takes_away_what_it_should(face, edge, length, convex, tmp_path):
     path = written(box(20, 30, 40), tmp_path / "part.brep")
     found = round_edge(path, face, edge, 4.0, tmp_path / "out.step")
@@ -50,7 +51,7 @@ def test_each_edge_of_a_box_takes_away_what_it_should(face, edge, length, convex
     assert volume(back) == pytest.approx(24000 - 0.1395 * 16 * length, abs=1e-4 * 16 * length)
 
 
-@pytest.mark.parametrize("distance", [0.5, 2.0, 10.0, 18.0])
+@pytest.mark.parametrize("distance", first_ones(1, [0.5, 2.0, 10.0, 18.0]))
 def test_a_fixed_shape_takes_away_c_d_squared_s(distance, tmp_path):
     path = written(box(20, 30, 40), tmp_path / "part.brep")
     for face, edge, length, _ in (BOX[0], next(x for x in BOX if x[2] != BOX[0][2])):
@@ -103,6 +104,7 @@ def test_cuts_may_differ(tmp_path):
     assert 0 < 24000 - found.gate.volume[1] < 0.5 * 18 * length
 
 
+@pytest.mark.slow
 def test_a_cut_as_long_as_the_face_is_refused(tmp_path):
     path = written(box(20, 30, 40), tmp_path / "part.brep")
     face, edge = BOX[0][:2]
@@ -111,6 +113,7 @@ def test_a_cut_as_long_as_the_face_is_refused(tmp_path):
     assert not (tmp_path / "out.step").exists()
 
 
+@pytest.mark.slow
 def test_edges_of_a_slanted_box(tmp_path):
     shape = cut(box(20, 30, 40), half_space([0, 0, 32], [0.3, 0.5, 1]))
     path = written(shape, tmp_path / "part.brep")
@@ -128,6 +131,7 @@ def test_an_inner_edge_adds(tmp_path):
     assert found.gate.volume[1] > found.gate.volume[0]
 
 
+@pytest.mark.slow
 def test_an_edge_whose_end_face_would_have_to_grow_is_refused(tmp_path):
     """At an inner corner the contact runs beside the end face, which ends there."""
     shape = cut(box(20, 30, 40), box(12, 18, 40))
@@ -155,6 +159,7 @@ def test_closed_rims(radius, tmp_path):
         assert 0.1 * 9 * length < taken < 0.15 * 9 * length
 
 
+@pytest.mark.slow
 def test_an_edge_that_goes_on_over_a_round_is_rounded_with_it(tmp_path):
     shape = box_with_fillet(5.0)
     path = written(shape, tmp_path / "part.brep")

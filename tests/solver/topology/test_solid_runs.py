@@ -14,6 +14,7 @@ from typer.testing import CliRunner
 
 from helpers.parts import fillet, graph_of, moved, rounded_box, written
 from helpers.solids import box, circles_at, cut, cylinder, half_space, rounded, volume
+from helpers.sweeps import first_rows
 from semispline import Base, EdgeError, SolidError, read_surface, replace_face
 from semispline.solver.cli import app
 from semispline.solver.judge import measure_face_contact
@@ -59,7 +60,7 @@ def is_valid(path):
     return BRepCheck_Analyzer(shape, True).IsValid() and len(parts(shape, "SOLID")) == 1
 
 
-@pytest.mark.parametrize(("upright", "top"), [(3.0, 1.5), (4.0, 1.0), (5.0, 4.0)])
+@pytest.mark.parametrize(("upright", "top"), first_rows(1, [(3.0, 1.5), (4.0, 1.0), (5.0, 4.0)]))
 def test_a_closed_rim_of_eight_fillets_is_replaced_together(upright, top, tmp_path):
     shape = rounded_box(upright, top)
     ring = ring_of(shape)
@@ -77,6 +78,7 @@ def test_a_closed_rim_of_eight_fillets_is_replaced_together(upright, top, tmp_pa
     assert 0 < found.gate.volume[1] - found.gate.volume[0] < most
 
 
+@pytest.mark.slow
 def test_straight_parts_of_a_ring_are_extruded(tmp_path):
     """With the same shape parameters each unit of length takes away the same, whatever the lengths are."""
     changes, shape_of_all = [], {}
@@ -120,6 +122,7 @@ def test_an_open_chain_ends_on_slanted_walls_too(tmp_path):
     assert found.gate.largest_tolerance <= 1.1e-7
 
 
+@pytest.mark.slow
 def test_a_second_replacement_of_a_ring_changes_nothing(tmp_path):
     shape = rounded_box()
     ring = ring_of(shape)
@@ -130,6 +133,7 @@ def test_a_second_replacement_of_a_ring_changes_nothing(tmp_path):
     assert again.gate.volume[1] == pytest.approx(first.gate.volume[1], abs=1e-3 * change)
 
 
+@pytest.mark.slow
 def test_faces_of_a_ring_whose_sides_do_not_answer_each_other_meet_across(tmp_path):
     """With a free row both sides are smooth chains of their own: corners lie at different v, on the seam too."""
     shape = rounded_box()
@@ -140,6 +144,7 @@ def test_faces_of_a_ring_whose_sides_do_not_answer_each_other_meet_across(tmp_pa
     assert found.gate.volume[1] > found.gate.volume[0]
 
 
+@pytest.mark.slow
 def test_place_turn_and_scale_change_nothing(tmp_path):
     shape = rounded_box()
     ring = ring_of(shape)
@@ -364,6 +369,7 @@ def test_the_gate_stops_a_ring_whose_neighbours_do_not_meet(tmp_path, monkeypatc
     assert not (tmp_path / "out.step").exists()
 
 
+@pytest.mark.slow
 def test_pairs_offers_the_chain_and_its_command_does_it(tmp_path):
     shape = rounded_box()
     path, report = written(shape, tmp_path / "part.brep"), tmp_path / "report.json"

@@ -1,0 +1,13 @@
+from .conversion import Relation as Relation
+from .conversion import relations as relations
+from .conversion import symbol as symbol
+from .conversion import terms as terms
+from .documents import Block as Block
+from .documents import read_blocks as read_blocks
+from .echoing import echo as echo
+from .errors import UnreadableError as UnreadableError
+from .names import NamesTable as NamesTable
+from .names import read_names as read_names
+from .page import echo_page as echo_page
+from .reading import Formula as Formula
+from .reading import read_formula as read_formula

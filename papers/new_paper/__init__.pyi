@@ -1,0 +1,1 @@
+from .folder import write_paper as write_paper

@@ -1,0 +1,9 @@
+from .errors import CodeError as CodeError
+from .errors import CodeFaultError as CodeFaultError
+from .errors import CodeLimitError as CodeLimitError
+from .errors import OpenConditionError as OpenConditionError
+from .parsing import read_code as read_code
+from .running import Outcome as Outcome
+from .running import run_code as run_code
+from .tree import Program as Program
+from .values import Limits as Limits
