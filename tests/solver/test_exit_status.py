@@ -92,8 +92,10 @@ def test_a_command_of_the_derivations_ends_the_same_way(monkeypatch):
 
 @pytest.mark.skipif(sys.platform != "linux", reason="asks Linux for the reader")
 def test_ctrl_c_ends_a_reading_command_with_130():
+    # What a shell starts in the background ignores this signal, and so would the command.
     code = f"""
-import sys
+import signal, sys
+signal.signal(signal.SIGINT, signal.default_int_handler)
 sys.path.insert(0, {str(Path(__file__).parents[1])!r})
 from semispline.solver.io import foreign
 read = foreign.call

@@ -34,8 +34,10 @@ CLAIMS = tuple(
     Claim(f"eq-{k}", "Section 1", "The sum is n(n+1)/2.", Verdict.HOLDS, (READING,)) for k in range(1, 9)
 )
 """
+# What a shell starts in the background ignores ctrl-C, and so would the command.
 VERIFY = """
-import sys, threading
+import signal, sys, threading
+signal.signal(signal.SIGINT, signal.default_int_handler)
 from semispline.papers.ledger import verify
 from semispline.solver.exit_status import reports_errors
 import typer
