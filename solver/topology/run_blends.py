@@ -114,7 +114,7 @@ def _from_seam_to_seam(
     vertex = entering(uses, member.b.uses[0])[0]
     border = boundary_curve(surface, "u1")
     # A band may be off the rim; what counts is how far it begins from there along it.
-    foot, start = closest_point(border, vertex).point, border.evaluate(border.knots[:1])[0]
+    foot, start = closest_point(border, vertex).points[0], border.evaluate(border.knots[:1])[0]
     away = float(np.linalg.norm(foot - start))
     if away <= _ONE_POINT * member.length:
         return result
