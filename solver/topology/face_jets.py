@@ -19,6 +19,8 @@ from numpy.typing import NDArray
 from semispline.solver.arrays import FloatArray
 from semispline.solver.splines import BSplineSurface, Jet, bounding_box, surface_jet
 
+# Of the size: so near to a parallelogram the corners of one are in doubles.
+_EVEN = 1e-14
 # Borders that are as near as this to each other, of the size, are one line: the surface is closed.
 _CLOSED = 1e-9
 # Sines: a surface goes on smoothly where its tangent planes at both sides of the seam are as near as this.
@@ -67,6 +69,14 @@ class Face:
     def periods(self) -> FloatArray:
         """After how much of each parameter the surface goes on smoothly in itself; 0 where it does not, shape (2,)."""
         return np.array([self.widths[axis] if self._is_smooth(axis) else 0.0 for axis in (0, 1)])
+
+    @cached_property
+    def is_affine(self) -> bool:
+        """Whether the surface is a plane whose parameters run evenly over it: a parallelogram, up to rounding."""
+        surface, net = self.surface, self.surface.homogeneous
+        if surface.weights is not None or (surface.degree_u, surface.degree_v) != (1, 1) or net.shape[:2] != (2, 2):
+            return False
+        return float(np.abs(net[0, 0] - net[0, 1] - net[1, 0] + net[1, 1]).max()) <= _EVEN * self.size
 
     def _is_smooth(self, axis: int) -> bool:
         if not self.closed[axis]:

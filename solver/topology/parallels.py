@@ -18,10 +18,10 @@ from semispline.solver.topology.face_jets import Face, dot, parameters_of, unit
 
 # Steps of Runge and Kutta's method to the distance: errors of some 1e-8 of it where the surface bends by a right angle.
 _STEPS = 40
-# Steps to a foot from one that is a step away.
-_NEWTON = 3
-# Of the range of a parameter: a step that is no longer changes nothing.
-_ROUNDING = 4 * float(np.finfo(np.float64).eps)
+# Newton's steps to a foot from one that is a step away, and from one that was foreseen.
+_NEWTON, _NEWTON_BETWEEN = 3, 1
+# Of the range of a parameter: Newton's next step would be no longer than rounding.
+_NEXT_IS_NONE = 1e-9
 # Of the domain: so far an edge may lie outside. Chords of steps are shorter by some of the second part where it bends.
 _OUTSIDE, _UNEVEN = 1e-3, 0.1
 # Of a turn: what only touches a box counts as in it. Paths that have lost their way may be any number of turns away.
@@ -75,45 +75,56 @@ def paths_from(face: Face, at: FloatArray, slope: FloatArray, sign: float, dista
     """
     jet = face.jet(at, 2, face.beside(at, slope, sign))
     along = unit(jet[1, 0] * slope[:, :1] + jet[0, 1] * slope[:, 1:])
-    point, ahead = jet[0, 0], sign * np.cross(_normal(jet), along)
-    h = distance / _STEPS
-    places, points, directions, normals = [at], [point], [ahead], [_normal(jet)]
-    for _ in range(_STEPS):
-        bend = [_bend(face, at, point, ahead)]
-        turned = [ahead]
-        for share in (h / 2, h / 2, h):
-            turned.append(ahead + share * bend[-1])
-            bend.append(_bend(face, at, point + share * turned[-2], turned[-1]))
-        point = point + h / 6 * (turned[0] + 2 * turned[1] + 2 * turned[2] + turned[3])
-        ahead = ahead + h / 6 * (bend[0] + 2 * bend[1] + 2 * bend[2] + bend[3])
-        at, jet = _foot(face, at, point)
-        point, normal = jet[0, 0], _normal(jet)
-        ahead = unit(ahead - dot(ahead, normal)[:, None] * normal)
-        places.append(at)
-        points.append(point)
-        directions.append(ahead)
-        normals.append(normal)
-    beside = sign * np.cross(directions, normals)
-    return Paths(np.array(places), np.array(points), np.array(directions), beside, distance)
+    normal = _normal(jet)
+    ahead = sign * np.cross(normal, along)
+    if face.is_affine:
+        steps = np.linspace(0, distance, _STEPS + 1)[:, None, None]
+        places, points = at + steps * parameters_of(jet, ahead), jet[0, 0] + steps * ahead
+        directions, normals = (np.broadcast_to(x, points.shape) for x in (ahead, normal))
+    else:
+        at_steps = [at], [jet[0, 0]], [ahead], [normal]
+        for _ in range(_STEPS):
+            at, jet, ahead = _a_step_on(face, at, jet, ahead, distance / _STEPS)
+            for kept, value in zip(at_steps, (at, jet[0, 0], ahead, _normal(jet)), strict=True):
+                kept.append(value)
+        places, points, directions, normals = (np.array(x) for x in at_steps)
+    return Paths(places, points, directions, sign * np.cross(directions, normals), distance)
 
 
-def _bend(face: Face, at: FloatArray, point: FloatArray, ahead: FloatArray) -> FloatArray:
-    """Return the acceleration of a geodesic at points near the surface, in a direction, shape (K, 3)."""
-    _, jet = _foot(face, at, point)
+def _a_step_on(face: Face, at: FloatArray, jet: Jet, ahead: FloatArray, h: float) -> tuple[FloatArray, Jet, FloatArray]:
+    """Return where geodesics come to by one step of Runge and Kutta's method: parameters, jets, directions."""
+    turned, rate, bend = [ahead], [parameters_of(jet, ahead)], [_bend(jet, ahead)]
+    for share in (h / 2, h / 2, h):
+        _, there = _foot(face, at + share * rate[-1], jet[0, 0] + share * turned[-1], _NEWTON_BETWEEN)
+        turned.append(ahead + share * bend[-1])
+        rate.append(parameters_of(there, turned[-1]))
+        bend.append(_bend(there, turned[-1]))
+    foreseen, point, ahead = (
+        start + h / 6 * (x[0] + 2 * x[1] + 2 * x[2] + x[3])
+        for start, x in ((at, rate), (jet[0, 0], turned), (ahead, bend))
+    )
+    at, jet = _foot(face, foreseen, point, _NEWTON)
+    normal = _normal(jet)
+    return at, jet, unit(ahead - dot(ahead, normal)[:, None] * normal)
+
+
+def _bend(jet: Jet, ahead: FloatArray) -> FloatArray:
+    """Return the acceleration of geodesics in a direction, shape (K, 3)."""
     normal, (a, b) = _normal(jet), parameters_of(jet, ahead).T[:, :, None]
     return dot(jet[2, 0] * a**2 + 2 * jet[1, 1] * a * b + jet[0, 2] * b**2, normal)[:, None] * normal
 
 
-def _foot(face: Face, at: FloatArray, point: FloatArray) -> tuple[FloatArray, Jet]:
+def _foot(face: Face, at: FloatArray, point: FloatArray, most: int) -> tuple[FloatArray, Jet]:
     """Return the parameters of feet and the jets there; beyond its ends the surface goes on by its last spans."""
-    for _ in range(_NEWTON):
-        jet = face.jet(at, 2)
+    jet = face.jet(at, 2)
+    for _ in range(most):
         away = point - jet[0, 0]
         step = parameters_of(jet, away, away)
         at = at + step
-        if (np.abs(step) <= _ROUNDING * face.widths).all():
-            return at, jet
-    return at, face.jet(at, 2)
+        jet = face.jet(at, 2)
+        if (np.abs(step) <= _NEXT_IS_NONE * face.widths).all():
+            break
+    return at, jet
 
 
 def _normal(jet: Jet) -> FloatArray:

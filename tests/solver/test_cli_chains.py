@@ -14,7 +14,6 @@ from semispline.solver.cli import app
 from semispline.solver.errors import EdgeError
 from semispline.solver.io.json_files import read_problem
 
-# .ci/run lets each file be read by a process of its own.
 pytestmark = pytest.mark.usefixtures("reads_here")
 
 # Shapes are looked at elsewhere.

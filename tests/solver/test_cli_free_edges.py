@@ -18,7 +18,6 @@ from semispline.solver.io.occ import OccFace, _faces
 from semispline.solver.judge import in_cad_limits, measure_contact, measure_creases
 from semispline.solver.options import BlendOptions
 
-# .ci/run lets each file be read by a process of its own.
 pytestmark = pytest.mark.usefixtures("reads_here")
 
 # Shapes are looked at elsewhere.

@@ -11,7 +11,6 @@ from semispline import list_surfaces, read_surface
 from semispline.solver.cli import app
 from semispline.solver.io import read_occ
 
-# .ci/run lets each file be read by a process of its own.
 pytestmark = pytest.mark.usefixtures("reads_here")
 
 

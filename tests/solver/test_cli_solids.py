@@ -15,7 +15,6 @@ from semispline.solver.cli import app
 from semispline.solver.topology.occ_parts import open_parts
 from semispline.solver.topology.occ_shapes import parts
 
-# .ci/run lets each file be read by a process of its own.
 pytestmark = pytest.mark.usefixtures("read_here")
 
 

@@ -16,7 +16,6 @@ from semispline.solver.pictures.deviation import TrueFace, measure_deviation
 from semispline.solver.pictures.samples import sample
 from semispline.solver.topology import read_drawn, read_true_face
 
-# .ci/run lets each file be read by a process of its own.
 pytestmark = pytest.mark.usefixtures("read_here")
 
 

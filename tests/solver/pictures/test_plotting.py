@@ -21,7 +21,6 @@ from semispline.solver.pictures.views import View, line_of_sight
 from semispline.solver.topology.drawn_faces import natural_edges
 from semispline.solver.topology.face_meshes import grid_within
 
-# .ci/run lets each file be read by a process of its own.
 pytestmark = pytest.mark.usefixtures("read_here")
 
 SIZE = (320, 240)

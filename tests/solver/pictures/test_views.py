@@ -8,7 +8,6 @@ from hypothesis import strategies as st
 from semispline import OptionError
 from semispline.solver.pictures.views import cells, framed, named_view, parsed_views, view_from
 
-# .ci/run lets each file be read by a process of its own.
 pytestmark = pytest.mark.usefixtures("read_here")
 
 UNIT = st.floats(-1, 1)

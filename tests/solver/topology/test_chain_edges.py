@@ -25,7 +25,6 @@ from semispline.solver.topology.joined_bases import in_order
 from semispline.solver.topology.relations import relate
 from semispline.solver.topology.resolving import resolve_edges
 
-# .ci/run lets each file be read by a process of its own.
 pytestmark = pytest.mark.usefixtures("reads_here")
 
 # Shapes are looked at elsewhere.

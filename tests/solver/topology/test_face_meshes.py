@@ -19,7 +19,6 @@ from semispline.solver.topology.drawn_faces import natural_edges, read_drawn
 from semispline.solver.topology.face_meshes import FaceMesh, grid_within
 from semispline.solver.topology.rhino_meshes import _through_poles
 
-# .ci/run lets each file be read by a process of its own.
 pytestmark = pytest.mark.usefixtures("reads_here")
 
 FLOOR = plane([0, 0, 0], [1, 0, 0], [0, 1, 0])

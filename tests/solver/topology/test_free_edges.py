@@ -45,7 +45,6 @@ from semispline.solver.topology.free_contact import measure_free_contact
 from semispline.solver.topology.resolving import resolve_edges
 from semispline.solver.topology.trim_curves import TrimCurve, read_trim_curves
 
-# .ci/run lets each file be read by a process of its own.
 pytestmark = pytest.mark.usefixtures("reads_here")
 
 # Small, and of no interest here: shapes are looked at elsewhere.

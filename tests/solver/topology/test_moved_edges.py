@@ -27,7 +27,6 @@ from semispline.solver.topology.outlines import outline_of
 from semispline.solver.topology.reading import read_edges
 from semispline.solver.topology.trim_curves import read_trim_curves
 
-# .ci/run lets each file be read by a process of its own.
 pytestmark = pytest.mark.usefixtures("read_here")
 
 

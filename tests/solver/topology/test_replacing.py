@@ -11,7 +11,6 @@ from semispline.solver.topology.fillets import find_fillets
 from semispline.solver.topology.relations import relate
 from semispline.solver.topology.replacing import opposite_pairs, pair_of, rows_beyond
 
-# .ci/run lets each file be read by a process of its own.
 pytestmark = pytest.mark.usefixtures("read_here")
 
 

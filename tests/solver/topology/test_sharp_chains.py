@@ -26,7 +26,6 @@ from semispline.solver.topology.relations import relate
 from semispline.solver.topology.sharp_chains import sharp_chain
 from semispline.solver.topology.solid_contacts import contacts_in_solid
 
-# .ci/run lets each file be read by a process of its own.
 pytestmark = pytest.mark.usefixtures("read_here")
 # The shape is fixed: the section takes away 559/4096 of the square of the distance.
 FIXED = {"degree_u": 3, "middle_curves": 0, "v_scale": "length", "alpha": "energy", "p2": "zero"}

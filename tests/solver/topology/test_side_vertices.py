@@ -14,7 +14,6 @@ from semispline.solver.topology.relations import relate
 from semispline.solver.topology.resolving import resolve_edges
 from semispline.solver.topology.side_vertices import side_vertices
 
-# .ci/run lets each file be read by a process of its own.
 pytestmark = pytest.mark.usefixtures("reads_here")
 
 NAMES = [

@@ -24,7 +24,6 @@ from semispline.solver.topology.occ_parts import open_parts
 from semispline.solver.topology.occ_shapes import parameters_of, parts, points_of, range_of, surface_at, tolerance_of
 from semispline.solver.topology.relations import relate
 
-# .ci/run lets each file be read by a process of its own.
 pytestmark = pytest.mark.usefixtures("read_here")
 
 

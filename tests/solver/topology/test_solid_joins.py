@@ -24,7 +24,6 @@ from semispline.solver.topology.occ_parts import open_parts
 from semispline.solver.topology.occ_shapes import EdgeUsers, jets_at, parameters_of, parts, range_of
 from semispline.solver.topology.tube_volume import tube_volume
 
-# .ci/run lets each file be read by a process of its own.
 pytestmark = pytest.mark.usefixtures("read_here")
 
 

@@ -15,7 +15,6 @@ from semispline.solver.topology.occ_parts import open_parts
 from semispline.solver.topology.occ_shapes import parts
 from semispline.solver.topology.relations import relate
 
-# .ci/run lets each file be read by a process of its own.
 pytestmark = pytest.mark.usefixtures("read_here")
 # The shape is fixed: alpha is found in closed form, and the section takes away 559/4096 of the square of the distance.
 FIXED = {"degree_u": 3, "middle_curves": 0, "v_scale": "length", "alpha": "energy", "p2": "zero"}
