@@ -13,7 +13,7 @@ from helpers.parts import written
 from helpers.reading_here import called_here
 from semispline import list_edges, list_surfaces, plane, read_surface, resolve_edge, round_edge, write_surface
 from semispline.solver.io import foreign, with_surfaces
-from semispline.solver.topology import read_drawn
+from semispline.solver.topology import find_places, read_drawn
 
 ROOM = Path(semispline.solver.__file__).parent
 CALLED = re.compile(r'"(semispline\.solver\.[\w.]+)"')
@@ -42,6 +42,7 @@ def test_what_a_process_sends_is_what_its_reader_finds(tmp_path, monkeypatch):
     face, entry = hole(drilled, "cone")
     resolve_edge(f"{drilled}#{face}", entry.name)
     list_edges(drilled, face)
+    find_places(box)
     read_drawn([str(drilled)])
     round_edge(box, 0, "e0", distance=0.5, out=tmp_path / "round.brep")
     model = tmp_path / "plane.3dm"
