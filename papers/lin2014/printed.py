@@ -87,6 +87,14 @@ COND_3_1_SQUARES = Formula(
     COND_3_1.assumptions,
     _START_CHAINS,
 )
+# The same with any powers: g is whatever they make of u_1, w_{k_r} - w_s and the orders.
+powers = Symbol("g", positive=True)
+COND_3_1_ANY_POWERS = Formula(
+    Eq(P_2, alpha**4 * powers * (R_0 - 2 * R_1 + R_2) + 2 * P_1 - P_0),
+    (P_0, P_1, P_2, R_0, R_1, R_2, alpha, powers),
+    (),
+    (),
+)
 COND_3_2_SQUARES = Formula(
     Eq(
         P_m2,

@@ -32,7 +32,8 @@ def smoothed(piece: CurvePiece, allowed: float) -> tuple[CurvePiece, float] | No
     at, _, beside = piece.at(v)
     jet = piece.face.jet(at, 1, beside)
     # Cholesky factors turn distances in the face into plain ones.
-    root = np.asarray(np.linalg.cholesky(metric(jet)).transpose(0, 2, 1), dtype=np.float64)
+    a, b, c = metric(jet)
+    root = np.linalg.cholesky(np.array([[a, b], [b, c]]).transpose(2, 0, 1)).transpose(0, 2, 1)
     flat = unwrapped(at, piece.face)
     most = len(piece.curve.breaks) // _PIECES if piece.curve.degree == 1 else _SPANS[-1]
     for spans in _SPANS:

@@ -12,6 +12,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 from math import factorial
+from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -116,8 +117,7 @@ class Face:
         for _ in range(_STEPS):
             jet = self.jet(at, max(order, 2), beside)
             away = points - jet[0, 0]
-            step = _solved(hessian(jet, away), _by_parameters(jet, away))
-            plain = _solved(metric(jet), _by_parameters(jet, away))
+            step, plain = parameters_of(jet, away, away), parameters_of(jet, away)
             # Far from the face the Hessian may not be positive.
             wild = ~np.isfinite(step).all(axis=1) | (np.abs(step) > 4 * np.abs(plain) + 1e-15).any(axis=1)
             step = np.where(np.asarray(wild)[:, None], plain, step)
@@ -135,16 +135,20 @@ class Face:
         return at, jet, points - jet[0, 0]
 
 
-def metric(jet: Jet) -> FloatArray:
-    """Return J^T J, shape (K, 2, 2)."""
+# a, b, c of symmetric matrices with the rows (a, b) and (b, c), each of shape (K,).
+Symmetric: TypeAlias = tuple[FloatArray, FloatArray, FloatArray]
+
+
+def metric(jet: Jet) -> Symmetric:
+    """Return J^T J."""
     s, t = jet[1, 0], jet[0, 1]
-    return _symmetric(dot(s, s), dot(s, t), dot(t, t))
+    return dot(s, s), dot(s, t), dot(t, t)
 
 
-def hessian(jet: Jet, away: FloatArray) -> FloatArray:
-    """Return the Hessian of half the squared distance of points, `away` from the face, shape (K, 2, 2)."""
-    second = _symmetric(dot(jet[2, 0], away), dot(jet[1, 1], away), dot(jet[0, 2], away))
-    return metric(jet) - second
+def _hessian(jet: Jet, away: FloatArray) -> Symmetric:
+    """Return the Hessian of half the squared distance of points, `away` from the face."""
+    a, b, c = metric(jet)
+    return a - dot(jet[2, 0], away), b - dot(jet[1, 1], away), c - dot(jet[0, 2], away)
 
 
 @dataclass(frozen=True, eq=False)
@@ -183,14 +187,14 @@ def sections(jet: Jet, tangent: FloatArray, sign: float, order: int, normal_like
     along = unit(tangent - dot(tangent, normal)[:, None] * normal)
     into = side[:, None] * np.cross(normal, along)
     inverse = metric(jet)
-    ahead, inside = (_solved(inverse, _by_parameters(jet, x)) for x in (along, into))
-    second = _symmetric(*(dot(jet[key], normal) for key in ((2, 0), (1, 1), (0, 2))))
+    ahead, inside = (_solved(inverse, jet, x) for x in (along, into))
+    second = (dot(jet[2, 0], normal), dot(jet[1, 1], normal), dot(jet[0, 2], normal))
     bends = np.stack([_form(second, x, y) for x, y in ((ahead, ahead), (ahead, inside), (inside, inside))])
     heights = _heights(jet, inside, normal, inverse, order)
     return Sections(jet[0, 0], along, into, normal, bends, heights)
 
 
-def _heights(jet: Jet, inside: FloatArray, normal: FloatArray, inverse: FloatArray, order: int) -> FloatArray:
+def _heights(jet: Jet, inside: FloatArray, normal: FloatArray, inverse: Symmetric, order: int) -> FloatArray:
     """Return h_2 .. h_order, shape (order - 1, K), by truncated power series of the path above the tangent line.
 
     With the path c + x_1 w + x_2 w^2 + .. in the parameters, A_k = [w^k] S(c + x_1 w + .. + x_(k-1) w^(k-1)) has the
@@ -204,7 +208,7 @@ def _heights(jet: Jet, inside: FloatArray, normal: FloatArray, inverse: FloatArr
         known = _coefficient(jet, path, k)
         found.append(factorial(k) * dot(known, normal))
         if k < order:
-            path[k] = -_solved(inverse, _by_parameters(jet, known))
+            path[k] = -_solved(inverse, jet, known)
     return np.array(found)
 
 
@@ -245,27 +249,23 @@ def unit(vectors: FloatArray) -> FloatArray:
     return np.asarray(np.divide(vectors, length, out=np.full_like(vectors, np.nan), where=length > 0))
 
 
-def _by_parameters(jet: Jet, vectors: FloatArray) -> FloatArray:
-    return np.stack([dot(jet[1, 0], vectors), dot(jet[0, 1], vectors)], axis=1)
-
-
-def _solved(matrix: FloatArray, right: FloatArray) -> FloatArray:
-    a, b, c = matrix[:, 0, 0], matrix[:, 0, 1], matrix[:, 1, 1]
+def _solved(matrix: Symmetric, jet: Jet, vectors: FloatArray) -> FloatArray:
+    """Return x of matrix x = J^T vectors, shape (K, 2); not a number where it has no inverse."""
+    a, b, c = matrix
+    right_s, right_t = dot(jet[1, 0], vectors), dot(jet[0, 1], vectors)
     determinant = a * c - b * b
-    x, y = c * right[:, 0] - b * right[:, 1], a * right[:, 1] - b * right[:, 0]
-    result = np.full_like(right, np.nan)
-    np.divide(np.stack([x, y], axis=1), determinant[:, None], out=result, where=determinant[:, None] != 0)
-    return result
+    found = np.full((len(determinant), 2), np.nan)
+    known = determinant != 0
+    np.divide(c * right_s - b * right_t, determinant, out=found[:, 0], where=known)
+    np.divide(a * right_t - b * right_s, determinant, out=found[:, 1], where=known)
+    return found
 
 
-def _symmetric(a: FloatArray, b: FloatArray, c: FloatArray) -> FloatArray:
-    return np.stack([np.stack([a, b], axis=-1), np.stack([b, c], axis=-1)], axis=-2)
-
-
-def _form(second: FloatArray, x: FloatArray, y: FloatArray) -> FloatArray:
-    return np.asarray(np.einsum("ki,kij,kj->k", x, second, y))
+def _form(second: Symmetric, x: FloatArray, y: FloatArray) -> FloatArray:
+    a, b, c = second
+    return a * x[:, 0] * y[:, 0] + b * (x[:, 0] * y[:, 1] + x[:, 1] * y[:, 0]) + c * x[:, 1] * y[:, 1]
 
 
 def parameters_of(jet: Jet, vectors: FloatArray, away: FloatArray | None = None) -> FloatArray:
     """Return how parameters of feet move as points move by vectors, shape (K, 2); `away` from foot to point."""
-    return _solved(metric(jet) if away is None else hessian(jet, away), _by_parameters(jet, vectors))
+    return _solved(metric(jet) if away is None else _hessian(jet, away), jet, vectors)

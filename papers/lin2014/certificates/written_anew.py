@@ -40,7 +40,8 @@ from semispline.papers.recheck import (
 BOEHM = "a knot inserted by Boehm's rule leaves the surface as it is"
 
 Lines = tuple[tuple[str, str], ...]
-# w counted in other units, w' = d^2 w, alpha' = d alpha; a knot inserted at w_s + x in the first span, by Boehm's rule.
+# w counted in other units, w' = d^2 w, alpha' = d alpha; a knot inserted at w_s + x in the first span, by Boehm's rule;
+# one inserted at w_s + y in the second.
 # The names on the left are those of the base as it is written then.
 _UNITS: Lines = (("alpha_n", "d*alpha"), ("H1_n", "d^2*H1"), ("H2_n", "d^2*H2"), ("R_1n", "R_1j"), ("R_2n", "R_2j"))
 _INSERTED: Lines = (
@@ -50,7 +51,12 @@ _INSERTED: Lines = (
     ("R_1n", "R_0j + x/H1*(R_1j - R_0j)"),
     ("R_2n", "R_1j + x/H2*(R_2j - R_1j)"),
 )
-_CHANGES = {"w in other units": _UNITS, "a knot inserted": _INSERTED}
+_INSERTED_2: Lines = (
+    *(("alpha_n", "alpha"), ("H1_n", "H1"), ("H2_n", "y"), ("R_1n", "R_1j")),
+    ("R_2n", "R_1j + y/H2*(R_2j - R_1j)"),
+)
+_BEYOND = "a knot inserted into the second span"
+_CHANGES = {"w in other units": _UNITS, "a knot inserted": _INSERTED, _BEYOND: _INSERTED_2}
 
 
 def _written(expression: Any, *, anew: bool) -> Any:
@@ -88,15 +94,16 @@ def same_base() -> Iterator[Statement]:
 
 
 def one_row(formula: Formula | None, stays: dict[str, bool], *, flat: bool) -> Iterator[Statement]:
-    """Yield row 2 before and after each change; along the normal R_0 and R_1 agree, and so do P_0 and P_1."""
+    """Yield row 2 before and after changes; along the normal R_0 and R_1 agree, and so do P_0 and P_1."""
     row = given(formula).relation.rhs
     along: Lines = ((text(pr.R_1), text(pr.R_0)), (text(pr.P_0), text(pr.P_1))) if flat else ()
-    for label, change in _CHANGES.items():
+    for label, same in stays.items():
+        change = _CHANGES[label]
         yield identity(
             f"{label}: row 2",
             _written(row, anew=True),
             _written(row, anew=False),
-            equal=stays[label],
+            equal=same,
             where=(*along, *change),
         )
     point = tuple((text(letter), "q") for letter in (pr.R_0, pr.R_1, pr.R_2, pr.P_0, pr.P_1))
@@ -104,12 +111,13 @@ def one_row(formula: Formula | None, stays: dict[str, bool], *, flat: bool) -> I
 
 
 def one_surface(claim: Claim) -> Draft:
-    """Return row 2 by (3.1), as printed and with squares, for one base in three ways of writing it."""
-    printed, squared = (given(reading.parts[0].formula) for reading in claim.readings)
+    """Return row 2 by (3.1), as printed, with squares and with any powers, for one base in four ways of writing it."""
+    printed, squared, powers = (given(reading.parts[0].formula) for reading in claim.readings)
     neither = dict.fromkeys(_CHANGES, False)
     readings = [
         [*same_base(), *one_row(printed, neither, flat=True)],
         [*same_base(), *one_row(squared, neither | {"w in other units": True}, flat=True)],
+        [*same_base(), *one_row(powers, {_BEYOND: False}, flat=True)],
     ]
     (true,) = claim.corrected_formulas
     correction = [*same_base(), *one_row(true, dict.fromkeys(_CHANGES, True), flat=False), *row_cases(true, "start", 2)]

@@ -283,7 +283,10 @@ CLAIMS = (
           (Reading((part(one_surface_check(flat=True), along_normal(pr.COND_3_1, "start")),),
                    label="u_1 and w_{k_r} - w_s as printed"),
            Reading((part(one_surface_check(flat=True), along_normal(pr.COND_3_1_SQUARES, "start")),),
-                   label="both squared, if the scan lost that")),
+                   label="both squared, if the scan lost that"),
+           Reading((part(one_surface_check(flat=True, any_powers=True),
+                         along_normal(pr.COND_3_1_ANY_POWERS, "start")),),
+                   label="any powers of u_1 and w_{k_r} - w_s, if the scan lost others")),
           correction=Correction("With each second difference one of divided differences it does.",
                                 (Part(one_surface_check(flat=False), TRUE_3_1),)),
           counterexample=one_surface_counterexample,
@@ -294,7 +297,10 @@ CLAIMS = (
           "times its part in R_0 - 2 R_1 + R_2, since alpha^4 is c^2 times as large and w_{k_r} - w_s just c times; "
           "but rows 0 and 1 and the surface R fix what G2 asks of row 2 along the normal. Squares, if the scan lost "
           "them, pass this. They do not pass a knot inserted into the first span across, which leaves R as it is too, "
-          "as the paper says of knot insertion: w_{k_r} - w_s becomes smaller, and row 2 moves."),
+          "as the paper says of knot insertion: w_{k_r} - w_s becomes smaller, and row 2 moves. Nor do other powers "
+          "pass a knot inserted into the second span, at w_s + y: w_{k_r} and R_1 stay, R_2 - R_1 becomes "
+          "y / (w_{k_r+1} - w_s) times as large, and row 2 moves by what the printed factor makes of that: a "
+          "right formula has to know w_{k_r+1}."),
     Claim("sec-3.sufficient-g2", _WHERE, "(1.1) to (3.2) together suffice for G2.", Verdict.FAILS,
           (Reading((*_PRINTED_FIRST_ROWS, _normal_part("start", pr.COND_3_1), _normal_part("end", pr.COND_3_2)),
                    label="all six as they are printed"),

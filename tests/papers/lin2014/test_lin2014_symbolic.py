@@ -93,7 +93,7 @@ def test_no_claim_of_sections_2_to_4_rests_on_instances_without_a_reason():
         ("sec-4.initial-value", [False, False, True]),
         ("eq-17", [True, False]),
         ("sec-A.special-choice", [True, False]),
-        ("sec-3.one-surface", [False, False]),
+        ("sec-3.one-surface", [False, False, False]),
     ],
 )
 def test_each_reading_of_a_claim(name, holds):
