@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pytest
 
+from helpers.sweeps import first_ones
 from semispline import blend
 from semispline.papers.lin2014.examples.made_pair import made_pair
 
@@ -17,7 +18,7 @@ def test_there_are_examples():
     assert len(BLOCKS) >= 5
 
 
-@pytest.mark.parametrize("block", BLOCKS, ids=range(len(BLOCKS)))
+@pytest.mark.parametrize("block", first_ones(1, BLOCKS), ids=range(len(BLOCKS)))
 def test_example_runs(block, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     names = {}

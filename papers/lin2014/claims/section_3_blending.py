@@ -242,8 +242,8 @@ CLAIMS: tuple[Claim, ...] = (
                   (part(many.EXTRA_CHECK, many.EXTRA_ENERGY),)),
               consequence=many.curvature_is_lost, cause="energy-for-quality",
               remark="The prescribed curvature is left in a layer of three spans of U: refined, a C2 blend by (11) "
-              "looks like a C1 blend. With none or one middle curve, as in the paper, little of this shows. On "
-              "surfaces it is measured."),
+              "looks like a C1 blend. With none or one middle curve, as in the paper, cubic in u, U has just three or "
+              "four spans. On surfaces it is measured."),
     ambiguous("sec-1.fairness", "Section 1",
               "Inserting knots until both contact curves share theirs worsens the fairness.",
               Reading((part(proved(construction.knot_line_cases, "multiplicities of any knot in two vectors and in "

@@ -7,6 +7,8 @@ import random
 from collections import Counter
 from dataclasses import replace
 
+import pytest
+
 from helpers.token_mutants import mutants, neutral
 from semispline.papers.latex import UnreadableError, expressions, read_formula, resolving, statements
 from semispline.papers.primer.printed import blocks, formula
@@ -46,6 +48,7 @@ def unnoticed(found):
     ]
 
 
+@pytest.mark.slow
 def test_a_changed_token_is_noticed_wherever_it_says_something(whole):
     found = list(outcomes(FORMULAS, 1.0 if whole else SHARE))
     assert unnoticed(found) == []

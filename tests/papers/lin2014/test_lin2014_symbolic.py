@@ -3,6 +3,7 @@
 import pytest
 import sympy as sp
 
+from helpers.sweeps import first_ones
 from semispline.papers.checks import spline_spaces
 from semispline.papers.checks.counts import count_check
 from semispline.papers.checks.spline_spaces import contact_at_knot
@@ -70,6 +71,7 @@ def test_no_claim_of_sections_2_to_4_rests_on_instances_without_a_reason():
             assert all(p.check.proof and p.check.strength <= Strength.EACH for p in parts), name
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "holds"),
     [
@@ -152,6 +154,7 @@ def test_the_gram_integrand_against_integrals_of_two_bumps():
     assert TRUE_14.relation.rhs.subs(values) == sp.diff(energy, x, y) / 2
 
 
+@pytest.mark.slow
 def test_a_premise_that_fails_makes_the_proof_red(monkeypatch):
     """A saddle for the plate, a row of contact that is missing, a knot of full multiplicity: each is noticed."""
     saddle = sp.Symbol("P_uu") ** 2 - sp.Symbol("P_vv") ** 2
@@ -171,7 +174,7 @@ def test_a_premise_that_fails_makes_the_proof_red(monkeypatch):
     contact_at_knot.cache_clear()
 
 
-@pytest.mark.parametrize("name", ["eq-12", "sec-4.normal-equation", "sec-4.c1-similarly"])
+@pytest.mark.parametrize("name", first_ones(1, ["eq-12", "sec-4.normal-equation", "sec-4.c1-similarly"]))
 def test_an_argument_without_its_premise_gives_no_verdict(name, monkeypatch):
     """Where it would otherwise turn into `fails`, or hide behind `ambiguous`."""
     monkeypatch.setattr(objective, "thin_plate_density", lambda: sp.Symbol("P_uu") ** 2 - sp.Symbol("P_vv") ** 2)

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from helpers.bases import facing_pair, moved, ring
 from helpers.papers_set import blend
-from helpers.sweeps import examples
+from helpers.sweeps import examples, first_ones
 from semispline import Base, BSplineSurface
 
 # Moving rounds the input itself: eps times 10^4 sizes is 2e-12 of the size, and the blend, whose rows are differences
@@ -43,6 +43,7 @@ def assert_same(bases, method, scale, offset, **options):
     assert other.energy / scale**2 == pytest.approx(plain.energy, rel=limit, abs=1e-12 * size**2)
 
 
+@pytest.mark.slow
 @examples(30)
 @given(
     st.integers(0, 10**6),
@@ -72,6 +73,8 @@ def test_a_change_of_units_alone_costs_no_digits(method, unit):
     assert np.abs(stacked(other) / unit - stacked(plain)).max() <= 1e-13 * size_of(bases)
 
 
+@pytest.mark.slow
+@pytest.mark.slow
 @pytest.mark.parametrize("method", ["reduced", "casadi"])
 @pytest.mark.parametrize("middle_curves", [0, 1])
 def test_closed_bases(method, middle_curves):
@@ -80,7 +83,7 @@ def test_closed_bases(method, middle_curves):
         assert_same(bases, method, scale, np.array(offset), middle_curves=middle_curves)
 
 
-@pytest.mark.parametrize("method", ["reduced", "casadi"])
+@pytest.mark.parametrize("method", first_ones(1, ["reduced", "casadi"]))
 def test_bases_that_continue_each_other(method):
     # Least energy zero: there is no energy of its own to measure rounding by.
     k = [0, 0, 0, 1, 1, 1]

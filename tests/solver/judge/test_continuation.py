@@ -6,6 +6,7 @@ import pytest
 from helpers.bases import facing_pair, tube
 from helpers.papers_set import blend
 from helpers.shapes import sheets
+from helpers.sweeps import first_ones
 from semispline import Base, BSplineSurface, EdgeError, transform
 from semispline.solver.judge.continuation import _nearest, continuation
 from semispline.solver.judge.sections import unit_normals
@@ -31,7 +32,7 @@ def check(surface, bases):
         assert (np.sum(found.evaluate(np.zeros(1), v, 1, 0) * out, axis=1) > 0).all()
 
 
-@pytest.mark.parametrize("seed", range(12))
+@pytest.mark.parametrize("seed", first_ones(3, range(12)))
 def test_open_edges(seed):
     bases = facing_pair(np.random.default_rng(seed))
     check(blend(*bases, **OPTIONS).surface, bases)

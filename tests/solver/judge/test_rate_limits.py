@@ -7,6 +7,7 @@ import pytest
 
 from helpers.bases import moved, patch
 from helpers.high_order import SIZES, facing, hand_made, inwards
+from helpers.sweeps import first_ones
 from semispline import Base, BSplineSurface, InputError, measure_contact
 from semispline.solver.judge import doubtful, required_limits, shortfalls, untold
 from semispline.solver.splines.operations import split_u
@@ -153,7 +154,7 @@ def test_a_cubic_blend_of_cubics_is_g3_at_its_seam_by_no_merit():
     assert inside.rate_jump_relative > 0.1
 
 
-@pytest.mark.parametrize("rational", [False, True])
+@pytest.mark.parametrize("rational", first_ones(1, [False, True]))
 def test_what_rounding_does_is_allowed_and_not_a_thousand_times_more(rational):
     # A smooth surface cut in two, near the origin or far away: the parts meet but for their control points' rounding.
     worst = dict.fromkeys(RATES, 0.0)

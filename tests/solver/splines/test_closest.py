@@ -11,6 +11,7 @@ from OCP.gp import gp_Pnt
 from helpers.closed import circle, cylinder, sphere, torus
 from helpers.occ import to_geom
 from helpers.splines import bspline_surfaces, curves, semistructured_surfaces
+from helpers.sweeps import first_ones
 from semispline import BSplineCurve, BSplineSurface, SemiStructuredSurface, closest_point, revolve, swap_directions
 from semispline.solver.errors import ControlPointError, InputError
 from semispline.solver.judge.de_boor import curve_points, surface_points
@@ -34,7 +35,7 @@ def wavy(seed, rational, shape=(6, 7)):
     return BSplineSurface(3, 3, *knots, net, rng.uniform(0.4, 2.5, shape) if rational else None)
 
 
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", first_ones(1, range(6)))
 def test_no_point_of_a_grid_is_nearer(seed):
     surface = wavy(seed, seed % 2)
     grid = grid_of(surface)
@@ -46,6 +47,7 @@ def test_no_point_of_a_grid_is_nearer(seed):
         assert np.abs(np.linalg.norm(at - target, axis=1) - found.distance).max() <= 1e-9
 
 
+@pytest.mark.slow
 @settings(max_examples=25)
 @given(bspline_surfaces(most=2), points)
 def test_no_point_of_a_grid_is_nearer_whatever_the_knots(surface, target):
@@ -54,6 +56,7 @@ def test_no_point_of_a_grid_is_nearer_whatever_the_knots(surface, target):
     )
 
 
+@pytest.mark.slow
 @settings(max_examples=15)
 @given(semistructured_surfaces(degrees=(1, 3)), points)
 def test_semistructured_surfaces_too(surface, target):
@@ -62,6 +65,7 @@ def test_semistructured_surfaces_too(surface, target):
     )
 
 
+@pytest.mark.slow
 @settings(max_examples=25)
 @given(curves(), points, st.booleans(), st.integers(0, 2**32 - 1))
 def test_no_sample_of_a_curve_is_nearer(curve, target, rational, seed):
@@ -89,6 +93,7 @@ def test_open_cascade_finds_no_other_distance(seed):
         assert closest_point(surface, target).distance <= theirs.Value() + 1e-9
 
 
+@pytest.mark.slow
 @settings(max_examples=30)
 @given(points)
 def test_distances_to_a_sphere_a_torus_and_a_circle_are_known(target):

@@ -18,6 +18,7 @@ from OCP.BRepPrimAPI import (
 from OCP.gp import gp_Dir, gp_Pln, gp_Pnt, gp_Vec
 
 from helpers.parts import written
+from helpers.sweeps import first_rows
 from semispline import EdgeError, OptionError, blend_edges, list_edges, plane, write_surface
 from semispline.solver.splines import cut_to_edge, parse_edge
 from semispline.solver.topology import moved_edges, parse_cut
@@ -64,6 +65,7 @@ def free_points(end):
     return Face(end.surface).jet(end.curve.pcurve.evaluate(along)[:, :2], 0)[0, 0]
 
 
+@pytest.mark.slow
 def test_a_rim_is_moved_into_both_faces(pin):
     a, b = moved_edges(specs(pin), (None, None), ("1.5", "2"))
     assert edge_points(a)[:, 2] == pytest.approx(6.5, abs=1e-12)
@@ -86,14 +88,20 @@ def test_a_rim_is_moved_into_both_faces(pin):
 
 @pytest.mark.parametrize(
     ("cuts", "words"),
-    [
-        (("8.5", "1"), r"--cut-a 8.5: 8.5 reaches beyond the face, expected a distance below 8$"),
-        (("1", "5.5"), r"--cut-b 5.5: 5.5 reaches beyond the face, expected a distance below 5$"),
-        (("v=9", "1"), r"--cut-a v=9: v=9 lies beyond the face, expected v between 0 and 8$"),
-        (("v=-1", "1"), r"--cut-a v=-1: v=-1 lies beyond the face"),
-        (("u=1", "1"), r"--cut-a u=1: found u, but along the edge v1 v is constant"),
-        (("1", "u=1"), r"--cut-b u=1: the edge is a free curve, along which no parameter is constant; give a distance"),
-    ],
+    first_rows(
+        1,
+        [
+            (("8.5", "1"), r"--cut-a 8.5: 8.5 reaches beyond the face, expected a distance below 8$"),
+            (("1", "5.5"), r"--cut-b 5.5: 5.5 reaches beyond the face, expected a distance below 5$"),
+            (("v=9", "1"), r"--cut-a v=9: v=9 lies beyond the face, expected v between 0 and 8$"),
+            (("v=-1", "1"), r"--cut-a v=-1: v=-1 lies beyond the face"),
+            (("u=1", "1"), r"--cut-a u=1: found u, but along the edge v1 v is constant"),
+            (
+                ("1", "u=1"),
+                r"--cut-b u=1: the edge is a free curve, along which no parameter is constant; give a distance",
+            ),
+        ],
+    ),
 )
 def test_beyond_the_face_the_largest_distance_is_said(pin, cuts, words):
     with pytest.raises(EdgeError, match=words):
@@ -111,6 +119,7 @@ def test_a_parameter_and_one_contact_that_stays(pin):
     assert (a.edge, b.curve, b.edge) == ("v=3-", None, "e0")
 
 
+@pytest.mark.slow
 def test_a_slanted_face_is_cut_as_far_as_its_edges(tmp_path):
     """Across a wedge that is 10 wide below and 4 above, 6 high: one unit up it is 9 wide."""
     path = written(BRepPrimAPI_MakeWedge(10.0, 6.0, 8.0, 4.0).Shape(), tmp_path / "wedge.brep")
@@ -128,6 +137,7 @@ def test_a_slanted_face_is_cut_as_far_as_its_edges(tmp_path):
     assert sorted(widths) == pytest.approx([9.0, 9.0, 10.0, 10.0])
 
 
+@pytest.mark.slow
 def test_beside_a_corner_that_juts_into_the_face_a_contact_ends_where_its_edge_does(tmp_path):
     """On an L of arms 5 broad, the lines one inside of both edges at the inner corner run on into the other arm."""
     corner = BRepPrimAPI_MakeBox(gp_Pnt(5.0, 5.0, -1.0), 9.0, 9.0, 9.0).Shape()
@@ -142,6 +152,7 @@ def test_beside_a_corner_that_juts_into_the_face_a_contact_ends_where_its_edge_d
     assert np.array(sorted(found)) == pytest.approx(np.array([(5.0, 5.0)] * 4 + [(10.0, 10.0)] * 2))
 
 
+@pytest.mark.slow
 def test_a_distance_on_a_cone_is_one_along_its_lines(tmp_path):
     path = written(BRepPrimAPI_MakeCone(5.0, 2.0, 4.0).Shape(), tmp_path / "cone.brep")
     # Its lines fall by 3 on 4, and are 5 long.
@@ -179,6 +190,7 @@ def test_words_of_cuts_that_mean_nothing(word):
         parse_cut(word, "--cut-a")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("turns", [-1, 0, 1])
 def test_a_curve_that_is_taken_over_another_turn_is_moved_all_the_same(tmp_path, turns):
     path = written(slanted_pin(), tmp_path / "slanted.brep")
@@ -207,6 +219,7 @@ def test_a_curve_that_is_taken_over_another_turn_is_moved_all_the_same(tmp_path,
     assert (at[:, 1] < 8 + slope * x).all()
 
 
+@pytest.mark.slow
 def test_a_straight_edge_that_slants_in_a_plane_is_moved(tmp_path):
     """Below a prism over the triangle (0, 0), (10, 0), (3, 7), each side is moved into the triangle by one."""
     corners = np.array([[0.0, 0.0], [10.0, 0.0], [3.0, 7.0]])

@@ -53,6 +53,7 @@ def test_a_distance_in_a_plane(edge, axis, coordinate):
     assert points[:, axis] == pytest.approx(coordinate, abs=1e-13)
 
 
+@pytest.mark.slow
 @examples(25)
 @given(st.floats(0.1, 9.0), st.floats(0.2, 6.0))
 def test_a_distance_along_and_round_a_cylinder(distance, radius):
@@ -68,6 +69,7 @@ def test_a_distance_along_and_round_a_cylinder(distance, radius):
     assert radius * turned == pytest.approx(quarter.distance, rel=1e-11)
 
 
+@pytest.mark.slow
 def test_a_distance_on_a_sphere_is_an_arc():
     surface = ball(3.0)
     found = moved(surface, ("v", 0), 1.2)
@@ -86,6 +88,7 @@ def test_a_free_curve_in_a_plane_is_parallel():
     assert paths.point[-1][:, :2] == pytest.approx(at + 0.8 * normal, abs=1e-12)
 
 
+@pytest.mark.slow
 @examples(25)
 @given(st.floats(-1.2, 1.2), st.floats(0.2, 3.0), st.sampled_from([1.0, -1.0]))
 def test_on_a_cylinder_paths_are_straight_lines_of_the_unrolled_sheet(slant, distance, sign):
@@ -107,6 +110,7 @@ def test_on_a_cylinder_paths_are_straight_lines_of_the_unrolled_sheet(slant, dis
     assert end[:, 2] - start[:, 2] == pytest.approx(np.full(5, sign * distance * np.cos(slant)), abs=1e-6)
 
 
+@pytest.mark.slow
 def test_lengths_of_paths_are_true_on_a_wavy_surface():
     """Whatever the surface: each step is as long as it should be, and neighbours stay at one distance (Gauss)."""
     rng = np.random.default_rng(3)
@@ -149,6 +153,7 @@ def test_paths_into_a_circle_cross_in_its_middle(radius):
     assert focal_distance(outwards) == np.inf
 
 
+@pytest.mark.slow
 def test_cuts_do_not_depend_on_where_the_surface_lies():
     surface = ball()
     turned = transform(surface, np.array([[0, -1, 0], [1, 0, 0], [0, 0, 1.0]]) * 7, [100, -30, 5])

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 import rhino3dm
 
+from helpers.sweeps import first_ones, first_rows
 from semispline import list_edges, resolve_edge
 from semispline.solver.topology.half_edges import NONE
 from semispline.solver.topology.listing import place_lines
@@ -68,7 +69,9 @@ def test_a_cylinder_and_a_ball_have_seams(graph):
     assert (uses.pcurve[~uses.degenerate] == "projected").all()
 
 
-@pytest.mark.parametrize("name", ["v3_T-Joint2.3dm", "v4_DinerMug.3dm", "v4_MechPartA.3dm", "v4_SolidHandle.3dm"])
+@pytest.mark.parametrize(
+    "name", first_ones(1, ["v3_T-Joint2.3dm", "v4_DinerMug.3dm", "v4_MechPartA.3dm", "v4_SolidHandle.3dm"])
+)
 def test_edges_of_real_files_lie_on_their_faces_and_are_walked(shared, name):
     g = read_edges(shared / "data/cad" / name)
     uses, known = g.uses, g.uses.pcurve != "none"
@@ -85,13 +88,14 @@ def test_edges_of_real_files_lie_on_their_faces_and_are_walked(shared, name):
     assert (tangents < -0.9).all()
 
 
-@pytest.mark.parametrize(("name", "edges"), [("v4_MechPartA.3dm", 94), ("v4_SolidHandle.3dm", 93)])
+@pytest.mark.parametrize(("name", "edges"), first_rows(1, [("v4_MechPartA.3dm", 94), ("v4_SolidHandle.3dm", 93)]))
 def test_every_edge_of_a_closed_body_has_two_uses(shared, name, edges):
     uses = read_edges(shared / "data/cad" / name).uses
     assert np.unique(uses.edge, return_counts=True)[1].tolist() == [2] * edges
     assert not uses.naked.any()
 
 
+@pytest.mark.slow
 def test_fillets_of_a_real_file(shared):
     places = find_places(shared / "data/cad/v4_MechPartA.3dm")
     assert [(len(x.faces), 1 + len(x.repeats)) for x in places.of_kind("fillet")] == [(1, 4)] * 4
@@ -121,6 +125,7 @@ def test_edges_of_3dm_files_are_named(tmp_path):
     assert wall.tolerance == pytest.approx(1e-4 * read_edges(path).size)
 
 
+@pytest.mark.slow
 def test_a_pole_of_a_3dm_file_is_a_point(tmp_path):
     face = list_edges(written(tmp_path / "ball.3dm", sphere()), 0)
     assert sorted(edge.kind for edge in face.edges) == ["point", "point", "whole", "whole"]

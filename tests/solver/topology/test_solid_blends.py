@@ -12,6 +12,7 @@ from typer.testing import CliRunner
 
 from helpers.parts import compound, graph_of, moved, rounded_box, written
 from helpers.solids import MODELS, box, box_with_fillet, pipe, slanted, volume
+from helpers.sweeps import first_ones
 from helpers.xcaf import labels_of, write_assembly, write_coloured
 from semispline import ComputationError, EdgeError, FileError, SolidError, read_surface, replace_face, round_edge
 from semispline.solver import workers
@@ -37,7 +38,7 @@ def fillet_of(shape):
     return number
 
 
-@pytest.mark.parametrize("name", MODELS)
+@pytest.mark.parametrize("name", first_ones(1, MODELS))
 def test_fillets_of_models_are_replaced(name, tmp_path):
     shape = MODELS[name]()
     path, out = written(shape, tmp_path / "part.brep"), tmp_path / "out.step"
@@ -55,6 +56,7 @@ def test_fillets_of_models_are_replaced(name, tmp_path):
     assert found.gate.largest_tolerance <= (1e-6 * 60 if "round end" in name else 1.1e-7)
 
 
+@pytest.mark.slow
 def test_a_second_replacement_changes_nothing(tmp_path):
     path = written(box_with_fillet(5.0), tmp_path / "part.brep")
     number = fillet_of(box_with_fillet(5.0))
@@ -64,6 +66,7 @@ def test_a_second_replacement_changes_nothing(tmp_path):
     assert second.gate.volume[1] == pytest.approx(first.gate.volume[1], rel=1e-12)
 
 
+@pytest.mark.slow
 def test_place_turn_scale_and_format_change_nothing(tmp_path):
     shape = box_with_fillet(5.0)
     number = fillet_of(shape)
@@ -80,6 +83,7 @@ def test_place_turn_scale_and_format_change_nothing(tmp_path):
         assert change == pytest.approx(plain.volume[1] - plain.volume[0], rel=1e-5)
 
 
+@pytest.mark.slow
 def test_edges_named_either_way_give_the_same_solid(tmp_path):
     shape = box_with_fillet(5.0)
     path, number = written(shape, tmp_path / "part.brep"), fillet_of(shape)
@@ -89,7 +93,7 @@ def test_edges_named_either_way_give_the_same_solid(tmp_path):
     assert other.gate.volume[1] == pytest.approx(first.gate.volume[1], rel=1e-9)
 
 
-@pytest.mark.parametrize("name", ["boss r=2.0", "pipe r=1.0", "pipe r=2.5"])
+@pytest.mark.parametrize("name", first_ones(1, ["boss r=2.0", "pipe r=1.0", "pipe r=2.5"]))
 def test_circles_on_planes_are_met_exactly_and_with_few_points(name, tmp_path):
     """Both contacts are arcs of like parameters: the blend is the surface of revolution of one section."""
     shape = (MODELS | {"pipe r=1.0": lambda: pipe(1.0), "pipe r=2.5": lambda: pipe(2.5)})[name]()
@@ -105,7 +109,7 @@ def test_circles_on_planes_are_met_exactly_and_with_few_points(name, tmp_path):
     assert np.ptp(points[..., 2], axis=1).max() <= 1e-12
 
 
-@pytest.mark.parametrize("unit", ["mm", "in"])
+@pytest.mark.parametrize("unit", first_ones(1, ["mm", "in"]))
 def test_units_names_colours_and_layers_stay(unit, tmp_path):
     shape = box_with_fillet(5.0)
     path = write_coloured(shape, tmp_path / "part.step", unit)
@@ -116,6 +120,7 @@ def test_units_names_colours_and_layers_stay(unit, tmp_path):
     assert labels_of(tmp_path / "out.step") == before
 
 
+@pytest.mark.slow
 def test_a_part_of_an_assembly_is_changed_wherever_it_stands(tmp_path):
     shape = box_with_fillet(5.0)
     there = gp_Trsf()
@@ -143,6 +148,7 @@ def test_a_part_of_an_assembly_is_changed_wherever_it_stands(tmp_path):
         assert np.linalg.norm(np.array(edge.at) - point.Coord()) <= own.length
 
 
+@pytest.mark.slow
 def test_a_rounded_part_before_the_one_that_was_named_grows_too(tmp_path):
     there = gp_Trsf()
     there.SetTranslation(gp_Vec(100, 0, 0))
@@ -155,6 +161,7 @@ def test_a_rounded_part_before_the_one_that_was_named_grows_too(tmp_path):
     assert all((graph.uses.points[graph.uses.of_face(n)][..., 0] > 99).all() for n in (*found.touched, *found.faces))
 
 
+@pytest.mark.slow
 def test_a_shell_stays_as_open_as_it_was(tmp_path):
     shape = box_with_fillet(5.0)
     number = fillet_of(shape)
@@ -182,6 +189,7 @@ def test_what_goes_on_is_refused_with_its_neighbours(tmp_path):
     assert not (tmp_path / "out.step").exists()
 
 
+@pytest.mark.slow
 def test_a_middle_row_ends_on_a_slanted_end_too(tmp_path):
     shape = slanted(4.0, [0.5, 0.0, 1.0])
     path = written(shape, tmp_path / "part.brep")
@@ -189,6 +197,7 @@ def test_a_middle_row_ends_on_a_slanted_end_too(tmp_path):
     assert found.gate.largest_tolerance <= 1.1e-7
 
 
+@pytest.mark.slow
 def test_what_the_gate_stops_is_not_written(tmp_path, monkeypatch):
     shape = box_with_fillet(5.0)
     path, out = written(shape, tmp_path / "part.brep"), tmp_path / "out.step"
@@ -224,6 +233,7 @@ def test_files_without_solids_are_refused(tmp_path):
         replace_face(path, 2, path)
 
 
+@pytest.mark.slow
 def test_the_command_gives_the_solid_back(tmp_path):
     shape = box_with_fillet(5.0)
     path, out, report = written(shape, tmp_path / "part.brep"), tmp_path / "out.step", tmp_path / "report.json"
@@ -251,6 +261,7 @@ def test_other_formats_get_the_surface_and_are_told_so(tmp_path):
     assert "no solid can come back in .3dm" in done.output
 
 
+@pytest.mark.slow
 def test_who_is_killed_by_the_limits_leaves_nothing(tmp_path, monkeypatch):
     """The process that operates gets too little memory."""
     shape = box_with_fillet(5.0)
@@ -269,6 +280,7 @@ def test_who_is_killed_by_the_limits_leaves_nothing(tmp_path, monkeypatch):
     assert (path.read_bytes(), sorted(tmp_path.iterdir())) == before
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scale", [1e-3, 1e3])
 def test_scale_changes_nothing(scale, tmp_path):
     shape, small = box_with_fillet(5.0), gp_Trsf()
