@@ -45,7 +45,6 @@ KNOTS = [
 
 
 @pytest.mark.slow
-@pytest.mark.slow
 @pytest.mark.parametrize(("degree", "knots"), KNOTS)
 @pytest.mark.parametrize("values", [(1, 0), (0, 1)], ids=["1 - s", "s"])
 def test_the_product_is_the_product_on_each_span(degree, knots, values):

@@ -179,7 +179,6 @@ def cut_arcs(pieces, at):
 
 
 @pytest.mark.slow
-@pytest.mark.slow
 @pytest.mark.parametrize("family", [walls, flanges])
 @pytest.mark.parametrize(("at", "first"), [(0.5, 0), (0.3, 2)])
 def test_arcs_that_are_cut_make_the_strip_of_the_whole_ones(family, at, first):

@@ -74,7 +74,6 @@ def test_a_change_of_units_alone_costs_no_digits(method, unit):
 
 
 @pytest.mark.slow
-@pytest.mark.slow
 @pytest.mark.parametrize("method", ["reduced", "casadi"])
 @pytest.mark.parametrize("middle_curves", [0, 1])
 def test_closed_bases(method, middle_curves):

@@ -27,7 +27,6 @@ PARABOLA = polynomial(x2y0=1, x1y2=-2, x0y4=1)
 
 
 @pytest.mark.slow
-@pytest.mark.slow
 @pytest.mark.parametrize("box", [BOX, ADMISSIBLE])
 @pytest.mark.parametrize("table", [CIRCLE, HYPERBOLA, PARABOLA], ids=["circle", "hyperbola", "parabola"])
 @pytest.mark.parametrize("level", [0.0, 5.0])

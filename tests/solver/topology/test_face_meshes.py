@@ -55,7 +55,6 @@ def test_the_area_of_each_face_is_the_kernels(drilled_file):
 
 
 @pytest.mark.slow
-@pytest.mark.slow
 def test_finer_triangles_come_nearer(drilled_file):
     kernel, _, (faces, _) = drilled_file
     for face, known in zip(faces, kernel, strict=True):
