@@ -32,7 +32,7 @@ report: $(STAMP)
 
 test: $(STAMP)
 	$(PYTEST) -m 'not ($(LEFT_OUT))'
-	@echo "Left out here, run by .ci/run: tests marked compiler (a C compiler), browser (Chromium), coq (the kernel of Coq) or slow (long sweeps); and most examples of the sweeps"
+	@echo "Left out here, run by .ci/run: tests marked compiler (a C compiler), browser (Chromium), coq (the kernel of Coq) or slow (half a second and more); and most examples of the sweeps"
 
 # The loop while working.
 check: lint types layers quick
