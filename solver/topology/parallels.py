@@ -18,8 +18,8 @@ from semispline.solver.topology.face_jets import Face, dot, parameters_of, unit
 
 # Steps of Runge and Kutta's method to the distance: errors of some 1e-8 of it where the surface bends by a right angle.
 _STEPS = 40
-# Newton's steps to a foot from one that is a step away, and from one that was foreseen.
-_NEWTON, _NEWTON_BETWEEN = 3, 1
+# Steps to a foot from one that is a step away; where a seam is creased a foot that was foreseen may be beyond all.
+_NEWTON = 3
 # Of the range of a parameter: Newton's next step would be no longer than rounding.
 _NEXT_IS_NONE = 1e-9
 # Of the domain: so far an edge may lie outside. Chords of steps are shorter by some of the second part where it bends.
@@ -93,17 +93,15 @@ def paths_from(face: Face, at: FloatArray, slope: FloatArray, sign: float, dista
 
 def _a_step_on(face: Face, at: FloatArray, jet: Jet, ahead: FloatArray, h: float) -> tuple[FloatArray, Jet, FloatArray]:
     """Return where geodesics come to by one step of Runge and Kutta's method: parameters, jets, directions."""
-    turned, rate, bend = [ahead], [parameters_of(jet, ahead)], [_bend(jet, ahead)]
+    turned, bend = [ahead], [_bend(jet, ahead)]
     for share in (h / 2, h / 2, h):
-        _, there = _foot(face, at + share * rate[-1], jet[0, 0] + share * turned[-1], _NEWTON_BETWEEN)
+        _, there = _foot(face, at, jet[0, 0] + share * turned[-1])
         turned.append(ahead + share * bend[-1])
-        rate.append(parameters_of(there, turned[-1]))
         bend.append(_bend(there, turned[-1]))
-    foreseen, point, ahead = (
-        start + h / 6 * (x[0] + 2 * x[1] + 2 * x[2] + x[3])
-        for start, x in ((at, rate), (jet[0, 0], turned), (ahead, bend))
+    point, ahead = (
+        start + h / 6 * (x[0] + 2 * x[1] + 2 * x[2] + x[3]) for start, x in ((jet[0, 0], turned), (ahead, bend))
     )
-    at, jet = _foot(face, foreseen, point, _NEWTON)
+    at, jet = _foot(face, at, point)
     normal = _normal(jet)
     return at, jet, unit(ahead - dot(ahead, normal)[:, None] * normal)
 
@@ -114,10 +112,10 @@ def _bend(jet: Jet, ahead: FloatArray) -> FloatArray:
     return dot(jet[2, 0] * a**2 + 2 * jet[1, 1] * a * b + jet[0, 2] * b**2, normal)[:, None] * normal
 
 
-def _foot(face: Face, at: FloatArray, point: FloatArray, most: int) -> tuple[FloatArray, Jet]:
+def _foot(face: Face, at: FloatArray, point: FloatArray) -> tuple[FloatArray, Jet]:
     """Return the parameters of feet and the jets there; beyond its ends the surface goes on by its last spans."""
     jet = face.jet(at, 2)
-    for _ in range(most):
+    for _ in range(_NEWTON):
         away = point - jet[0, 0]
         step = parameters_of(jet, away, away)
         at = at + step
