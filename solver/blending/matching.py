@@ -24,7 +24,7 @@ from semispline.solver.splines import (
 )
 
 # A shift below this part of the rim is none.
-NO_SHIFT = 1e-9
+_NO_SHIFT = 1e-9
 # Spans for each that a blend has: what faces what is then a matter of angle, to .001 degree.
 _FINER = 4
 _LINE = np.array([0.0, 0.0, 1.0, 1.0])
@@ -47,7 +47,7 @@ def matched_edges(
     first, last = b.range_along
     found = closest_point(boundary_curve(b.surface, b.side), at).parameters
     shift = (float(np.ravel(found)[0]) - first) % (last - first)
-    return replace(matched, shift=0.0 if min(shift, last - first - shift) < NO_SHIFT * (last - first) else shift)
+    return replace(matched, shift=0.0 if min(shift, last - first - shift) < _NO_SHIFT * (last - first) else shift)
 
 
 def _shares(base: Base, by_angle: Base, places: Sequence[float]) -> FloatArray:

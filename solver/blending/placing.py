@@ -8,16 +8,15 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from semispline.solver.arrays import FloatArray
-from semispline.solver.blending.closing import reseamed
 from semispline.solver.blending.end_faces import HeldEnd
 from semispline.solver.blending.matched_maps import length_map, point_map, run_by
-from semispline.solver.blending.matching import NO_SHIFT, matched_edges
+from semispline.solver.blending.matching import matched_edges
 from semispline.solver.blending.representative import smooth_sides
 from semispline.solver.blending.sides import Side, make_side, matched_sides, of_one_degree
 from semispline.solver.errors import OptionError
 from semispline.solver.judge import Base, Correspondence, is_closed, local_origin
 from semispline.solver.options import BlendOptions, Flip
-from semispline.solver.splines import BSplineCurve, affine_knots, boundary_curve, closest_point, euclidean
+from semispline.solver.splines import BSplineCurve, boundary_curve, closest_point, euclidean
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,8 +61,6 @@ def place_sides(
         sides = replace(sides[0], keeps_lines=True), replace(sides[1], keeps_lines=True)
     sides = replace(sides[0], held=held), sides[1]
     matched = matched or matched_edges(a, b, flip, joints)
-    if (begun := _begun_by_pair(a, b, options.match, matched)) is not None:
-        options, matched = replace(options, match="affine"), begun
     # Far from the origin each operation would round by the distance: there is but one rounding, of the result.
     origin = local_origin(a.surface, b.surface)
     local = matched_sides(sides[0].moved(origin, 1.0), sides[1].moved(origin, 1.0), matched)
@@ -75,20 +72,6 @@ def place_sides(
     centre, size = _frame(*sides)
     scaled = local[0].moved(centre - origin, size), local[1].moved(centre - origin, size)
     return PlacedSides(sides, scaled, (centre, size), matched)
-
-
-def _begun_by_pair(
-    a: Base, b: Base, match: str | Sequence[tuple[float, float]], matched: Correspondence
-) -> Correspondence | None:
-    """Return the correspondence where the one pair says what the start of a closed edge a meets; else None."""
-    if isinstance(match, str) or len(match) != 1 or not (is_closed(a) and is_closed(b)):
-        return None
-    ((x, y),) = match
-    (start, _), (first, last) = a.range_along, b.range_along
-    if x != start or not first <= y <= last:
-        return None
-    shift = (y - first) % (last - first)
-    return replace(matched, shift=0.0 if min(shift, last - first - shift) < NO_SHIFT * (last - first) else shift)
 
 
 def _answering(
@@ -117,29 +100,14 @@ def _answering(
                 raise OptionError(f"match[{i}]: found {x:g} along edge {name}, expected {low:g} to {high:g}")
             places.append(_foot(_contact(side), base.derivative(np.array([x]), 0, 0)[0] - origin))
         found.append((places[0], places[1]))
-    low, high = (float(x) for x in one.along.knots[[0, -1]])
-    if closed and len(found) == 1:
-        # One pair moves the seam of b, and nothing else.
-        ((v_a, v_b),) = found
-        first = low + float(np.mod(v_b - v_a, high - low))
-        answering = other if first == low else _begun_at(other, first)
-    else:
-        by = point_map(found, one.along, closed=closed)
-        first = float(by.function(by.function.x[0]))
-        answering = run_by(other, by)
-    if first > low:
+    by = point_map(found, one.along, closed=closed)
+    first = float(by.function(by.function.x[0]))
+    if first > one.along.knots[0]:
         start, end = b.range_along
         point = _contact(other).evaluate(np.array([first]))[0] + origin
         at = _foot(boundary_curve(b.surface, b.side), point)
         matched = replace(matched, shift=float(np.mod(at - start, end - start)))
-    return (one, answering), matched
-
-
-def _begun_at(side: Side, v: float) -> Side:
-    """Return a closed side that begins at v, over the same domain."""
-    low, high = (float(x) for x in side.along.knots[[0, -1]])
-    along, rows = reseamed(side.along, side.rows, v - low, side.largest)
-    return replace(side, along=replace(along, knots=affine_knots(along.knots, low, high)), rows=rows)
+    return (one, run_by(other, by)), matched
 
 
 def _contact(side: Side) -> BSplineCurve:

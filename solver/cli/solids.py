@@ -207,11 +207,12 @@ def _write(found: SolidBlend, outputs: SolidOutputs) -> None:
     from semispline.solver.io import atomic_path, to_text, write_files
     from semispline.solver.topology import contacts_in_solid
 
+    orders = int(found.blend.continuity[0][1]), int(found.blend.continuity[1][1])
     with TemporaryDirectory() as folder:
         written = Path(folder, f"solid{outputs.suffix}")
         written.write_bytes(found.content)
         with progress("measuring"):
-            contacts = contacts_in_solid(written, found.faces, found.orders, [end.range for end in found.kept])
+            contacts = contacts_in_solid(written, found.faces, orders, [end.range for end in found.kept])
         pictures = {} if outputs.plots is None else {"solid.png": solid_picture(written, found.faces)}
     with ExitStack() as stack:
         # Each lies in its temporary file before the first takes its place.
@@ -299,13 +300,6 @@ def print_contacts(contacts: Sequence[SolidContact]) -> None:
     typer.echo("contacts of the blend as it stands in the solid, measured on the faces themselves:")
     shown = [k for k in range(len(rows[0])) if any(row[k] for row in rows[1:])]
     print_table([tuple(row[k] for k in shown) for row in rows])
-    for x in contacts:
-        for name, value, limit in x.shortfalls:
-            place = "({:.6g}, {:.6g}, {:.6g})".format(*x.contact.at[name].point)
-            typer.echo(
-                f"warning: {x.edge} on face {x.face}: {name} is {value:.2g} near {place}, expected at most {limit:.2g} "
-                f"for {x.wanted}"
-            )
     if any(x.stretch for x in contacts):
         typer.echo(
             "curvature jumps are over the largest curvature of the face there; a flat one counts as bent with a radius "

@@ -70,7 +70,6 @@ from .refinement import restriction_matrix as restriction_matrix
 from .revolution import revolve as revolve
 from .revolution import revolve_polynomial as revolve_polynomial
 from .revolution import revolve_smooth as revolve_smooth
-from .rows import merge_knots as merge_knots
 from .seam import move_curve_seam as move_curve_seam
 from .seam import move_seam as move_seam
 from .simplification import reduce_curve_degree as reduce_curve_degree

@@ -318,9 +318,8 @@ def contact_edges(
         edge = copied_edge(old, face)
         known = [v[0] if k == 0 else None, v[1] if k == len(rim.edges) - 1 else None]
         places = add_along_border(edge, new, border, u, tuple(known[::-1] if is_reversed(old) else known))
-        if max(distance_to(edge, on) for on in (new, face)) > max(CONFUSION, tolerance_of(old)):
-            # The contact was moved to where a band follows the face: that is where the faces meet now. Or the file says
-            # less of its edge than that is off.
+        if distance_to(edge, new) > max(CONFUSION, tolerance_of(old)):
+            # The contact was moved to where a band follows the face: that is where the faces meet now.
             edge = border_edge(geometry.UIso(u), *places, ends(forward(old)))
             add_pcurve(edge, line_on(edge, (u, places[0]), (u, places[1])), new)
             add_by_feet(edge, face, first_parameters(old, face, ends(edge)[0]))

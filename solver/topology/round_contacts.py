@@ -21,8 +21,8 @@ from semispline.solver.topology.flat_contacts import (
 from semispline.solver.topology.half_edges import EdgeGraph
 from semispline.solver.topology.joined_bases import joined
 from semispline.solver.topology.measuring import MeasuredEdges
-from semispline.solver.topology.run_blends import close_bases
 from semispline.solver.topology.sharp_chains import SharpChain
+from semispline.solver.topology.solid_blends import close_bases
 from semispline.solver.topology.trim_curves import TrimCurve, read_trim_curves
 
 # Of the size: so far an edge leads into a face that leads nowhere in it.

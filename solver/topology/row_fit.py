@@ -97,24 +97,11 @@ def fitted_rows(
     rows: list[FloatArray] = []
     for k in range(order + 1):
         fixed = None if ends is None else row_targets(ends, k)
-        # Into a pole a curve has no direction.
-        if k == 0 and ends is not None and np.isfinite(ends.along).all():
-            fixed = _with_tangents(ends, degree, knots)
         if k == 2:
             # N.R_2 = II(R_1, R_1): the tangential parts of R_1 are only near to those of D.
             inside = _with_direction(inside, bases[0] @ rows[1])
         rows.append(_solved(bases, _equations(inside, k, limits, of), fixed, space))
     return knots, np.stack(rows)
-
-
-def _with_tangents(ends: Sections, degree: int, knots: FloatArray) -> FloatArray:
-    """Return the two first and the two last control points of row 0, shape (4, 3): bands that go on in each other do.
-
-    Rows run by arc length: their derivative is the unit tangent.
-    """
-    (start, end), (first, last) = ends.point, ends.along
-    steps = (knots[degree + 1] - knots[0]) / degree, (knots[-1] - knots[-degree - 2]) / degree
-    return np.stack([start, start + steps[0] * first, end - steps[1] * last, end])
 
 
 def row_targets(at: Sections, k: int) -> FloatArray:
@@ -162,14 +149,13 @@ def _solved(
 ) -> FloatArray:
     """Return control points, shape (n, 3): x, y and z are coupled by the directions.
 
-    Of an open row as many at each end are fixed as there are; those of a closed one lie in a space.
+    Of an open row the first and last are fixed; those of a closed one lie in a space.
     """
-    n, each = bases[0].shape[1], 0 if fixed is None else len(fixed) // 2
-    own = np.r_[0:each, n - each : n]
-    free = [basis @ space if space is not None else basis[:, each : n - each] for basis in bases]
+    n = bases[0].shape[1]
+    free = [basis @ space for basis in bases] if space is not None else [basis[:, 1:-1] for basis in bases]
     blocks, values = [], []
     for order, direction, value, limit in equations:
-        known = np.zeros(len(value)) if fixed is None else dot(bases[order][:, own] @ fixed, direction)
+        known = np.zeros(len(value)) if fixed is None else dot(bases[order][:, [0, -1]] @ fixed, direction)
         blocks.append((free[order][:, :, None] * (direction / limit)[:, None, :]).reshape(len(value), -1))
         values.append((value - known) / limit)
     system = np.concatenate(blocks)
@@ -180,7 +166,9 @@ def _solved(
         points[-1] = points[0]
         return points
     assert fixed is not None
-    return np.concatenate([fixed[:each], solution, fixed[each:]])
+    points = np.empty((n, 3))
+    points[0], points[-1], points[1:-1] = fixed[0], fixed[1], solution
+    return points
 
 
 def _basis(degree: int, knots: FloatArray, v: FloatArray, order: int) -> FloatArray:

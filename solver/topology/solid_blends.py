@@ -10,17 +10,27 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 from semispline.solver.blending import BlendResult
-from semispline.solver.errors import FileError, SolidError
+from semispline.solver.errors import BandError, EdgeError, FileError, SolidError
 from semispline.solver.io import OCC_SUFFIXES, check_outputs, read_apart, write_bytes
-from semispline.solver.options import BlendOptions, named_options
+from semispline.solver.options import BlendOptions, Continuity, named_options
+from semispline.solver.topology.bases import edge_bases
+from semispline.solver.topology.edge_base import EdgeBase
+from semispline.solver.topology.edge_blends import blend_bases
+from semispline.solver.topology.end_faces import blend_onto, faces_at_ends, going_on
+from semispline.solver.topology.face_runs import FaceRun
 from semispline.solver.topology.gate_report import GateReport
-from semispline.solver.topology.kept_edges import KeptEnd
-from semispline.solver.topology.replaced_runs import replaced_run
-from semispline.solver.topology.run_blends import blended_run
-from semispline.solver.topology.solid_orders import Joining, Outcome, Replacement, Rounding
+from semispline.solver.topology.kept_edges import KeptEdge, KeptEnd, ended_on_edges, kept_edges, measured_again
+from semispline.solver.topology.panels import panels_of
+from semispline.solver.topology.relations import relate
+from semispline.solver.topology.replaced_runs import ReplacedRun, replaced_run
+from semispline.solver.topology.resolving import Resolved
+from semispline.solver.topology.run_ends import check_ends
+from semispline.solver.topology.solid_orders import Joining, NewFace, Outcome, Replacement, Rounding
 
 # Operating, measuring twice, writing and reading again take so many times as long as reading, at most.
 _TIMES = 12.0
+# Of their limits bands use so much: then they lie within 1e-7 of their length, and no tolerance grows.
+_SHARE = 1e-2
 # Open edges that are named in what is said; a report has all of them.
 _NAMED = 8
 _WRITTEN = (".step", ".stp", ".brep", ".brp")
@@ -49,8 +59,6 @@ class SolidBlend:
         The file.
     kept : tuple of KeptEnd
         Old end edges that were kept, where contact falls to G1.
-    turned : bool
-        The new faces begin, at u = 0, on base b of the blend.
     """
 
     blend: BlendResult
@@ -62,13 +70,6 @@ class SolidBlend:
     notes: tuple[str, ...]
     content: bytes
     kept: tuple[KeptEnd, ...] = ()
-    turned: bool = False
-
-    @property
-    def orders(self) -> tuple[int, int]:
-        """Orders of contact at u = 0 and at u = 1 of the new faces."""
-        a, b = (int(name[1]) for name in self.blend.continuity)
-        return (b, a) if self.turned else (a, b)
 
     @property
     def face(self) -> int:
@@ -147,7 +148,7 @@ def solid_with_blend(
 ) -> SolidBlend:
     """Return what `replace_face` writes, in the format of a suffix; its errors."""
     found = replaced_run(str(path), faces, edge_a, edge_b)
-    made = blended_run(found, options, keep_ends=keep_ends)
+    made = _blended(found, options, keep_ends=keep_ends)
     outcome = operated(path, Replacement(made.news), suffix, f"--replace {','.join(map(str, faces))}")
     assert outcome.content is not None
     assert outcome.read_back is not None
@@ -203,6 +204,78 @@ def operated(path: str | Path, order: Replacement | Rounding | Joining, suffix: 
             where = "" if report.place is None else " near ({:.6g}, {:.6g}, {:.6g})".format(*report.place)
             raise SolidError(f"{title}: {when}the result is not sound: {report.reason}{where}; nothing was written")
     return outcome
+
+
+@dataclass(frozen=True, eq=False)
+class _Blended:
+    """The blend of both sides of a run, cut into what takes the place of each face; and how it meets kept ends."""
+
+    result: BlendResult
+    news: tuple[NewFace, ...]
+    kept: tuple[KeptEnd, ...] = ()
+
+
+def _blended(found: ReplacedRun, options: BlendOptions, *, keep_ends: bool) -> _Blended:
+    """Return the blend of both sides, its end curves on the end faces or on edges that are kept."""
+    graph, run = found.measured.graph, found.run
+    relations = relate(graph)
+    a, b = (_one_base(run, side, name) for side, name in zip(_bases(found, options), "AB", strict=True))
+    numbers = [
+        tuple(tuple(int(graph.uses.number[row]) for row in side.uses) for side in (m.a, m.b)) for m in run.members
+    ]
+    if run.closed:
+        result = blend_bases(a, b, options)
+        surface = result.surface.to_bspline()
+        if len(run.members) == 1:
+            return _Blended(result, (NewFace(run.faces[0], (numbers[0][0], numbers[0][1]), surface),))
+        kept: list[KeptEdge] = []
+        ends: tuple[KeptEnd, ...] = ()
+    else:
+        rows = run.ends(graph)
+        smooth = going_on(graph, relations, rows) if keep_ends else []
+        rest = [row for row in rows if row not in smooth]
+        at = faces_at_ends(graph, relations, rest)
+        check_ends(graph, relations, run, rest)
+        kept = kept_edges(graph, relations, smooth)
+        result, surface = blend_onto(graph, a, b, options, at, kept)
+        surface, made = ended_on_edges(surface, kept)
+        ends = tuple(made)
+        if ends:
+            result = measured_again(result, surface, a, b)
+    panels = panels_of(graph, run, surface)
+    news = tuple(
+        NewFace(
+            face,
+            (contacts[0], contacts[1]),
+            panel.surface,
+            panel.a,
+            panel.b,
+            tuple(edge.number for edge in kept if edge.face == face),
+        )
+        for face, contacts, panel in zip(run.faces, numbers, panels, strict=True)
+    )
+    return _Blended(result, news, ends)
+
+
+def _bases(found: ReplacedRun, options: BlendOptions) -> list[tuple[EdgeBase, ...]]:
+    return close_bases([found.a, found.b], options.continuities)
+
+
+def _one_base(run: FaceRun, side: Sequence[EdgeBase], name: str) -> EdgeBase:
+    if len(side) != 1:
+        raise EdgeError(
+            f"--replace {','.join(map(str, run.faces))}: along contact {name} no one blend runs, it has {len(side)} "
+            "parts; --surfaces writes their blends"
+        )
+    return side[0]
+
+
+def close_bases(ends: Sequence[Resolved], continuities: Sequence[Continuity]) -> list[tuple[EdgeBase, ...]]:
+    """Return the bases along both contacts, as close to their faces as bands come."""
+    try:
+        return edge_bases(ends, continuities, _SHARE)
+    except BandError:
+        return edge_bases(ends, continuities)
 
 
 def notes_of(outcome: Outcome) -> tuple[str, ...]:

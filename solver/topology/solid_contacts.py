@@ -12,14 +12,7 @@ import numpy as np
 
 from semispline.solver.arrays import FloatArray
 from semispline.solver.io import read_surfaces
-from semispline.solver.judge import (
-    Base,
-    FaceContact,
-    face_shortfalls,
-    measure_face_contact,
-    required_face_measures,
-)
-from semispline.solver.options import Continuity, continuity_name
+from semispline.solver.judge import Base, FaceContact, measure_face_contact, required_face_measures
 from semispline.solver.splines import parse_edge
 from semispline.solver.topology.edge_limits import default_limits, face_limits
 from semispline.solver.topology.face_edges import resolved_use
@@ -49,8 +42,6 @@ class SolidContact:
         For each measure its limit.
     stretch : {"", "beside a kept end", "kept end"}
         Which part of the edge; where an end edge was kept contact is G1, and no limit holds for curvature.
-    wanted : str
-        What was asked for there, as far as that is a matter of geometry.
     """
 
     edge: str
@@ -58,12 +49,6 @@ class SolidContact:
     contact: FaceContact
     allowed: dict[str, float]
     stretch: Stretch = ""
-    wanted: Continuity = "G2"
-
-    @property
-    def shortfalls(self) -> list[tuple[str, float, float]]:
-        """Name, value and limit of each measure that misses what is wanted."""
-        return face_shortfalls(self.contact, self.allowed, self.wanted)
 
     def record(self) -> dict[str, Any]:
         """Return what a report holds of it."""
@@ -85,7 +70,7 @@ def contacts_in_solid(
     faces : sequence of int
         N of `PATH#N`, of the new ones.
     orders : (int, int)
-        Of contact, that are asked for at u = 0 and at u = 1 of the new faces.
+        Of contact, that are asked for on both sides.
     faded : sequence of (float, float)
         The parameters v of the blend beside end edges that were kept, where contact is G1 alone: these stretches of
         contacts are measured by themselves.
@@ -118,12 +103,9 @@ def contacts_in_solid(
         for base, stretch in _stretches(Base(end.surface, end.edge), faded):
             contact = measure_face_contact(base, curve.free_edge(), order=order)
             allowed = face_limits(curve, base, default_limits(curve), length=contact.length, order=order)
-            wanted: Continuity = "G1"
-            if not stretch:
-                wanted = continuity_name(f"G{orders[parse_edge(base.edge).end]}")
-            else:
-                allowed = {key: limit for key, limit in allowed.items() if key in required_face_measures(wanted)}
-            found.append(SolidContact(f"{face}:{name}", beyond, contact, allowed, stretch, wanted))
+            if stretch:
+                allowed = {key: limit for key, limit in allowed.items() if key in required_face_measures("G1")}
+            found.append(SolidContact(f"{face}:{name}", beyond, contact, allowed, stretch))
     return found
 
 

@@ -16,8 +16,7 @@ from semispline.solver.topology.edge_blends import blend_bases
 from semispline.solver.topology.end_faces import as_spline
 from semispline.solver.topology.measuring import measured_edges
 from semispline.solver.topology.resolving import Resolved, resolve_edges
-from semispline.solver.topology.run_blends import close_bases
-from semispline.solver.topology.solid_blends import SolidBlend, check_suffixes, notes_of, operated
+from semispline.solver.topology.solid_blends import SolidBlend, check_suffixes, close_bases, notes_of, operated
 from semispline.solver.topology.solid_orders import Joining
 
 NAMES = ("--from", "--to")
@@ -98,7 +97,6 @@ def joined_solid(specs: tuple[str, str], suffix: str, options: BlendOptions, spl
         touched=outcome.touched,
         notes=(*made.notes, *notes_of(outcome)),
         content=outcome.content,
-        turned=made.turned,
     )
 
 

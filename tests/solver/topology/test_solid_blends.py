@@ -18,7 +18,7 @@ from semispline import ComputationError, EdgeError, FileError, SolidError, read_
 from semispline.solver import workers
 from semispline.solver.cli import app
 from semispline.solver.io import foreign
-from semispline.solver.topology import run_blends
+from semispline.solver.topology import solid_blends
 from semispline.solver.topology.end_faces import blend_onto
 from semispline.solver.topology.fillets import find_fillets
 from semispline.solver.topology.occ_parts import open_parts
@@ -209,7 +209,7 @@ def test_what_the_gate_stops_is_not_written(tmp_path, monkeypatch):
         points[2:4, 0, 2] += 0.01
         return result, replace(surface, control_points=points)
 
-    monkeypatch.setattr(run_blends, "blend_onto", off_its_end)
+    monkeypatch.setattr(solid_blends, "blend_onto", off_its_end)
     with pytest.raises(SolidError, match=r"not sound: .* off face \d.* near \(.*nothing was written"):
         replace_face(path, fillet_of(shape), out)
     assert out.read_text() == "what was there"

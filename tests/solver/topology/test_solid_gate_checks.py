@@ -26,7 +26,7 @@ from semispline import (
     revolve,
     swap_directions,
 )
-from semispline.solver.topology import run_blends, solid_gate
+from semispline.solver.topology import solid_blends, solid_gate
 from semispline.solver.topology.end_faces import blend_onto
 from semispline.solver.topology.fillets import find_fillets
 from semispline.solver.topology.gate_report import Change, GateReport
@@ -445,7 +445,7 @@ def test_an_end_on_a_curved_face_may_be_off_by_so_much(share, tmp_path, monkeypa
         points[2:-2, end, 2] += share * 1e-5 * 60 / most - 1
         return result, replace(surface, control_points=points)
 
-    monkeypatch.setattr(run_blends, "blend_onto", off_its_end)
+    monkeypatch.setattr(solid_blends, "blend_onto", off_its_end)
     if share < 1:
         assert replace_face(path, number, tmp_path / "out.step").gate.is_sound
     else:

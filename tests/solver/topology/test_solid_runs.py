@@ -18,7 +18,7 @@ from helpers.sweeps import first_rows
 from semispline import Base, EdgeError, SolidError, read_surface, replace_face
 from semispline.solver.cli import app
 from semispline.solver.judge import measure_face_contact
-from semispline.solver.topology import contacts_in_solid, find_places, run_blends
+from semispline.solver.topology import contacts_in_solid, find_places, solid_blends
 from semispline.solver.topology.face_runs import face_run, runs_on
 from semispline.solver.topology.fillets import chains, find_fillets
 from semispline.solver.topology.gate_edges import loose_area
@@ -208,7 +208,7 @@ def test_a_crease_at_a_kept_edge_is_stopped(tmp_path, monkeypatch):
     """The end lies on the edge, and the row beside it leaves the tangent plane of the ball by one part in a hundred."""
     shape = three_edges()
     _, _, accepted, _ = found_in(shape)
-    real = run_blends.ended_on_edges
+    real = solid_blends.ended_on_edges
 
     def creased(surface, edges):
         made, kept = real(surface, edges)
@@ -222,7 +222,7 @@ def test_a_crease_at_a_kept_edge_is_stopped(tmp_path, monkeypatch):
     found = replace_face(path, next(iter(accepted)), out, keep_ends=True)
     assert 0 < found.gate.crease_degrees < 1e-4
     out.unlink()
-    monkeypatch.setattr(run_blends, "ended_on_edges", creased)
+    monkeypatch.setattr(solid_blends, "ended_on_edges", creased)
     with pytest.raises(
         SolidError, match=r"at a crease of .* where the old one went on smoothly, expected at most 0.01"
     ):
@@ -365,7 +365,7 @@ def test_what_is_no_run_is_refused(tmp_path):
 @pytest.mark.slow
 def test_the_gate_stops_a_ring_whose_neighbours_do_not_meet(tmp_path, monkeypatch):
     shape = rounded_box()
-    real = run_blends.panels_of
+    real = solid_blends.panels_of
 
     def apart(*arguments):
         panels = real(*arguments)
@@ -374,7 +374,7 @@ def test_the_gate_stops_a_ring_whose_neighbours_do_not_meet(tmp_path, monkeypatc
         points[2:4, -1] += 0.01
         return [replace(panels[0], surface=replace(surface, control_points=points)), *panels[1:]]
 
-    monkeypatch.setattr(run_blends, "panels_of", apart)
+    monkeypatch.setattr(solid_blends, "panels_of", apart)
     with pytest.raises(SolidError, match="not sound"):
         replace_face(written(shape, tmp_path / "part.brep"), ring_of(shape), tmp_path / "out.step")
     assert not (tmp_path / "out.step").exists()
