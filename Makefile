@@ -5,7 +5,7 @@ BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 # What is compiled is kept, whatever the environment says: tests start a hundred processes that import all of it.
 export PYTHONDONTWRITEBYTECODE :=
-LEFT_OUT := compiler or browser or coq or slow
+LEFT_OUT := compiler or browser or coq or slow or long
 # Two to eight processes, as there are cores. A share of the files each, so that what a file shares is made once; who is
 # done first takes from another.
 CORES := $(shell n=$$(nproc 2>/dev/null || echo 2); echo $$((n < 2 ? 2 : n > 8 ? 8 : n)))
@@ -32,7 +32,7 @@ report: $(STAMP)
 
 test: $(STAMP)
 	$(PYTEST) -m 'not ($(LEFT_OUT))'
-	@echo "Left out here, run by .ci/run: tests marked compiler (a C compiler), browser (Chromium), coq (the kernel of Coq) or slow (half a second and more); and most examples of the sweeps"
+	@echo "Left out here, run by .ci/run: tests marked compiler (a C compiler), browser (Chromium), coq (the kernel of Coq), slow (long sweeps) or long (half a second and more); and most examples of the sweeps"
 
 # The loop while working.
 check: lint types layers quick

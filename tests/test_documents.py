@@ -54,7 +54,7 @@ def test_each_file_is_there(document):
     assert [path for line in read(document).splitlines() for path in quoted(line)[0] if not exists(path)] == []
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize("document", ["CONTRIBUTING.md", "docs/architecture.md"])
 def test_each_name_stands_in_the_code(document):
     missing = []

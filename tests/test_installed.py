@@ -63,7 +63,7 @@ def programs(request, tmp_path_factory):
     return python.parent
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_wheel_from_the_source_distribution_is_whole_and_has_one_name_at_the_top(wheel, checkout):
     files = [path for hall in HALLS for path in (checkout / hall).rglob("*") if path.is_file()]
     expected = {f"semispline/{path.relative_to(checkout).as_posix()}" for path in files}
@@ -74,7 +74,7 @@ def test_a_wheel_from_the_source_distribution_is_whole_and_has_one_name_at_the_t
     assert {Path(name).suffix for name in expected} >= {".py", ".pyi", ".json", ".md", ".css", ".js", ".typed"}
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize("hall", HALLS)
 def test_no_hall_answers_to_its_bare_name(programs, hall, tmp_path):
     code = f"try: import {hall}\nexcept ModuleNotFoundError as error: print(error)"

@@ -99,7 +99,7 @@ def test_the_files_of_each_hall_are_seen():
     assert ("semispline.solver.blending.pipeline", "semispline.solver.judge", "Base") in all_imports()
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_imports_inside_functions_say_why_they_wait():
     # None avoids a circle: the table counts them too.
     texts = {name: path.read_text("utf-8") for name, path in FILES.items()}
@@ -154,7 +154,7 @@ def for_authors():
     return {(room, name.strip()) for room, names in lines for name in names.split(",")}
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize("face", FACES)
 def test_each_name_of_a_face_exists_and_is_used(face):
     public = set(stub_entries("semispline"))
@@ -183,7 +183,7 @@ def test_the_public_name_alone_loads_nothing_heavy():
     assert loaded("import semispline; semispline.__all__; dir(semispline)") & heavy == set()
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_solver_with_all_its_generated_code_loads_no_sympy():
     modules = loaded(
         "import pkgutil, importlib, semispline, semispline.solver.generated as generated\n"
@@ -200,7 +200,7 @@ def test_help_of_the_commands_loads_no_sympy():
     assert modules & {"sympy", "numpy", "casadi"} == set()
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_processes_that_read_files_load_no_scipy():
     """They start for every file; the kernel, which takes a second itself, is left out here."""
     workers = [path for path in (ROOT / "solver").rglob("*.py") if re.search(r"^def work\(", path.read_text(), re.M)]

@@ -59,6 +59,7 @@ def _bases(basis: Basis, x: FloatArray, beside: FloatArray, order: int) -> tuple
     p, knots = basis.degree, basis.knots
     # Of the last span too where the point is its end.
     last = int(np.searchsorted(knots, knots[-1])) - 1
+    # For some points np.clip takes as long as all of this.
     first = np.minimum(np.maximum(np.searchsorted(knots, beside, side="right") - 1, p), last) - p
     lower = local_bases(basis, x[None, :], first, order)
     values = np.zeros((order + 1, p + 1, len(x)))

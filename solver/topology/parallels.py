@@ -18,7 +18,8 @@ from semispline.solver.topology.face_jets import Face, dot, parameters_of, unit
 
 # Steps of Runge and Kutta's method to the distance: errors of some 1e-8 of it where the surface bends by a right angle.
 _STEPS = 40
-# Steps to a foot from one that is a step away; where a seam is creased a foot that was foreseen may be beyond all.
+# Steps to a foot from one that is a step away. Feet foreseen by the speed would save half of them, and lose their way
+# over a seam with a crease.
 _NEWTON = 3
 # Of the range of a parameter: Newton's next step would be no longer than rounding.
 _NEXT_IS_NONE = 1e-9

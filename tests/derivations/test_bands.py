@@ -34,7 +34,7 @@ def test_the_section_of_a_cylinder_square_to_a_ruling_is_a_circle():
     assert [simplify(a - b) for a, b in zip(found, circle_heights(R, 4, -1), strict=True)] == [0, 0, 0]
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_the_section_of_a_cylinder_square_to_a_helix_is_an_ellipse():
     # The plane at the angle phi to the axis cuts an ellipse with the half axes R and R / sin(phi).
     slope = (cos(PHI) / R, sin(PHI))
@@ -45,13 +45,13 @@ def test_the_section_of_a_cylinder_square_to_a_helix_is_an_ellipse():
     assert [simplify(a - b) for a, b in zip(found, expected, strict=True)] == [0, 0, 0]
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_every_normal_section_of_a_sphere_is_a_great_circle():
     found = section_heights(SPHERE, (S, T), (0, pi / 6), (Rational(6, 5) / sqrt(3), Rational(4, 5)), 4)
     assert [simplify(a - b) for a, b in zip(found, circle_heights(R, 4, -1), strict=True)] == [0, 0, 0]
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_sections_of_a_torus():
     # Square to its outer parallel: the small circle. Square to a meridian at the equator: h_2 = -1 / (R + r), h_3 = 0,
     # and h_4 from the quartic of the plane section.
@@ -63,7 +63,7 @@ def test_sections_of_a_torus():
     assert [simplify(a - diff(parallel, y, k).subs(y, 0)) for k, a in zip((2, 3, 4), along, strict=True)] == [0, 0, 0]
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_heights_do_not_depend_on_the_parameters():
     """A graph z = f(x, y) with x and y bent functions of (s, t): the heights along y are the y-derivatives of f."""
     x, y = symbols("x y")
@@ -90,7 +90,7 @@ def curve_frame(surface, path):
     return point, tangent, normal.cross(tangent), normal, speed
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_frame_and_row_conditions_on_a_helix():
     # The helix on a cylinder, by arc length: s = cos(phi) v / R, t = sin(phi) v. Its Darboux curvatures are known.
     path = (cos(PHI) * V / R, sin(PHI) * V)
@@ -182,7 +182,7 @@ def test_measures_of_a_band_of_a_cylinder_whose_rows_are_wrong(name, wrong):
             assert simplify(slope) != 0
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_leading_errors_are_the_highest_derivatives():
     leading, c_0, c_1 = error_measures(leading=True), Function("c_0")(V), Function("c_1")(V)
     assert leading["gap"] == c_0

@@ -64,7 +64,7 @@ def patches(draw):
     return net, draw(st.lists(unit_fractions, min_size=k + 1, max_size=k + 1))
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @settings(max_examples=60, deadline=None)
 @given(patches(), unit_fractions, unit_fractions)
 def test_parts_are_the_patch_below_and_above_the_cut(patch, u, w):

@@ -158,7 +158,7 @@ def test_what_stays_is_the_crease_of_the_faces(order):
         assert jump.xreplace(flat).coeff(NORMAL) == -l0 * p1**j * Symbol(f"e{j}")
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize("order", first_ones(2, [1, 2, 3, 4]))
 def test_two_faces_of_one_sheet_meet_in_exact_fractions(order):
     """A sheet F in two pieces, the second one bent in its parameters and in its weight; plain differentiation only."""

@@ -104,7 +104,7 @@ def test_committed_files_are_fresh(generated):
         )
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_text_is_the_same_for_every_hash_seed(generated, whole):
     script = (
         "from hashlib import sha256; from semispline.derivations.codegen.catalogue import generated_files;"

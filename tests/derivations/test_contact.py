@@ -43,7 +43,7 @@ def residual(order, rows, blend, base, sign=1):
     ]
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize("seed", range(3))
 def test_conditions_are_derivatives_of_a_composed_surface(seed):
     # Known answer: compose polynomials and differentiate by u; no chain rule is used.
@@ -118,7 +118,7 @@ def test_one_matrix_serves_all_pairs_of_ends(end, base_end):
     assert sweep(2, range(2, 6), range(1, 6), end, base_end) == []
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_order_three_and_degrees_up_to_seven():
     assert sweep(3, range(3, 8), range(1, 8), "end", "start") == []
 
@@ -190,7 +190,7 @@ def contacts(draw):
     return order, p, U, q, W, rows, a
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @given(contacts(), st.booleans(), st.booleans())
 @settings(max_examples=60)
 def test_a_blend_with_these_rows_has_the_derivatives_of_the_base(contact, blend_reversed, base_reversed):

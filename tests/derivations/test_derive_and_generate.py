@@ -137,7 +137,7 @@ def test_the_fairness_of_a_sphere_and_of_a_slope():
     assert equations("fairness", flat | skew)["g_H"] == pytest.approx(1.0)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize("order", range(4))
 def test_text_and_matrices_of_contact_agree(order):
     # The equations are rearranged for reading; with exact numbers put in they must give what the matrices give.
@@ -238,7 +238,7 @@ def is_as_committed(checkout):
     assert here == there
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_whatever_differs_is_seen_and_repaired(spoilt, generated, monkeypatch):
     monkeypatch.setattr("semispline.derivations.codegen.files.generated_files", lambda: generated)
     expected = expected_files(spoilt, derived)
@@ -262,7 +262,7 @@ def test_the_command_sees_and_repairs_whatever_differs(spoilt):
     is_as_committed(spoilt)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_generate_outside_a_checkout_says_so(tmp_path):
     shutil.copytree(ROOT / "derivations", tmp_path / "derivations", ignore=shutil.ignore_patterns("__pycache__"))
     link_package(tmp_path)
@@ -287,7 +287,7 @@ def test_a_folder_that_cannot_be_written_is_one_line(checkout):
     assert (target / "keep").exists()
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_formulas_of_the_theory_are_printed_by_derive():
     text = (ROOT / THEORY).read_text(encoding="utf-8")
     assert text.count("<!-- derive ") >= 8

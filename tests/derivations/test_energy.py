@@ -57,7 +57,7 @@ def bases(draw):
     return Basis(degree, (0,) * (degree + 1) + tuple(inner) + (1,) * (degree + 1))
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @given(bases(), bases(), st.integers(0, 2))
 @settings(max_examples=25)
 def test_gram_entries_agree_with_quadrature_of_scipy_splines(first, second, derivative):
@@ -104,7 +104,7 @@ def test_bad_gram_calls_are_refused():
         ExactSurface(CUBIC_U, (LEFT,))
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_gram_block_is_the_double_integral_of_the_bilinear_density():
     u, v = symbols("u v")
     n1, n2, b1, b2 = u**3 - u, 2 * u**2 + 1, v**3, 1 - v**2 + v
@@ -200,7 +200,7 @@ def test_stationarity_condition_is_the_derivative_of_the_form():
         assert (2 * written_out(stationarity_condition(), r=r) - energy.diff(x[r])).expand() == 0
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_exact_minimum_is_stationary_and_least(problem):
     energy, points = exact_minimum(problem, 1, Rational(3, 2))
     flat = [x for point in points for x in point]
@@ -217,7 +217,7 @@ def test_exact_minimum_is_stationary_and_least(problem):
     assert any(value_at(constraint, [*flat, 1, 1]) for constraint in problem.constraints)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_derivatives_of_the_lagrangian_agree_with_exact_differences(problem):
     # Central differences without rounding: exact for the control points, which enter quadratically.
     multipliers = [Rational(k % 5 - 2, 3) for k in range(len(problem.constraints))]
@@ -239,7 +239,7 @@ def test_derivatives_of_the_lagrangian_agree_with_exact_differences(problem):
     assert five == 12 * gradient[place]
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_bad_problems_are_refused(problem):
     with pytest.raises(ValueError, match="rows"):
         blend_problem(1, SURFACE, made_base(LEFT, 2, 0, 1, 1), made_base(LEFT, RIGHT.size, 0, 1, 1))

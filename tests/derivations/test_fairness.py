@@ -46,7 +46,7 @@ def graph_outputs(f, at):
     return [value.subs(at) for value in (rough, area, mean, sqrt(1 + fx**2))]
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize(
     "f", [X**3 / 3 - X * Y**2 + Y, X**2 * Y - Y**3 / 5 + X * Y, X**4 / 7 + 2 * X * Y**3 - X**2 + 3 * Y**2]
 )
@@ -60,7 +60,7 @@ def test_graphs_have_the_fairness_of_their_divergence_form(f, at):
         assert (ours - known).simplify() == 0
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_another_parametrisation_changes_the_element_only():
     f, at = X**3 / 3 - X * Y**2 + Y, {X: Rational(1, 3), Y: Rational(-2, 5)}
     # x = u + u v / 2, y = v - u^2 / 3, with the Jacobian taken by hand.
@@ -76,7 +76,7 @@ def test_another_parametrisation_changes_the_element_only():
     assert (found[2] - known[2]).simplify() == 0
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_spheres_and_cylinders_are_fair():
     program = fairness_program()
     cylinder = Matrix([X, (1 - Y**2) / (1 + Y**2), 2 * Y / (1 + Y**2)])
@@ -106,7 +106,7 @@ def test_steps_that_no_output_needs_are_left_out():
     assert [name.name for name, _ in gradient.steps] == ["d_x"]
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_formulas_are_what_the_program_computes():
     program = fairness_program()
     surface = Matrix([X + X * Y / 2, Y - X**2 / 3, X**3 / 3 - X * Y**2 + Y])

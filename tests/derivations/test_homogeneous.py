@@ -141,7 +141,7 @@ def test_a_torus_is_met_in_exact_fractions(order):
             ]
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_the_quotient_program_gives_derivatives():
     u, v = symbols("u v")
     weight = 2 + u + v * u - v**3 / 4

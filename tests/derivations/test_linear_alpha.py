@@ -44,7 +44,7 @@ KNOTS = [
 ]
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize(("degree", "knots"), KNOTS)
 @pytest.mark.parametrize("values", [(1, 0), (0, 1)], ids=["1 - s", "s"])
 def test_the_product_is_the_product_on_each_span(degree, knots, values):
@@ -61,7 +61,7 @@ def test_both_products_together_raise_the_degree():
     assert (raised * Matrix([1] * 5)).applyfunc(cancel) == Matrix([1] * 7)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_blossom_at_other_arguments_is_seen(monkeypatch):
     blossom = linear_alpha._blossom_weights
     monkeypatch.setattr(

@@ -67,7 +67,7 @@ def test_partition_of_unity_over_symbolic_knots(degree):
     assert all(residual.is_zero for residual in residuals)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @settings(max_examples=30, deadline=None)
 @given(rational_knots())
 def test_laws_over_rational_knots_with_multiplicities(case):
@@ -108,7 +108,7 @@ def test_derivative_formula_over_symbolic_knots(degree):
             assert sp.cancel(piece.diff().as_expr() - claimed) == 0
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_one_curve_alone_carries_a_kink():
     # Four cubic curves in v blended by cubics in u; curve 1 has a triple knot h, the others a simple one.
     u_pieces = basis_table(3, [0, 0, 0, 0, 1, 1, 1, 1])[3]

@@ -97,7 +97,7 @@ def test_symbolic_knots_with_numbers_put_in_are_the_rational_ones():
             assert cancel(left.as_expr().subs(numbers) - right.as_expr()) == 0
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @given(rational_splines())
 def test_pieces_sum_to_one(spline):
     degree, knots, _ = spline
@@ -119,7 +119,7 @@ def test_exact_evaluation_agrees_with_scipy(spline, x, derivative):
         assert float(value) == pytest.approx(float(found), abs=1e-13 * float(size))
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @given(rational_splines())
 @settings(max_examples=40)
 def test_end_derivatives_agree_with_exact_evaluation(spline):

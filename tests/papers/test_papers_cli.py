@@ -43,7 +43,7 @@ def test_help_loads_nothing_heavy():
     assert done.stdout.strip() == "[]"
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_verify_a_folder_and_write_both_files(made_up_paper, tmp_path):
     result = run("verify", made_up_paper(), "--json", tmp_path / "l.json", "--markdown", tmp_path / "r.md")
     assert result.exit_code == 0, result.output
@@ -59,7 +59,7 @@ def test_verify_a_folder_and_write_both_files(made_up_paper, tmp_path):
     assert "### eq-2" in (tmp_path / "r.md").read_text()
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_checks_that_export_nothing_are_told(made_up_paper, tmp_path):
     result = run("verify", made_up_paper(), "--json", tmp_path / "l.json", "--certificates", tmp_path / "c")
     assert result.exit_code == 0, result.output
@@ -111,7 +111,7 @@ def test_what_a_second_system_refuses_is_a_no(made_up_paper, monkeypatch, refuse
     assert ("recheck: found different: eq-1 #1: x" in result.output) == bool(status)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_report_written_anew_keeps_what_the_study_found(made_up_paper, tmp_path):
     folder, report = made_up_paper(), tmp_path / "r.md"
     assert run("verify", folder, "--markdown", report).exit_code == 0
@@ -124,20 +124,20 @@ def test_a_report_written_anew_keeps_what_the_study_found(made_up_paper, tmp_pat
         assert report.read_text() == f"{ledger}\n{study}"
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_json_on_standard_output_is_nothing_but_json(made_up_paper):
     result = run("verify", made_up_paper(), "--json", "-")
     assert json.loads(result.stdout)["counts"]["printed"] == 2
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_changed_claim_is_exit_status_1_and_names_it(made_up_paper):
     result = run("verify", made_up_paper(recorded="HOLDS"))
     assert result.exit_code == 1
     assert "eq-2: found fails, recorded holds" in result.stderr
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_check_without_an_answer_is_exit_status_3_whatever_the_others_say(made_up_paper):
     claims = made_up_paper(recorded="HOLDS") / "claims.py"
     claims.write_text(claims.read_text().replace("(Reading((Part(CHECK, pr.RIGHT),)),)", "(Reading((Part(SILENT),)),)"))
@@ -149,7 +149,7 @@ def test_a_check_without_an_answer_is_exit_status_3_whatever_the_others_say(made
     assert "eq-2: found fails, recorded holds" in result.stderr
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_any_folder_is_reproduced_as_a_page_of_its_claims(made_up_paper, tmp_path):
     folder = made_up_paper()
     result = run("reproduce", folder, "--out", tmp_path / "report")
@@ -163,7 +163,7 @@ def test_any_folder_is_reproduced_as_a_page_of_its_claims(made_up_paper, tmp_pat
     assert "### eq-2" in (tmp_path / "report" / "RECORDS.md").read_text()
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("name", "text", "arguments", "message"),
     [
@@ -213,7 +213,7 @@ def test_an_output_that_cannot_be_written_is_found_before_the_work(made_up_paper
     assert "printed claims" not in result.output
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_drafts_are_shown_with_what_they_lack_and_the_others_are_decided(made_up_paper):
     claims = made_up_paper() / "claims.py"
     text = claims.read_text()
@@ -242,7 +242,7 @@ def test_drafts_are_shown_and_nothing_else(made_up_paper_once, option):
     assert f"--draft: found {option} beside it" in result.stderr
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_mistake_in_a_check_is_exit_status_2_and_no_verdict(made_up_paper):
     claims = made_up_paper() / "claims.py"
     claims.write_text(claims.read_text().replace("residual = (formula", "residual = (formola"))

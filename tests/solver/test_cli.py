@@ -107,7 +107,7 @@ def test_check_names_measure_value_and_limit(tmp_path):
     assert "G2: no: angle degrees is 45, at most" in done.stdout
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize("suffix", [".json", ".3dm"])
 def test_units_of_a_stay(tmp_path, suffix):
     a, b = facing_pair(np.random.default_rng(0))
@@ -134,7 +134,7 @@ def test_list_prints_one_line_a_surface(pair):
     assert line.split() == ["0", "B-spline", "1,", "1", "2", "x", "2", "-", "-", "-"]
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_list_json_of_iges_is_clean():
     done = in_process_of_its_own("list", IMPELLER, "--json", "-")
     assert (done.returncode, done.stderr) == (0, "")
@@ -143,7 +143,7 @@ def test_list_json_of_iges_is_clean():
     assert {surfaces[i]["n_u"] for i in (102, 131)} == {17}
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_convert_keeps_the_surface(pair):
     for name in ("a.3dm", "a2.json"):
         assert run("convert", pair / "a.json", pair / name).exit_code == 0
@@ -152,7 +152,7 @@ def test_convert_keeps_the_surface(pair):
     assert (pair / "a.json").read_text() == (pair / "a2.json").read_text()
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_convert_and_blend_of_semistructured_files(pair):
     run("blend", pair / "a.json", pair / "b.json", *edges(), "-o", pair / "c.json")
     assert run("convert", pair / "c.json", pair / "c.3dm").exit_code == 0
@@ -188,7 +188,7 @@ def test_every_command_has_help():
         assert "Usage" in done.stdout
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_real_pair_end_to_end(tmp_path):
     specs = (f"{IMPELLER}#102", f"{IMPELLER}#131")
     environment = {key: value for key, value in os.environ.items() if key != "DISPLAY"}

@@ -82,7 +82,7 @@ def untouched(folder):
     )
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_what_the_others_are_measured_against_works(folder):
     (folder / "a.json").write_text(record())
     done = CliRunner().invoke(app, blend_words(folder, "--report", folder / "report.json"))
@@ -181,7 +181,7 @@ def test_usage_errors_are_status_2(words):
     assert CliRunner().invoke(app, words).exit_code == 2
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_the_installed_command_ends_the_same_way(folder):
     """In a process of its own, through the entry point that `semispline` runs."""
     (folder / "a.json").write_text(BAD_FILES["knots that decrease"][0])

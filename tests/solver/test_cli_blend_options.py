@@ -36,7 +36,7 @@ def test_least_energy_is_proved(pair):
     assert "proved least over the box" in result.output
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_the_fairest_shape_is_the_default_and_never_called_proved(pair):
     result, report = run(pair)
     assert result.exit_code == 0, result.output
@@ -49,7 +49,7 @@ def test_the_fairest_shape_is_the_default_and_never_called_proved(pair):
     assert report["rows_converted"] >= report["rows_stored"] == report["control_points"]
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_alpha_and_box(pair):
     _, natural = run(pair, "--alpha", "natural")
     assert "alpha2_bounds" not in natural
@@ -60,7 +60,7 @@ def test_alpha_and_box(pair):
     assert narrow["alpha2_bounds"][1] == pytest.approx(4 * narrow["alpha2_bounds"][0])
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_scale_changes_the_blend(pair):
     energy = ("--alpha", "energy")
     (_, paper), (_, unit) = run(pair, *energy), run(pair, *energy, "--v-scale", "unit")

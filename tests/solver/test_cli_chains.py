@@ -54,7 +54,7 @@ def test_a_blend_of_chains_its_file_and_report(tubes, tmp_path, split, count):
     assert "3:e1, v in [" in done.stdout
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_json_keeps_a_blend_with_corners_whole(tubes, tmp_path):
     words = ("--edge-a", "7:e3+8:e3+9:e3+10:e3", "--edge-b", "4:e1*", *QUICK)
     for suffix, count in (("json", 1), ("step", 4), ("iges", 4), ("brep", 4), ("3dm", 4)):
@@ -68,7 +68,7 @@ def test_json_keeps_a_blend_with_corners_whole(tubes, tmp_path):
     assert "corner of 90 degrees, the blend is split there, the other side has none there: it fades out" in done.stdout
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_check_measures_each_face(tubes, tmp_path):
     out, figures = tmp_path / "out.json", tmp_path / "figures.json"
     assert run("blend", tubes, tubes, "--edge-a", "0:e1*", "--edge-b", "4:e3*", *QUICK, "-o", out).exit_code == 0
@@ -127,7 +127,7 @@ def commands(path, sign):
     return [shlex.split(line) for line in lines if "semispline blend" in line and sign in line]
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_proposed_gap_of_chains_runs_as_printed(tubes, tmp_path, monkeypatch):
     """Between two rims of four and three edges."""
     monkeypatch.chdir(tmp_path)
@@ -137,7 +137,7 @@ def test_a_proposed_gap_of_chains_runs_as_printed(tubes, tmp_path, monkeypatch):
     assert (tmp_path / words[-1]).exists()
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_proposed_ring_of_rounds_runs_as_printed(tmp_path, monkeypatch):
     """Eight faces that go on into each other: all of them at once, and one solid comes back."""
     monkeypatch.chdir(tmp_path)

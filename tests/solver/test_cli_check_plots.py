@@ -70,7 +70,7 @@ def test_json_holds_means_and_the_run_along_the_edge(call):
     assert max(profile["gap"]) == record["gap"]
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_plots_are_written_all_or_none(call, tmp_path):
     folder = tmp_path / "plots"
     assert run(*call, "--plots", folder).exit_code == 0
@@ -90,7 +90,7 @@ def orange(data, tmp_path):
     return int(((abs(r - 213) < 20) & (abs(g - 94) < 20) & (b < 20)).sum())
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize("most", [0.0, 1e-13, 0.5, 80.0, np.nan])
 def test_the_limit_is_a_line_where_there_is_one(tmp_path, most):
     length = np.linspace(0, 2, 9)

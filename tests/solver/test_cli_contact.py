@@ -95,7 +95,7 @@ def test_far_away_nothing_is_promised(offset, continuity):
         blend(*readme_pair(offset), continuity=continuity)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_from_far_to_near_refused_warned_and_exact():
     ends = []
     for exponent in range(4, 13):

@@ -40,7 +40,7 @@ def low_and_high(tmp_path_factory):
     return found
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize("kind", WHOLE)
 def test_each_kind_of_face_is_blended_at_its_free_edge(kind, tmp_path):
     path = written(drilled_part(kind), tmp_path / "part.brep")
@@ -81,7 +81,7 @@ def test_each_kind_of_face_is_blended_at_its_free_edge(kind, tmp_path):
     assert "off the trim curve" in done.stdout
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize("suffix", [".step", ".json"])
 def test_parts_are_written_into_one_file_or_numbered(low_and_high, tmp_path, suffix):
     (a, edge_a), (b, edge_b) = low_and_high
@@ -100,7 +100,7 @@ def test_parts_are_written_into_one_file_or_numbered(low_and_high, tmp_path, suf
     assert all(part["band_a"]["limits"] == part["band_b"]["limits"] == "exact" for part in record["parts"])
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_part_alone_with_the_bases(low_and_high, tmp_path):
     (a, edge_a), (b, edge_b) = low_and_high
     out = tmp_path / "out.step"
@@ -112,7 +112,7 @@ def test_a_part_alone_with_the_bases(low_and_high, tmp_path):
     assert len(list_surfaces(out)) == 3
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_nothing_is_written_where_something_is_refused(low_and_high, tmp_path):
     (a, edge_a), (b, edge_b) = low_and_high
     out = tmp_path / "out.json"
@@ -137,7 +137,7 @@ def test_nothing_is_written_where_something_is_refused(low_and_high, tmp_path):
     assert (done.exit_code, f"name {edge_a}" in done.stderr) == (2, True)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_exact_limits_refuse_a_band_of_a_curved_face(tmp_path):
     path = written(drilled_part("sphere"), tmp_path / "part.brep")
     face, entry = hole(path, "sphere")
@@ -173,7 +173,7 @@ def test_natural_edges_are_held_to_what_is_asked_for(tmp_path):
     assert cad["c1_residual"] == contact.allowed["c1_residual"]
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_problem_keeps_both_words_and_becomes_c_where_it_is_one(low_and_high, tmp_path):
     (a, edge_a), (b, _) = low_and_high
     sheet, path = tmp_path / "sheet.json", tmp_path / "p.json"
@@ -214,7 +214,7 @@ def test_words_of_free_edges_need_a_file_with_faces(tmp_path):
     assert not (tmp_path / "out.json").exists()
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_continuity_of_parameters_along_a_free_edge_is_said_to_be_geometric(tmp_path):
     path = written(drilled_part("cylinder"), tmp_path / "part.brep")
     face, entry = hole(path, "cylinder")

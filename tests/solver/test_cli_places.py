@@ -29,7 +29,7 @@ PARTS = {
 }
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize("part", PARTS)
 def test_printed_commands_run_as_printed(part, tmp_path, monkeypatch):
     make, name = PARTS[part]
@@ -60,7 +60,7 @@ def test_printed_commands_run_as_printed(part, tmp_path, monkeypatch):
             assert len(list_surfaces(words[-1])) == (7 if kind == "chains of fillets" else 1)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_bases_are_written_beside_the_blend(tmp_path):
     path, out = written(rounded_box(), tmp_path / "part.brep"), tmp_path / "out.step"
     faces = read_occ(path).faces

@@ -40,7 +40,7 @@ def test_a_newcomer_rounds_an_edge_in_two_commands(tmp_path, monkeypatch):
     assert (len(parts(back, "SOLID")), len(parts(back, "FACE"))) == (1, 7)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_cuts_of_a_shared_edge_give_the_solid(tmp_path):
     path, out = written(box(20, 30, 40), tmp_path / "box.brep"), tmp_path / "out.step"
     words = ["blend", f"{path}#0", f"{path}#2", "--cut-a", "3", "--cut-b", "6"]
@@ -56,7 +56,7 @@ def test_cuts_of_a_shared_edge_give_the_solid(tmp_path):
     assert len(parts(open_parts(tmp_path / "alone.step").root, "FACE")) == 1
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_where_no_solid_can_be_written_it_is_said(tmp_path):
     path = written(box(20, 30, 40), tmp_path / "box.brep")
     done = run("blend", f"{path}#0", f"{path}#2", "--cut-a", "3", "--cut-b", "6", "-o", tmp_path / "out.3dm")
@@ -72,7 +72,7 @@ def test_cuts_of_edges_that_are_not_the_same_give_a_surface(tmp_path):
     assert "solid" not in done.output
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_report_and_a_picture(tmp_path):
     pytest.importorskip("pyvista")
     path, report = written(box(20, 30, 40), tmp_path / "box.brep"), tmp_path / "report.json"
@@ -103,7 +103,7 @@ def test_a_picture_is_refused_without_a_solid(tmp_path):
     assert not (tmp_path / "plots").exists()
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_new_face_has_the_colour_of_the_one_beside_it(tmp_path):
     path = write_coloured(box(20, 30, 40), tmp_path / "box.step")
     before = labels_of(path)
@@ -117,7 +117,7 @@ def test_a_new_face_has_the_colour_of_the_one_beside_it(tmp_path):
     assert new[2] == old["face 2"][1]
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_all_edges_of_a_face_that_do_not_meet(tmp_path):
     """One after the other; the numbers of faces stay."""
     path = written(box(20, 30, 40), tmp_path / "0.brep")
@@ -162,7 +162,7 @@ def box_in_3dm(path):
     file.Write(str(path), 0)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_3dm_file_comes_back_with_the_blend_and_its_bases_on_the_layer_of_a(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     box_in_3dm("part.3dm")

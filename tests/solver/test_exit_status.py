@@ -90,7 +90,7 @@ def test_a_command_of_the_derivations_ends_the_same_way(monkeypatch):
     assert done.stderr.startswith("error: RuntimeError: no; ")
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.skipif(sys.platform != "linux", reason="asks Linux for the reader")
 def test_ctrl_c_ends_a_reading_command_with_130():
     # What a shell starts in the background ignores this signal, and so would the command.
@@ -112,7 +112,7 @@ foreign.call = lambda *_: read("helpers.turning", ["turn"], 600, 4096)
     assert command.returncode == 130
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.skipif(os.name == "nt", reason="a pipe of POSIX")
 def test_a_reader_of_the_output_that_left_is_no_answer():
     read, write = os.pipe()

@@ -25,7 +25,7 @@ def readers():
     return {name for text in texts if "read_apart" in text for name in CALLED.findall(text)}
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_what_a_process_sends_is_what_its_reader_finds(tmp_path, monkeypatch):
     real, called = foreign.call, []
 

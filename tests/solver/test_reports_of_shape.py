@@ -48,7 +48,7 @@ def test_keys_and_figures():
     assert (open_one["waist"], open_one["waist_of_rulings"]) == (None, None)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_not_searched_is_null_and_never_no():
     pipe, wall = revolved(line((5, 0), (5, 10))), revolved(line((5, -4), (5, 0)))
     record = json.loads(to_text(shape_record(measure_shape(pipe, Base(wall, "u1")))))["meets"]
@@ -83,7 +83,7 @@ def run(folder, *options):
     return result.output, json.loads((folder / "report.json").read_text())
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_pipe_and_cap_on_the_command_line(tmp_path):
     energy = "--alpha", "energy"
     output, report = run(tmp_path, *energy)

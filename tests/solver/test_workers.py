@@ -55,7 +55,7 @@ except SemisplineError as error:
 """
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @linux
 def test_memory_that_the_parent_had_is_not_the_workers():
     code = LARGE_PARENT.format(tests=str(Path(__file__).parents[1]))

@@ -31,7 +31,7 @@ def test_the_insertion_formula_at_numbers(order, z):
             assert de_boor(order, old, unit, x) == de_boor(order, new, both, x)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_smoothness_at_a_symbolic_knot():
     assert [contact_at_knot(4, r) for r in (1, 2, 3)] == [2, 1, 0]
     assert [contact_at_knot(7, r) for r in (1, 6)] == [5, 0]

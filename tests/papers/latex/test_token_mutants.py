@@ -48,7 +48,7 @@ def unnoticed(found):
     ]
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_changed_token_is_noticed_wherever_it_says_something(whole):
     found = list(outcomes(FORMULAS, 1.0 if whole else SHARE))
     assert unnoticed(found) == []

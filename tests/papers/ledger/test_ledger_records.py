@@ -193,7 +193,7 @@ def test_the_corrected_formula_is_checked_too():
         check_record(claim)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_lin2014_ships_and_every_record_is_well_formed():
     assert "lin2014" in paper_names()
     ids = [claim.id for claim in load_paper("lin2014").claims]

@@ -65,7 +65,7 @@ def test_a_made_up_paper_in_a_folder_is_decided(made_up_paper):
     assert counts["mutants_survived"] == 0
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_workers_decide_the_same(made_up_paper):
     ledger = verify(str(made_up_paper()), workers=2)
     assert [str(d.verdict) for d in ledger.decisions] == ["holds", "fails"]
@@ -215,7 +215,7 @@ def test_a_verdict_that_differs_is_an_answer(made_up_paper):
     assert ledger.unanswered == ()
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_worker_that_is_ended_is_a_failed_computation(made_up_paper):
     claims = made_up_paper() / "claims.py"
     claims.write_text(claims.read_text().replace('"""Add up, for n = 1 .. 9."""', "__import__('os')._exit(9)"))

@@ -177,7 +177,7 @@ def test_numbers_and_contact(figure, compared):
             assert row.measures.seam.curvature_jump < 1e-10
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize("figure", EACH_FIGURE)
 def test_printed_rows_keep_g2_only_where_bases_are_straight_across(figure, compared):
     rows = compared(figure)
@@ -216,7 +216,7 @@ def test_least_energy_is_least(figure, compared):
     assert energy["quintic-hermite-least"] <= energy["quintic-hermite"]
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize("figure", EACH_FIGURE)
 def test_the_fairest_blend_is_fairer_than_each_of_the_papers_with_a_middle_curve_more_at_most(figure, compared):
     rows = {name: row.measures for name, row in compared(figure).items() if row.measures is not None}
@@ -248,7 +248,7 @@ def test_where_rivals_are_better(compared, whole):
     assert tubes["bloor-wilson-6"].measures.bending < 0.9 * tubes["semistructured-reduced"].measures.bending
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_numbers_are_the_same_from_run_to_run(compared):
     task = example(5)
     for name, row in compared(5).items():
@@ -270,7 +270,7 @@ def test_a_filling_is_rough(figure, gap, angle):
     assert found.control_points == 529
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize(("figure", "least"), [(6, 400), (10, 1000)])
 def test_smlibpy_is_accurate_but_large(figure, least):
     pytest.importorskip("smlibpy")

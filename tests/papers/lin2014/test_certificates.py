@@ -86,7 +86,7 @@ def sample(tmp_path_factory):
     return folder, found
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_process_without_sympy_repeats_the_verdicts_of_a_sample(sample):
     folder, found = sample
     second = rechecked(found, folder)
@@ -123,7 +123,7 @@ def test_controls_have_every_kind_of_change(sample):
     assert not any(case.true for case in sample[1].controls)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_gp_alone_agrees_on_a_sample(sample):
     if shutil.which("gp") is None:
         pytest.skip("gp is not installed")
@@ -133,7 +133,7 @@ def test_gp_alone_agrees_on_a_sample(sample):
     assert done.returncode == 0
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize("damage", ["(1 + 1)*", "syntax (", "my(x = 1/0); "])
 def test_gp_alone_notices_a_changed_file(sample, tmp_path, damage):
     if shutil.which("gp") is None:
@@ -147,7 +147,7 @@ def test_gp_alone_notices_a_changed_file(sample, tmp_path, damage):
     assert done.returncode == 1
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_every_printed_formula_that_fails_is_refused_with_a_witness():
     paper = collected("lin2014")
     for claim in paper.claims:
@@ -331,7 +331,7 @@ def test_all_certificates_and_gp_alone(tmp_path):
         assert gp(tmp_path).returncode == 0
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_the_process_runs_where_sympy_cannot_be_imported(sample, tmp_path):
     (tmp_path / "sympy.py").write_text("raise ImportError('no SymPy here')")
     code = (

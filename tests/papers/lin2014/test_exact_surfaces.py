@@ -102,7 +102,7 @@ def energy_by_hand(surface, n=14):
     return float(np.outer(wu, wv).ravel() @ total)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize("figure", [10, 11])
 @pytest.mark.parametrize("choice", ASKED)
 def test_the_table_is_what_a_fresh_computation_gives(figure, choice, table):
@@ -170,7 +170,7 @@ def test_the_finding_says_what_the_blends_have_and_stands_in_the_report():
     assert not list(exact_findings({"figure-10": []}))
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_exact_examples_do_not_enter_the_counts_of_the_others():
     comparisons = {"figure-6": [run(example(6), m) for m in methods() if m.name == "paper-corrected"]}
     alone = findings(comparisons)
@@ -205,7 +205,7 @@ POLYNOMIAL = {
 }  # fmt: skip
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_methods_for_polynomial_bases_say_so():
     refused = {}
     for method in methods(PRINTED_METHODS):
@@ -219,7 +219,7 @@ def test_methods_for_polynomial_bases_say_so():
     assert all("takes polynomial B-spline surfaces only" in reason for reason in refused.values())
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize("name", ["semistructured-reduced", "quintic-hermite-least"])
 def test_cured_blends_are_measured_at_foot_points(name):
     (method,) = (m for m in methods() if m.name == name)

@@ -94,7 +94,7 @@ def test_the_closed_curves_close_with_two_derivatives(inner):
     assert ends(Fraction(0), inner[0])[0] == ends(inner[-1], Fraction(1))[1]
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_least_energy_leaves_the_middle_curve_open_and_rows_of_bases_closed():
     start, end = closed_seam.middle_ends()
     assert start != end

@@ -90,7 +90,7 @@ def test_a_curved_base_of_five_rows_is_met_with_g2_as_printed_if_it_is_as_long_a
             assert second == alpha**4 * base_second * end / length
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_the_records_say_so():
     claims = {claim.id: claim for claim in load_paper("lin2014").claims}
     for name in ("fig-5.c2", "fig-8.c2", "fig-9.c2"):

@@ -42,7 +42,7 @@ from semispline.papers.lin2014.examples.made_pair import made_pair
 ROOT = Path(__file__).parents[3]
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_printed_formulas_run_in_the_papers_folder_only():
     for path in (*ROOT.glob("solver/**/*.py"), *ROOT.glob("derivations/**/*.py"), *ROOT.glob("papers/**/*.py")):
         if {"lin2014", "primer", "new_paper"} & set(path.parts):
@@ -148,7 +148,7 @@ def test_the_counterexample_to_row_2_is_no_g2_contact(side, formulas):
     assert normal_excess((4, 4), own, H, one, base, (0, 0, Fraction(2, 27))) == 0
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_the_counterexample_to_c2_is_a_regular_base_on_which_both_readings_miss():
     found = load_paper("lin2014").claim("sec-3.parametric-c2").counterexample()
     assert found.own.endswith("R_{0j} = 1, R_{1j} = 0, R_{2j} = 0: printed 2 or 16/9, true 20/9")
@@ -169,7 +169,7 @@ def test_g2_is_reached_by_the_right_conditions_and_by_neither_reading_of_the_pri
     assert [all(case.true for case in part.check.cases(part.formula)) for part in parts] == [True, False, False]
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_the_tangent_condition_at_s_fails_beside_those_of_second_order():
     """For k = 5 the printed row m-1 is row m."""
     found = load_paper("lin2014").claim("sec-3.sufficient-g2").counterexample()
@@ -213,7 +213,7 @@ def test_the_counterexample_of_a_figure_refutes_both_readings_along_the_normal(m
     assert (printed[2], squared[2]) == (true[2] * Fraction(m - 2, 2), true[2] * Fraction(3, 2))
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_no_smaller_orders_are_a_counterexample_to_g2(whole):
     """Where R has order 2 the row differs from alpha^4 R_ww within the tangent plane alone, which G2 leaves free."""
     for formula in (pr.COND_3_1, pr.COND_3_1_SQUARES) if whole else (pr.COND_3_1,):
@@ -315,14 +315,14 @@ def test_a_wrong_knot_makes_a_row_check_red():
     assert not any(case.true for case in row_check("start", 2).cases(wrong))
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_every_letter_of_corrected_end_formulas_matters():
     for letter in (u_last, u_before, t_ks1):
         moved = pr.Formula(TRUE_3_2.relation.xreplace({letter: letter + sp.Rational(1, 7)}), TRUE_3_2.variables)
         assert not all(case.true for case in row_check("end", 2).cases(moved)), letter
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_the_curvature_that_the_printed_row_gives():
     """Along the normal: the base's second derivative times (w_{k_r+1} - w_s) / u_2, the remark of cond-3.1."""
     assert "times (w_{k_r+1} - w_s) / u_2" in load_paper("lin2014").claim("cond-3.1").remark
@@ -337,7 +337,7 @@ def test_the_curvature_that_the_printed_row_gives():
         assert sp.simplify(ratio - H[1] / sp.Rational(2, m - 2)) == 0
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_the_paper_has_a_title_and_a_legend():
     paper = load_paper("lin2014")
     assert paper.title.startswith("Semi-structured B-spline")

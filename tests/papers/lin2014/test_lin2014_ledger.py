@@ -92,7 +92,7 @@ def few_mutants(monkeypatch):
     mutation._RESULTS.clear()
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.usefixtures("few_mutants")
 def test_every_claim_is_decided_as_recorded():
     ledger = verify("lin2014", workers=1)

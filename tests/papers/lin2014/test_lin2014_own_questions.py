@@ -90,7 +90,7 @@ def test_a_weight_with_roots_has_no_rational_form():
     assert truths(hartmann.hartmann_rational_cases(rooted)) == [True]
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_hartmann_at_numbers():
     """n = 1 and 2, mu = 1/3, pieces t^2 + 1 and sin t: derivatives of the blend itself at both ends."""
     t = sp.Symbol("t")
@@ -149,7 +149,7 @@ def test_mean_curvature_of_graphs_is_that_of_the_coefficients():
     assert sp.simplify((mean - graph).subs({x: Fraction(1, 3), y: 2})) == 0
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_stripes_of_a_wrong_normal_are_seen():
     """A normal that does not turn with the surface, and one that is blind to the slope across."""
     assert all(truths(curvature_pictures.stripe_cases()))
@@ -297,7 +297,7 @@ def test_the_first_case_is_for_every_degree_and_tells_each_mutant(name):
                 assert not next(iter(part.check.cases(changed))).true, mutant.text
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_each_figure_is_decided_with_both_kinds_of_conditions(whole):
     for name in ("fig-5.c2", "fig-6.g2", *(("fig-8.c2", "fig-9.c2", "fig-11.g2") if whole else ())):
         decision = decide(CLAIMS[name])
@@ -318,7 +318,7 @@ def test_each_figure_is_decided_with_both_kinds_of_conditions(whole):
     ]
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_the_readings_of_section_5_by_hand():
     validation, inference = (decide(CLAIMS[name]).readings for name in ("sec-5.validation", "fig-7.inference"))
     assert [r.verdict for r in validation] == [Verdict.HOLDS, Verdict.HOLDS_IF, Verdict.FAILS, Verdict.FAILS]

@@ -204,7 +204,7 @@ def test_every_question_of_these_records_is_perturbed():
     assert asked == set(PERTURBED) | BY_HAND
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("place", "module", "name", "wrong"),
     [(place, *change) for place, changes in PERTURBED.items() for change in changes],
@@ -273,7 +273,7 @@ def test_what_was_only_checked_once_is_proved(name):
     assert decision.proved
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_layout_with_other_rows_would_be_counted():
     """Rows that enter the contact are counted, not set: for first-order contact they are 0, 1 and m - 1, m."""
     assert {(m, ends) for _, m, ends, _ in construction.counted_rows(1)} >= {(5, (1, 4)), (6, (1, 5))}

@@ -71,7 +71,7 @@ def test_no_claim_of_sections_2_to_4_rests_on_instances_without_a_reason():
             assert all(p.check.proof and p.check.strength <= Strength.EACH for p in parts), name
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("name", "holds"),
     [
@@ -154,7 +154,7 @@ def test_the_gram_integrand_against_integrals_of_two_bumps():
     assert TRUE_14.relation.rhs.subs(values) == sp.diff(energy, x, y) / 2
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_premise_that_fails_makes_the_proof_red(monkeypatch):
     """A saddle for the plate, a row of contact that is missing, a knot of full multiplicity: each is noticed."""
     saddle = sp.Symbol("P_uu") ** 2 - sp.Symbol("P_vv") ** 2

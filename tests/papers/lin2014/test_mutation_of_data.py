@@ -76,7 +76,7 @@ def test_of_a_printed_vector_only_moved_inner_knots_go_unnoticed(key):
     assert {text for text, _ in result.undecidable} == (set() if key in cases else moved)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_every_reason_belongs_to_a_mutant_that_is_made():
     """A reason without its mutant would explain nothing, and might hide a check that has become stronger."""
     for claim in load_paper("lin2014").claims:
@@ -92,7 +92,7 @@ def test_a_size_of_table_1_is_tied_to_the_knots():
         assert not all(case.true for case in check.cases(of(wrong))), wrong
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize("name", sorted(printed.SIDE_CURVES))
 def test_a_curve_of_fig_3_that_misses_its_neighbours_is_noticed(name):
     formula = printed.SIDE_CURVES[name]

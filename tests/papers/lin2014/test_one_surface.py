@@ -57,7 +57,7 @@ def test_no_power_passes_a_knot_in_the_second_span(power):
     assert one_surface_counterexample().printed.endswith("any powers, as it is and with the knot at 2, g, 2*g/3")
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_only_the_corrected_row_depends_on_the_surface_alone():
     assert all(case.true for case in one_surface_check(flat=False).cases(TRUE_3_1))
     printed, squared, powers = (
@@ -69,7 +69,7 @@ def test_only_the_corrected_row_depends_on_the_surface_alone():
     assert powers[-2:] == [False, True]
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_knot_inserted_wrongly_changes_the_base(monkeypatch):
     unremembered = same_base_cases.__wrapped__
     assert all(case.true for case in unremembered())

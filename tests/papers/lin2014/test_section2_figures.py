@@ -35,7 +35,7 @@ def test_the_trimmed_patch_has_four_pieces_of_each_kind_on_the_patch():
         np.testing.assert_allclose(surface_points(figures.bicubic_patch(), u, v), points, atol=1e-12)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize("name", first_ones(2, ["draw_figure_1", "draw_trimmed_patch", "draw_figure_2"]))
 def test_pictures_are_drawn_in_colour(name, tmp_path, monkeypatch):
     # Small renderings: software rendering takes most of the time.

@@ -47,7 +47,7 @@ def near(image, color, amount):
 
 
 # With curves alone, open and closed blends with their curvature; the others are drawn in the same ways.
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize(
     "drawing",
     [
@@ -88,7 +88,7 @@ def flat(shift):
     return BSplineSurface(1, 1, k, k, [[[x + shift, y, 0] for y in (0, 1)] for x in (0, 1)])
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_stripes_take_the_colours_of_their_surfaces_and_show_on_planes_from_near_by(tmp_path):
     path = tmp_path / "z.png"
     scene = [Drawn(flat(0), BASE_COLOR), Drawn(flat(1), BLEND_COLOR)]
@@ -106,7 +106,7 @@ def test_stripes_take_the_colours_of_their_surfaces_and_show_on_planes_from_near
         render([flat(0)], path, towards_eye=(0, 0, 0))
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_tube_is_red_outside_and_blue_inside(tmp_path):
     from semispline.papers.lin2014.examples.section5 import example
 

@@ -33,7 +33,7 @@ def test_a_sentence_has_records_or_a_reason(place):
     assert isinstance(records, str) or len(set(records)) == len(records)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_what_is_only_consistent_is_named_so():
     """Printed numbers that agree, and things of which one of the kind exists, are no proof of what is claimed."""
     found = {c.id for c in load_paper("lin2014").claims for p in c.parts if p.check.strength is Strength.CONSISTENT}

@@ -108,7 +108,7 @@ def test_no_formula_is_read_without_one_of_its_names():
     assert tried > 80 > 20 * otherwise
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_every_step_has_its_two_sides_in_sympy():
     # Where the display before is not read, the left side is not known.
     unknown = [identifier for identifier in READ for step in steps(identifier) if step.left is None]

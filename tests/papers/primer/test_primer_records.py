@@ -18,7 +18,7 @@ PAPER = load_drafts("primer")
 QUICK = ("whatis.1", "matrix.7", "aligning.3", "canonical.8", "extremities.1", "reordering.6", "matrixsplit.9")
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_the_records_are_complete_and_of_what_is_printed():
     found = [claim.id for claim in load_paper("primer").claims]
     assert set(found) <= set(blocks())

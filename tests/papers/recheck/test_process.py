@@ -16,13 +16,13 @@ def folder(tmp_path):
     return tmp_path
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_it_agrees(folder):
     assert rechecked(FOUND, folder).verdicts == {"eq-1": "holds"}
     assert rechecked(FOUND).agrees
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_an_endless_statement_ends_by_processor_time(folder, monkeypatch):
     monkeypatch.setattr(rechecking, "_SECONDS", 1)
     path = folder / "gp" / "eq-1.gp"

@@ -57,7 +57,7 @@ def parsed(html):
     return Elements(html)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_nothing_is_outside_of_the_page(html, parsed):
     assert all(source.startswith("data:image/webp;base64,") for source in parsed.values("src"))
     assert all(link.startswith("#") for link in parsed.values("href"))

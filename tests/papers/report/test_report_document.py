@@ -14,14 +14,14 @@ from semispline.papers.reproduction.comparison import run
 STORED = (Path(__file__).parents[3] / "papers" / "lin2014" / "RECORDS.md").read_text(encoding="utf-8")
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_the_document_has_the_erratum_first_then_findings_and_prior_art():
     assert STORED.index("## Erratum") < STORED.index("What the study finds") < STORED.index("Prior art:")
     for work in study().prior_art:
         assert f"- {work}" in STORED
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_what_weighs_most_comes_first_and_words_are_explained():
     causes = [cause.key for cause in load_paper("lin2014").causes]
     claims = {claim.id: claim for claim in load_paper("lin2014").claims}

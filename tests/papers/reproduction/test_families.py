@@ -133,7 +133,7 @@ def test_a_family_is_spread_over_edges_speeds_and_domains(family):
     assert len({p.measures.gap for p in problems}) == 40
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_facing_pairs_fill_their_ranges():
     problems = [open_pair("facing", seed) for seed in range(60)]
     gaps = [p.measures.gap for p in problems]
@@ -175,7 +175,7 @@ def test_rims_are_closed_and_smooth_and_round(kind):
             assert radii.max() / radii.min() < 1.1 / 0.9 * 1.02
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_known_geometry_of_rims():
     for problem in rims("coaxial") + rims("cap") + rims("bells"):
         (c0, r0, n0), (c1, r1, n1) = rim(problem.a), rim(problem.b)

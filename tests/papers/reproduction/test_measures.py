@@ -201,7 +201,7 @@ def test_gap_angle_and_turn_are_told_apart():
     np.testing.assert_allclose(oriented_turn(sides[1], reverse_u(back), 1, v, w), 0.0, atol=1e-12)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_other_parameters_along_the_contact_need_the_closest_point(curved):
     task, sides, _ = curved
     surface = blend(task.a, task.b, continuity="G2", middle_curves=1).surface

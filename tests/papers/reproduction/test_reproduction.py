@@ -38,7 +38,7 @@ def timeless(value):
     return [timeless(v) for v in value] if isinstance(value, list) else value
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_second_run_gives_the_same_numbers(results, made_up_paper_once, tmp_path):
     first, *_ = small_study().examples
     again = small_results(made_up_paper_once, tmp_path, study=replace(small_study(), examples=(first,), drawings=()))
@@ -48,7 +48,7 @@ def test_a_second_run_gives_the_same_numbers(results, made_up_paper_once, tmp_pa
     assert timeless(numbers(again)["ledger"]) == timeless(numbers(results)["ledger"])
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_every_step_is_told(small_report):
     assert small_report[1] == {"blending": (3 * len(METHODS), 3 * len(METHODS)), "drawing": (2, 2)}
 
@@ -71,7 +71,7 @@ def test_numbers_hold_every_measure(results, folder):
     assert {t["name"] for t in record["tables"]} == {"table-1"}
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_markdown_has_the_same_tables(results, folder):
     text = (folder / "report.md").read_text()
     assert text == "\n".join(markdown(results))
@@ -96,7 +96,7 @@ def test_the_page_is_written(folder):
     assert (folder / "index.html").read_text().startswith("<!DOCTYPE html>")
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_picture_that_fails_leaves_no_page(made_up_paper_once, tmp_path):
     study = replace(small_study(), examples=(), drawings=(Drawing("broken", "", fails),))
     with pytest.raises(RuntimeError, match="cannot draw broken"):

@@ -125,13 +125,13 @@ def test_what_energy_wants_is_counted_once():
     assert wants(rows) == {"told": 5, "not positive": 2, "below 1/8": 1, "above 8": 1, "folds within 1/8 to 8": 1}
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_row_is_the_same_after_its_way_through_a_file():
     for one in (run_problem("facing", 1, repeats=1), row(Refused("no"), wanted=None), row(replace(GOOD, meets=("a",)))):
         assert Row.from_json(json.loads(json.dumps(one.to_json()))) == one
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_flat_rings_are_blended_flat_and_judged_so():
     # Rings in one plane: turn and fairness of what is flat are zero, and no opposite points come closer than rulings.
     problem = next(
@@ -148,7 +148,7 @@ def test_flat_rings_are_blended_flat_and_judged_so():
     assert shape.points_converted == result.surface.to_bspline().control_points.size // 3
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_the_time_of_the_search_on_a_mesh_is_told_where_one_was_searched():
     # Facing strips: a direction shows that nothing meets. A U-turn covers its bases, seen from anywhere.
     for problem, is_searched in ((open_pair("facing", 0), False), (open_pair("u-turn", 3), True)):
@@ -183,7 +183,7 @@ def test_pairs_that_take_more_than_four_times_the_time_of_energy_are_named(monke
     assert tables._ratios([quick]).splitlines()[-1].endswith("; above that: none.")
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_bounds_of_alpha_alone_are_counted():
     shape, result = judged(open_pair("u-turn", 4), FAIR_SET)
     assert result.active_bounds == ("p2 of b upper",)

@@ -21,7 +21,7 @@ def base_at(surface, edge="u0", backwards=False):
     return Base(turned(surface, edge, backwards), edge)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @examples(40)
 @given(
     st.integers(0, 10**6),
@@ -143,7 +143,7 @@ def test_parameter_speed_of_the_bases_does_not_matter(factor):
     assert scaled.energy == pytest.approx(plain.energy, rel=1e-9)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_an_active_bound_is_reported():
     found = [blend(*facing_pair(np.random.default_rng(seed))) for seed in range(9, 15)]
     active = [result for result in found if result.active_bounds]

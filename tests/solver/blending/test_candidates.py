@@ -45,7 +45,7 @@ def test_of_an_even_gap_the_quintic_is_tried_without_and_with_a_middle_curve():
     assert tried(blend(*wedge(1.1), middle_curves=0)) == [(5, 0, "constant")]
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_middle_curve_that_is_fairer_by_a_twentieth_is_taken():
     a, b = facing(103)
     result = blend(a, b)
@@ -73,7 +73,7 @@ def test_beside_a_middle_curve_that_is_much_fairer_no_lower_window_is_searched(s
     assert not result.active_bounds
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_little_fairness_is_not_worth_a_warning():
     a, b = facing(265)
     result, middle = blend(a, b), blend(a, b, middle_curves=1)
@@ -105,7 +105,7 @@ def test_only_a_fairer_middle_curve_is_led_away_from_its_ends(monkeypatch, seed,
     assert asked == ([0, 1] if is_fairer else [0])
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_what_is_warned_of_either_way_keeps_its_middle_curve():
     # A pair of whatever shape, and a warning that both of them carry.
     a, b = facing(103)
@@ -155,7 +155,7 @@ def test_what_a_middle_curve_has_to_gain(middle, best, pays):
     assert candidates._pays_with_a_middle_curve(layout(**middle), layout(**best)) is pays
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_what_could_only_be_let_pass_is_not_searched_where_something_else_need_not_be(monkeypatch):
     asked = []
 
@@ -180,7 +180,7 @@ def test_a_linear_alpha_is_tried_from_a_ratio_on(ratio, is_tried):
     assert ((5, 0, "linear") in tried(blend(*wedge(ratio)))) == is_tried
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_wide_wedge_takes_a_linear_alpha_and_says_what_it_costs():
     result, constant = blend(*wedge(5.0)), blend(*wedge(5.0), alpha_v="constant")
     # A loop stops the search for a constant one: it would stop the quartic's as well.
@@ -275,7 +275,7 @@ def test_p2_is_left_out_where_that_leaves_an_end_for_little_fairness():
     assert 1.0 < without.fairness / with_p2.fairness < 1.1
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_p2_stays_where_it_is_worth_more_than_an_end_that_is_not_met():
     # Without it fairness is 1.28 times as much.
     a, b = facing(4)
@@ -311,7 +311,7 @@ def test_what_a_blend_without_p2_may_cost(fairness, condoned, ends, pays):
     assert candidates._pays_without_p2(layout(9.0, (), (True, True)), layout(1.0, ("folds",), (True, False)))
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_u_turn_at_an_end_is_searched_in_lower_windows_too():
     problem = shape_problem("u-turn", 20)
     result = blend(problem.a, problem.b)
@@ -359,7 +359,7 @@ def test_a_wider_box_is_never_worse(family, seed, box):
     assert wide.objective.value <= 1.01 * solve_fair(narrow).value
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_what_is_known_is_a_start_where_every_cell_folds():
     problem = shape_problem("rough", 17)
     narrow, wide = (state_problem(problem.a, problem.b, **more).problem for more in ({}, {"box": (1 / 8, 4)}))
@@ -370,7 +370,7 @@ def test_what_is_known_is_a_start_where_every_cell_folds():
     assert again.value < known.value
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_where_the_lower_end_stops_the_search_the_window_begins_lower():
     a, b = facing(96)
     result = blend(a, b, middle_curves=0)
@@ -406,7 +406,7 @@ def test_p2_at_the_end_of_its_range_is_named_and_warned_of(seed, side, end):
     assert not bound_warnings(stated, replace(found_fair(solve_fair(stated), "reduced"), fair=None))
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize(("seed", "side"), [(4, 1), (13, 0)])
 def test_beyond_the_end_of_p2_the_blend_is_fairer(seed, side):
     problem = shape_problem("u-turn", seed)
@@ -420,14 +420,14 @@ def test_beyond_the_end_of_p2_the_blend_is_fairer(seed, side):
     assert measured(1.1) < 0.98 * measured(1.0) < 0.98 * 0.98 * measured(0.9)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_where_nothing_is_searched_there_are_no_candidates():
     a, b = random_facing(np.random.default_rng(0))
     for options in ({"alpha": "energy"}, {"alpha": 0.7}, {"continuity": "C2"}, {"method": "casadi"}):
         assert blend(a, b, **options).candidates == ()
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_search_that_a_refusal_stopped_tries_other_layouts_and_says_what_is_left():
     rough = shape_problem("rough", 13)
     result = blend(rough.a, rough.b)
@@ -442,7 +442,7 @@ def test_a_search_that_a_refusal_stopped_tries_other_layouts_and_says_what_is_le
         blend(rough.a, rough.b, strict=True)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_linear_alpha_that_no_refusal_stops_is_taken_if_it_is_fairer():
     a, b = facing(217)
     result, constant = blend(a, b), blend(a, b, alpha_v="constant")
@@ -453,7 +453,7 @@ def test_a_linear_alpha_that_no_refusal_stops_is_taken_if_it_is_fairer():
     assert any("the fairest shape was not reached" in text for text in constant.warnings)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_middle_curve_is_tried_where_a_refusal_stopped_a_constant_alpha():
     rough = shape_problem("rough", 51)
     assert gap_ratio(state_problem(rough.a, rough.b).problem) < candidates.MIDDLE_RATIO
@@ -463,7 +463,7 @@ def test_a_middle_curve_is_tried_where_a_refusal_stopped_a_constant_alpha():
     assert not result.warnings
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_lower_windows_start_from_what_is_known(monkeypatch):
     asked = []
 

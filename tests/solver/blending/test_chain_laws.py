@@ -59,7 +59,7 @@ def sampled(strip, firsts=None):
     return np.array(found)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @given(RINGS, st.integers(1, 7))
 @examples(25)
 def test_a_closed_chain_may_begin_at_any_face(ring_of, k):
@@ -72,7 +72,7 @@ def test_a_closed_chain_may_begin_at_any_face(ring_of, k):
     np.testing.assert_allclose(np.diff(there.cuts), spans / spans[0], rtol=1e-10)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @given(RINGS)
 @examples(25)
 def test_a_chain_may_be_run_through_backwards(ring_of):
@@ -87,7 +87,7 @@ def test_a_chain_may_be_run_through_backwards(ring_of):
         assert np.abs(points - others).max() < SAME
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @given(RINGS, st.data())
 @examples(25)
 def test_faces_may_be_run_through_in_any_way(ring_of, data):
@@ -104,7 +104,7 @@ def test_faces_may_be_run_through_in_any_way(ring_of, data):
     assert np.abs(sampled(here) - sampled(there)).max() < SAME
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @given(RINGS, st.sets(st.integers(0, 3), min_size=1), st.floats(0.2, 0.8))
 @examples(25)
 def test_faces_along_lines_may_be_cut_further(ring_of, which, at):
@@ -131,7 +131,7 @@ def test_nothing_is_left_of_cuts_along_lines():
     assert there / there[-1] == pytest.approx(here / here[-1], abs=1e-12)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @given(RINGS)
 @examples(25)
 def test_a_closed_strip_ends_where_it_begins_to_the_last_bit(ring_of):
@@ -142,7 +142,7 @@ def test_a_closed_strip_ends_where_it_begins_to_the_last_bit(ring_of):
     assert (surface.weights[:, 0] == surface.weights[:, -1]).all()
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @given(st.floats(1.5, 4.0), st.floats(1.5, 4.0), st.floats(-0.4, 0.4), st.integers(2, 4))
 @examples(10)
 def test_corners_answer_each_other_whichever_is_named_first(x, y, yaw, order):
@@ -178,7 +178,7 @@ def cut_arcs(pieces, at):
     return found
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize("family", [walls, flanges])
 @pytest.mark.parametrize(("at", "first"), [(0.5, 0), (0.3, 2)])
 def test_arcs_that_are_cut_make_the_strip_of_the_whole_ones(family, at, first):
@@ -200,7 +200,7 @@ def test_arcs_that_are_cut_make_the_strip_of_the_whole_ones(family, at, first):
     assert cut.surface.control_points == pytest.approx(whole.surface.control_points, abs=1e-10)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_blend_of_cut_arcs_is_that_of_whole_ones_and_measured_on_each_face():
     """Halves of other heights, one run through backwards: other speeds across, and another way along."""
     profile = rounded_square((4.0, 3.0), (1.0, 1.4, 1.2, 0.8))

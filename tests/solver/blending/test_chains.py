@@ -76,7 +76,7 @@ FAMILIES = {
 }
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("family", "continuity"),
     first_rows(
@@ -120,7 +120,7 @@ def smooth_tube():
     return Base(near_cylinder(12, 2.5, (4.0, 6.0)), "u0")
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_controls_see_nothing_where_nothing_is_broken(monkeypatch):
     uncured(monkeypatch)
     for draft in (0.0, 0.2):
@@ -128,7 +128,7 @@ def test_controls_see_nothing_where_nothing_is_broken(monkeypatch):
         assert lines_inside(result.surface).crease < CREASE
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_what_the_slopes_are_for(monkeypatch):
     """Control: values alone, as for prisms, leave a drafted ring creased."""
     uncured(monkeypatch)
@@ -141,7 +141,7 @@ def test_what_the_slopes_are_for(monkeypatch):
     assert lines_inside(prism.surface).crease < CREASE
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize("wrong", ["equal", "length"])
 def test_what_the_spans_are_for(monkeypatch, wrong):
     """Control: equal spans, and spans by arc length, leave a prism creased."""
@@ -153,7 +153,7 @@ def test_what_the_spans_are_for(monkeypatch, wrong):
     assert lines_inside(result.surface).crease > (3 if wrong == "equal" else 0.3)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_what_flat_weights_are_for(monkeypatch):
     """Control: arcs with the weights that they have leave a prism creased by many degrees."""
     uncured(monkeypatch)
@@ -163,7 +163,7 @@ def test_what_flat_weights_are_for(monkeypatch):
     assert lines_inside(result.surface).crease > 1
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_what_closing_speeds_are_for(monkeypatch):
     """Faces with speeds of their own: run through evenly their chain does not come back to the speed it began with."""
     uncured(monkeypatch)
@@ -181,7 +181,7 @@ def sped_up_face(base, times):
     return run_through(base, lambda t: (1 - e) * t + e * t**2, 2)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_rounded_rim_is_extruded_and_revolved():
     faces = walls(PROFILE)
     top = flanges(rounded_square((3.7, 2.7), (0.7, 1.1, 0.9, 0.5)), base=0.3, width=-0.2)
@@ -208,7 +208,7 @@ def test_a_rounded_rim_is_extruded_and_revolved():
             assert np.abs(points[..., 2] - points[:1, :, 2]).max() < 1e-12
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize(("continuity", "stored"), first_rows(1, [("G2", 75), ("G3", 112), ("G4", 155)]))
 def test_oval_to_round(continuity, stored):
     """4 lines, 4 arcs (two of the lines 2 quarters apart) to 8 arcs of one circle, searched alpha."""
@@ -226,7 +226,7 @@ def test_oval_to_round(continuity, stored):
     assert result.rows_stored == stored
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize("continuity", ["G2", "G4"])
 def test_a_cylinder_in_three_arcs_is_the_cylinder(continuity):
     whole = Base(cylinder(3.0, 0, -2.0, tuple(np.radians([0, 90, 180, 270, 360]))), "u0")
@@ -354,7 +354,7 @@ def test_a_crease_of_the_faces_is_told_and_inherited(degrees):
     assert any(f"creased by {degrees:.2g} degrees" in note for note in result.chain_a.notes())
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_chain_of_one_edge_is_that_edge():
     one, far = walls([line((-4, 0), (4, 0))])[0], Base(wall(line((-3, 0), (3, 1)), base=3.0, height=2.0), "u0")
     assert apart(blend(one, far, **PLAIN), blend(chain([one]), far, **PLAIN)) < 1e-12
@@ -390,7 +390,7 @@ def test_faces_that_meet_within_a_tolerance(size):
             chain(faces)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_an_edge_shorter_than_the_tolerance_is_left_out():
     (start, end), tiny = PROFILE[0][:, :2], 1e-7
     middle = start + tiny * (end - start)
@@ -423,7 +423,7 @@ def test_what_is_no_chain():
         blend(chain([faces[0], *other]), tube_base(), **PLAIN)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize("far", ["box", "tube"])
 def test_corners(far):
     faces = walls(box())
@@ -460,7 +460,7 @@ def corner_turns(surface):
     return np.degrees(np.arctan2(np.linalg.norm(np.cross(one, other), axis=1), np.sum(one * other, axis=1)))
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_neighbours_at_a_corner_share_their_boundary_curve():
     result = blend(chain(walls(box())), chain(moved(walls(box(2.0, 1.5), height=2.0), TILT, (0, 0, 4.0))), **PLAIN)
     plain = result.surface.to_bspline()
@@ -469,7 +469,7 @@ def test_neighbours_at_a_corner_share_their_boundary_curve():
         assert (one.control_points[:, -1] == other.control_points[:, 0]).all()
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize("width", [0.5, 0.1, 0.02])
 def test_flat_bands_that_are_small_beside_the_chain(width):
     """A hundredth of it: its rows would lie too close together, and its spans too, to tell the whole by one bound."""
@@ -487,7 +487,7 @@ def test_flat_bands_that_are_small_beside_the_chain(width):
     assert (np.abs(reach[0]).max(axis=(0, 1)) > outer + 2 * width)[:2].all() == (width < 0.5)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_faces_whose_own_points_round_too_much_are_refused_each_by_its_own_number():
     """Far from the origin: there the faces themselves have no rates of curvature left."""
     away = (1e5, 0.0, 0.0)

@@ -78,7 +78,7 @@ def test_the_blend_does_not_depend_on_the_order_of_the_bases(case, options, v_sc
     assert farthest_apart(one, other) < TOLERANCE
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @given(st.tuples(st.integers(5, 11), st.integers(5, 11)), st.floats(-3.0, 3.0), st.booleans(), st.integers(0, 10**6))
 @examples(10)
 def test_the_order_does_not_matter_for_random_tubes(spans, phase, backwards, seed):

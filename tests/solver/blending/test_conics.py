@@ -94,7 +94,7 @@ def rims(draw):
     return images(points, random_frames(rng, count, rng.uniform(-1, 1, 3) * far)), Basis(degree, knots), full, abs(turn)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @settings(max_examples=40, deadline=None)
 @given(rims(), st.sampled_from([1, 2, 3, 4]))
 def test_any_rim_on_a_conic_is_cured(rim, order):

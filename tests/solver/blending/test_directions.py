@@ -134,7 +134,7 @@ def test_flat_cones_do_not_tell_how_their_rims_circle(sine, tried):
     assert not blend(a, b, v_scale="length").flipped
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_mirrored_directions_turn_equally_and_the_choice_is_the_same_in_any_order():
     a, b = crossed()
     assert len(tied_directions(a, b)) == 2
@@ -154,7 +154,7 @@ def strip(edge, across):
     return BSplineSurface(1, 1, LINE, LINE, [edge, edge + across])
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_open_edges_at_right_angles_take_the_way_that_turns_less():
     # The second strip leaves to the side: one way bends around the corner, the other way twists.
     a = Base(strip([[0, -1, 0], [0, 1, 0]], [-2, 0, 0]), "u0")
@@ -177,7 +177,7 @@ def test_where_one_way_is_refused_the_other_is_taken_and_strict_asks_the_one_tha
     assert any("folds" in warning for warning in twisted.warnings)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_the_stated_problem_is_the_one_that_is_solved():
     a, b = elbow(90)
     assert state_problem(a, b).matched.flipped == blend(a, b).flipped

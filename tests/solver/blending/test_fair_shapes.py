@@ -60,7 +60,7 @@ def test_two_pipes_of_one_radius_are_joined_by_that_pipe():
     np.testing.assert_allclose(np.linalg.norm(points[..., :2], axis=-1), 5.0, rtol=0.01)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize("continuity", ["G2", "G4"])
 def test_an_elbow_of_two_pipes_keeps_four_fifths_of_its_radius(continuity):
     surface, first, last = pipe()
@@ -98,7 +98,7 @@ def same_points(one, two, u, v, **tolerance):
     np.testing.assert_allclose(one.evaluate_grid(u, v), two, **tolerance)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_units_place_order_and_parameters_do_not_matter():
     a, b = sheets()
     first = blend(a, b, **FAIR)

@@ -42,7 +42,7 @@ def test_every_degree_that_carries_the_order_meets_it(seed, order, degree):
         assert contact.relative_jumps().max() < JUDGES_AGREE[order]
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_an_order_less_leaves_a_jump_of_the_next_rate():
     a, b = pair(0)
     result = blend(a, b)
@@ -134,7 +134,7 @@ def test_a_bulge_multiplies_what_was_chosen(continuity):
     assert bulged.active_bounds == ()
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_free_rows_are_certified_and_their_absence_is_said():
     a, b = pair(0)
     assert blend(a, b).objective.rows == "none are free: the contacts prescribe all"
@@ -156,7 +156,7 @@ def test_what_cannot_be_told_far_away_is_no_yes():
         blend(a, b, continuity="G4")
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_every_fourth_knot_is_of_the_union_and_costs_nothing_when_converted():
     for seed in range(5):
         a, b = pair(seed)

@@ -95,7 +95,7 @@ def test_a_blend_leaves_its_contact_within_a_thousandth_of_where_the_curve_begin
             end_on_curve(surface, 0, size * ARC, tangents, 0.25, 0.01 * size)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_eight_degrees_are_added_at_most_and_no_more_than_needed(monkeypatch):
     """Each halves the distance: what is sought is met exactly."""
     tried = []

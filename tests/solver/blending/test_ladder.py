@@ -205,7 +205,7 @@ def test_rows_of_the_last_rung_do_not_know_alpha():
     assert found.along.degree == 9
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_beyond_the_degree_of_kernels_finer_splines_come_first(monkeypatch):
     rng = np.random.default_rng(3)
     rows, along = base(rng, 4, 0.3, degree=6)

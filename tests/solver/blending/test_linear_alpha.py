@@ -185,7 +185,7 @@ def test_the_gradient_is_that_of_the_value(options):
         assert gradient[k] == pytest.approx((4 * fine - coarse) / 3, rel=1e-5, abs=1e-6)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_the_impeller_turns_a_third_as_much():
     pair = impeller_pair()
     stated = state_problem(*pair, **QUINTIC)
@@ -237,7 +237,7 @@ def test_the_gap_is_measured_up_to_the_end_of_any_range():
     assert gap_ratio(state_problem(*pair, **QUINTIC).problem) == pytest.approx(1, abs=1e-12)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_it_is_taken_where_it_pays():
     taken, shares = [], []
     for k in range(12):

@@ -102,7 +102,7 @@ def test_a_known_map_is_what_is_blended(skew, continuity):
     assert np.abs(found.surface.evaluate(np.ones(61), v) - plain.surface.evaluate(np.ones(61), v)).max() > 0.02
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("faces", "others", "pairs"),
     first_rows(
@@ -159,7 +159,7 @@ def test_equal_shares_of_length(faces, others):
     assert angle < 1e-7
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_between_corners_each_side_has_shares_of_its_own():
     faces = walls(box())
     others = [
@@ -209,7 +209,7 @@ def test_maps_go_through_their_points_and_rise(pairs, closed):
         assert function.derivative()(0.0) == pytest.approx(float(function.derivative()(1.0)), rel=1e-7, abs=1e-9)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_what_is_refused():
     a, b = chain(walls(PROFILE)), chain(TUBE)
     with pytest.raises(OptionError, match="found 9 along a chain of 8 edges"):

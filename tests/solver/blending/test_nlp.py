@@ -111,7 +111,7 @@ def test_gradient_agrees_with_sympy(compared):
     np.testing.assert_allclose(found[1].ravel(), expected[1], rtol=0, atol=1e-12 * np.abs(expected[1]).max())
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_hessian_agrees_with_sympy(compared):
     found, expected = compared
     np.testing.assert_allclose(found[2], expected[2], rtol=0, atol=1e-12 * np.abs(expected[2]).max())
@@ -316,7 +316,7 @@ def test_ipopt_is_not_beaten_near_its_answer(seed):
     assert found.kkt_residual < 1e-8
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_energy_of_the_result_is_that_of_the_exact_problem():
     from semispline.derivations.problem import exact_minimum
 

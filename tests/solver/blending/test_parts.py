@@ -37,7 +37,7 @@ def cut_by_hand(surface, edge, line, part):
     return kept, f"{edge[0]}={value!r}{'-' if edge[1] == '1' else '+'}[{low!r},{high!r}]"
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @examples(30)
 @given(
     st.integers(0, 10**6),
@@ -140,7 +140,7 @@ WORDS = ("u=0.2+[0.1,0.7]", "u0[0.25,0.75]")
 NAMED = ["--edge-a", WORDS[0], "--edge-b", WORDS[1]]
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.usefixtures("files")
 def test_the_command_line_takes_the_words():
     run = CliRunner().invoke(app, ["blend", "a.json", "b.json", *NAMED, "-o", "c.json", "--report", "r.json"])

@@ -46,7 +46,7 @@ def test_two_pipes_of_one_radius_are_joined_by_that_pipe(cuts, continuity):
     assert not result.warnings
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize("cuts", [(QUARTER, QUARTER), (HALF, HALF), (FULL, FULL), (FULL, THIRDS)])
 @pytest.mark.parametrize("continuity", ["G1", ("G1", "G2")])
 def test_free_rows_do_not_pull_pipes_together(cuts, continuity):
@@ -135,7 +135,7 @@ def test_a_huge_alpha_is_no_number():
         blend(Base(a, "u1"), Base(b, "u0"), alpha=1e14)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_equal_weights_cancel_to_the_last_bit():
     rng = np.random.default_rng(5)
     net = np.stack(np.meshgrid(np.arange(4.0), np.arange(5.0), indexing="ij"), axis=-1)
@@ -149,7 +149,7 @@ def test_equal_weights_cancel_to_the_last_bit():
         assert np.array_equal(one.control_points, two.control_points)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_what_both_sides_share_is_left_and_what_they_do_not_is_cured():
     a = cylinder(5.0, 0.0, 4.0, FULL)
     same = blend(Base(a, "u1"), Base(cylinder(5.0, 14.0, 4.0, FULL), "u0"))
@@ -177,7 +177,7 @@ def test_a_parabola_is_not_called_a_circle():
     assert worst_inside(result.creases) is None
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_without_the_cure_a_tilted_ring_creases(monkeypatch):
     """The control: nine points against seven, no cure."""
     from semispline.solver.blending import problem
@@ -228,7 +228,7 @@ def test_weights_say_how_they_were_made_tame():
     assert blend(Base(plain, "u1"), Base(transform(plain, np.eye(3), (0, 3, 1)), "u0")).weights == (None, None)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_the_certificate_is_about_the_quadrature_form():
     a = cylinder(5.0, 0.0, 4.0, QUARTER)
     b = transform(meridian(2.0, (4.0, 12.0), (-0.4, 1.0), QUARTER), np.eye(3), (1.0, 0.0, 2.0))
@@ -252,7 +252,7 @@ def test_methods_for_polynomials_say_so(method):
         blend(Base(a, "u1"), Base(b, "u0"), method=method)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_units_and_a_common_factor_of_the_weights_change_nothing():
     a, b, _ = random_pair(11)
     first = blend(Base(a, "u1"), Base(b, "u0"))
@@ -283,7 +283,7 @@ def check_pair(seed):
 
 
 # Of the last two rounding hid contact of fourth order: weights of the fifth power.
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize("seed", [*first_ones(5, range(24)), 282, 338])
 def test_random_rational_pairs(seed):
     check_pair(seed)
@@ -296,7 +296,7 @@ def test_five_hundred_random_rational_pairs(first):
         check_pair(seed)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize(("change", "told"), [(0.0, True), (1e-7, False)])
 def test_what_rounding_may_hide_is_told_only_where_it_is_within_the_limit(change, told):
     """The fifth row decides of the second rate: moved a little, its jump is above the limit and below the bound."""
@@ -315,7 +315,7 @@ def test_what_rounding_may_hide_is_told_only_where_it_is_within_the_limit(change
         assert 1e-7 < found.second_rate_jump_relative < 0.03
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_contact_by_the_referee_is_that_of_the_written_surface():
     """The same blend as an ordinary rational B-spline: one judge, another representation."""
     a, b, _ = random_pair(3)

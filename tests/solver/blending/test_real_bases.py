@@ -136,7 +136,7 @@ def test_a_fold_is_a_warning_and_an_error_if_strict():
             blend(a, b, alpha=12.0, strict=True)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize("v_scale", ["unit", "length"])
 @given(seed=st.integers(0, 10**6))
 @examples(15)
@@ -158,7 +158,7 @@ def test_units_of_v_and_order_of_bases_do_not_matter(v_scale, seed):
     np.testing.assert_allclose(there, here, atol=1e-6)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_paper_scale_does_depend_on_units_of_v():
     a, b = facing_pair(np.random.default_rng(0), edges=("u0", "u0"), backwards=(False, False))
     plain = blend(a, b)
@@ -194,7 +194,7 @@ def test_knots_that_do_not_fit_are_refused(options, message):
         blend(a, b, **options)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_orientation_is_the_same_every_time_and_either_way(whole):
     for seed in range(10 if whole else 3):
         a, b = facing_pair(np.random.default_rng(seed))

@@ -38,7 +38,7 @@ def random_table(rng):
     return table
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @given(st.integers(0, 10**6))
 def test_the_proof_holds_and_no_sample_is_below(seed):
     table = random_table(np.random.default_rng(seed))
@@ -279,7 +279,7 @@ def test_bases_that_continue_each_other_have_no_energy():
     assert proved.alpha2 == pytest.approx(2, rel=1e-6)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_alpha_can_be_set():
     a, b = facing_pair(np.random.default_rng(3))
     natural = blend(a, b, alpha="natural")
@@ -296,7 +296,7 @@ def test_alpha_can_be_set():
     assert local.energy == pytest.approx(set_one.energy, rel=1e-8)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_the_box_can_be_set():
     a, b = facing_pair(np.random.default_rng(9))
     narrow = blend(a, b, box=(0.9, 1.1))
@@ -385,7 +385,7 @@ def floor_and_wall():
     return Base(floor, "u1"), Base(wall, "u0")
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_bfgs_outside_of_the_box_says_so():
     # In a box that its answer misses the paper's search has less energy than any admissible blend, and says why.
     a, b = floor_and_wall()

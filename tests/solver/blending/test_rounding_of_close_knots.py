@@ -180,7 +180,7 @@ def test_where_another_energy_is_minimised_its_rounding_counts_too():
     assert not blend(a, b).warnings
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @given(
     st.integers(1, 4),
     st.integers(-1, 2),
@@ -216,7 +216,7 @@ NARROW = {
 
 
 # Over a domain of length 1 both scales are the same.
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize("v_scale", first_ones(1, ["paper", "unit"]))
 @pytest.mark.parametrize("continuity", STRAIGHT)
 @pytest.mark.parametrize("place", NARROW)
@@ -300,7 +300,7 @@ def test_knots_that_stay_in_the_smooth_rows(degree, inner, kept):
     np.testing.assert_array_equal(found.knots, clamped(kept, degree, 0.0, 1.0))
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_good_blend_has_no_such_warning():
     result = blend(floor(3, [0.2, 0.5, 0.51]), WALL)
     assert not result.warnings
@@ -367,7 +367,7 @@ def near_bases(draw, side):
     return BSplineSurface(p, q, knots_u, knots_v, np.stack([-x, y, z], axis=2))
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @given(st.data())
 @examples(60)
 def test_near_knots_end_in_a_result_or_a_reason(data):

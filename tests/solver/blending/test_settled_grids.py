@@ -48,7 +48,7 @@ def refined(problem, found, times):
     return objective.j(end, at.value), np.exp(further.x - end)[[0, 2]]
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_finer_grid_chooses_the_same(whole):
     # At least 97 of 100 choices within 1 %, and every measure.
     moved = []
@@ -67,7 +67,7 @@ def narrow_pair():
     return case("narrow-spans-a", "u1"), case("narrow-spans-b", "u0")
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_where_spans_are_narrow_the_grid_is_refined_until_it_settles(narrow_pair):
     found = solve_fair(state_problem(*narrow_pair, **FAIR, continuity="G1").problem)
     assert found.settled
@@ -79,7 +79,7 @@ def test_where_spans_are_narrow_the_grid_is_refined_until_it_settles(narrow_pair
     assert not [w for w in result.warnings if "was minimised" in w]
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_with_a_middle_curve_the_judge_settles_where_the_search_does(narrow_pair):
     # Two grids of the judge met at 56.05: what they missed in one span they had too much in another.
     result = blend(*narrow_pair, continuity="G1")
@@ -88,7 +88,7 @@ def test_with_a_middle_curve_the_judge_settles_where_the_search_does(narrow_pair
     assert result.objective.value == pytest.approx(result.shape.fairness.value, rel=1e-3)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_what_does_not_settle_is_said(narrow_pair, monkeypatch):
     # With the first of the finer grids alone.
     monkeypatch.setattr(fair_search, "_MOST", 1)

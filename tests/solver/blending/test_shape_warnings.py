@@ -218,7 +218,7 @@ def test_a_place_where_it_meets_itself_is_named():
     assert not [text for text in warnings_of(surface) if "meets itself" in text]
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_base_that_is_passed_through_is_named():
     wall = revolved(line((1, -4), (1, 0)))
     # From the rim outwards, down outside, and inwards through the wall.
@@ -254,7 +254,7 @@ def test_a_blend_that_turns_steeply_is_warned_of_and_strict_refuses_it():
         blend(a, b, **options, strict=True)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_pipe_and_cap():
     a, b = (
         Base(read_surface(CASES / name), edge) for name, edge in (("pipe_poly.json", "v1"), ("dome_poly.json", "v0"))

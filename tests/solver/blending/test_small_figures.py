@@ -284,7 +284,7 @@ def tied(monkeypatch, judged):
     monkeypatch.setattr(pipeline, "_judged", judged)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_where_two_directions_tie_only_the_less_turning_one_is_judged(monkeypatch):
     assert not blend(*strips()).flipped
     assert not state_problem(*strips()).matched.flipped

@@ -43,7 +43,7 @@ def assert_same(bases, method, scale, offset, **options):
     assert other.energy / scale**2 == pytest.approx(plain.energy, rel=limit, abs=1e-12 * size**2)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @examples(30)
 @given(
     st.integers(0, 10**6),
@@ -73,7 +73,7 @@ def test_a_change_of_units_alone_costs_no_digits(method, unit):
     assert np.abs(stacked(other) / unit - stacked(plain)).max() <= 1e-13 * size_of(bases)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize("method", ["reduced", "casadi"])
 @pytest.mark.parametrize("middle_curves", [0, 1])
 def test_closed_bases(method, middle_curves):

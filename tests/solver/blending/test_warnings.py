@@ -191,7 +191,7 @@ def facing(seed, **options):
     return blend_by_default(problem.a, problem.b, **options)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize("given", [1e6, -1e6])
 def test_a_p2_beyond_all_bounds_is_named_as_the_cause(given):
     with pytest.raises(ContactError, match=r"p2 of side a is -?1e\+06, which is far beyond its alpha\^2") as refused:
@@ -213,7 +213,7 @@ def test_what_strains_is_a_hundred_alpha_squared(times, said):
     assert strained_by(BlendOptions(), found, 1) == ""
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_strict_does_not_advise_what_is_worse():
     with pytest.raises(FoldError, match=r"; look at the warnings, or blend without strict$") as refused:
         facing(7, bulge=2, strict=True)
@@ -221,7 +221,7 @@ def test_strict_does_not_advise_what_is_worse():
     assert "the blend folds: " in str(refused.value)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_what_was_minimised_is_before_the_bulge(capsys):
     for bulge in (1.0, (1.0, 1.2)):
         print_result(facing(7, bulge=bulge))

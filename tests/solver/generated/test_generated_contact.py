@@ -50,7 +50,7 @@ def arguments(name, rng):
     return values
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize("name", ROUTINES)
 def test_numpy_casadi_and_exact_substitution_agree(name):
     rng = np.random.default_rng(7)
@@ -121,7 +121,7 @@ def test_a_blend_with_generated_rows_follows_the_base_in_scipy(contact):
         np.testing.assert_allclose(blend(at_blend, d), expected, rtol=0, atol=1e-14 * growth * np.abs(control).max())
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize("order", [1, 2, 3])
 def test_casadi_derivatives_of_rows_are_those_of_sympy(order):
     h, H = span_symbols(order), span_symbols(order, "H")

@@ -86,7 +86,7 @@ def lagrangians():
     return ca.Function("L", [x], [function, gradient, hessian]), lagrangian(exact, multipliers.tolist()), point
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_gradient_and_hessian_are_those_of_sympy(lagrangians):
     function, exact, point = lagrangians
     value, gradient, hessian = (np.array(v, dtype=float) for v in function(point))

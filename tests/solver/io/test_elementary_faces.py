@@ -292,7 +292,7 @@ def test_what_the_kernel_approximates_says_how_well(tmp_path):
     assert entry.deviation == pytest.approx(true, rel=0.02)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_surface_that_is_rough_itself_is_approximated_too(tmp_path):
     """Demanded smoother than it is, the kernel's surface was off by 2e-3, and said 2e-5."""
     rng = np.random.default_rng(1)
@@ -309,14 +309,14 @@ def test_a_surface_that_is_rough_itself_is_approximated_too(tmp_path):
     assert np.linalg.norm(surface.evaluate(u, v) - expected, axis=1).max() < 1e-5
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_revolved_offset_curve_is_approximated(tmp_path):
     curve = Geom_OffsetCurve(Geom_TrimmedCurve(Geom_Ellipse(MERIDIAN.Position(), 2.0, 1.0), 0.0, 2.0), 0.1, TILTED)
     face = written(tmp_path / "f.brep", faced(Geom_SurfaceOfRevolution(curve, UPRIGHT), 0.0, 1.0, 0.0, 2.0))
     assert 0 < face.deviation() < 1e-5
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.usefixtures("read_here")
 def test_the_words_reach_list_convert_and_blend(tmp_path):
     geometry, _ = offset_extrusion()
@@ -339,7 +339,7 @@ def test_the_words_reach_list_convert_and_blend(tmp_path):
     assert not (tmp_path / "b.json").exists()
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.usefixtures("read_here")
 def test_every_rational_face_of_real_files_is_read(shared):
     found = [

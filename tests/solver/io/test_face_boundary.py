@@ -226,7 +226,7 @@ def test_edges_of_rhino_count_as_natural_up_to_a_part_of_the_size(tmp_path, part
     assert (face.boundary() is None) is not trimmed
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_the_boundary_comes_out_of_the_process_that_reads(tmp_path):
     whole, cut = rectangle(sheet(start=100.0), 0.0, 1.0, 0.0, 1.0), rectangle(sheet(), 0.0, 0.7, 0.0, 1.0)
     path = write(tmp_path / "two.step", whole, cut)

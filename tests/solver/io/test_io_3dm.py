@@ -74,7 +74,7 @@ def test_equal_weights_are_polynomial(tmp_path):
     assert read_surface(tmp_path / "s.3dm").weights is None
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_surfaces_of_breps_are_numbered_in_file_order_and_other_objects_do_not_count(tmp_path):
     first = spline([0, 0, 0, 1, 1, 1], [0, 0, 1, 1], False)
     last = spline([0, 0, 0, 1, 1, 1], [0, 0, 1, 1], True, shift=10.0)
@@ -101,7 +101,7 @@ def test_a_trimmed_plane_is_trimmed(tmp_path):
     assert [e.trimmed for e in entries] == [False, True]
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_closed_surfaces_are_marked(tmp_path):
     cylinder = rhino3dm.NurbsSurface.CreateFromCylinder(rhino3dm.Cylinder(rhino3dm.Circle(2.0), 3.0))
     save(tmp_path / "s.3dm", cylinder)
@@ -113,7 +113,7 @@ def test_closed_surfaces_are_marked(tmp_path):
     np.testing.assert_allclose(np.hypot(points[..., 0], points[..., 1]), 2.0, rtol=1e-15)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_surfaces_of_breps_are_called_by_their_shape(tmp_path):
     axis = rhino3dm.Circle(rhino3dm.Point3d(1, 2, 3), 2.0)
     box = rhino3dm.BoundingBox(rhino3dm.Point3d(0, 0, 0), rhino3dm.Point3d(1, 2, 3))

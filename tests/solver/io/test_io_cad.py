@@ -171,7 +171,7 @@ def test_surfaces_in_different_units_come_in_that_of_the_first(tmp_path):
     np.testing.assert_array_equal(c.surface.control_points, patch().control_points)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_impeller_faces_of_the_first_issue(impeller):
     entries = [describe(number, face) for number, face in enumerate(impeller.faces)]
     assert len(entries) == 277
@@ -183,7 +183,7 @@ def test_impeller_faces_of_the_first_issue(impeller):
     assert all(entry.problem is None for entry in entries)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_impeller_pair_through_the_one_entry(capfd):
     a, b = read_surfaces([f"{IMPELLER}#102", f"{IMPELLER}#131"])
     assert a.unit == "mm"

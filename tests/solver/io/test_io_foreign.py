@@ -36,7 +36,7 @@ def listed(path):
     return CliRunner().invoke(app, ["list", str(path)])
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @linux
 @pytest.mark.parametrize("name", ["mem3g.3dm", "loop28.brep"])
 def test_a_damaged_file_is_refused_within_limits(name):
@@ -118,7 +118,7 @@ def test_a_reader_killed_from_outside_says_nothing_against_the_file(monkeypatch)
     thread.join()
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @linux
 def test_a_command_that_is_killed_leaves_no_reader():
     code = f"from semispline.solver.io import foreign\nforeign.limits = lambda path: (600, 4096)\n{ENTRY}"
@@ -157,7 +157,7 @@ def line():
     return rhino3dm.LineCurve(rhino3dm.Point3d(0, 0, 0), rhino3dm.Point3d(1, 0, 0))
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_3dm_file_without_surfaces_says_what_it_holds(tmp_path):
     path = tmp_path / "x.3dm"
     save_3dm(path, mesh(), rhino3dm.SubD(), mesh(), curve(), line())
@@ -171,7 +171,7 @@ def test_a_3dm_file_without_surfaces_says_what_it_holds(tmp_path):
         read_surface(path)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_what_is_listed_beside_surfaces(tmp_path):
     path = tmp_path / "x.3dm"
     plane = rhino3dm.PlaneSurface(rhino3dm.Plane.WorldXY(), rhino3dm.Interval(0, 4), rhino3dm.Interval(0, 4))

@@ -224,7 +224,7 @@ def test_meshes_of_rational_rows_lie_on_the_surface(tmp_path, suffix):
     np.testing.assert_allclose(np.hypot(mesh.points[:, 0], mesh.points[:, 1]), radius, rtol=2e-6)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.usefixtures("read_here")
 def test_pictures_conversion_and_measuring_take_rational_rows(tmp_path):
     source = tmp_path / "tube.json"

@@ -36,7 +36,7 @@ def test_faces_of_a_model(shared, name, faces, rational, trimmed):
     assert (len(found), sum(e.rational for e in found), sum(e.trimmed for e in found)) == (faces, rational, trimmed)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.usefixtures("read_here")
 def test_two_faces_of_a_model_are_joined(shared):
     model = shared / "data" / "v4_SaltAndPepper.3dm"

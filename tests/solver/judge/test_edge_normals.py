@@ -94,7 +94,7 @@ def test_two_places_are_named_in_order_and_a_stretch_once():
     assert [place.parameter for place in found] == pytest.approx([0.2, 0.8], abs=1e-6)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_regular_edges_have_none():
     for seed in range(20):
         surface = patch(np.random.default_rng(seed), degrees=(3, 3), counts=(5, 7))

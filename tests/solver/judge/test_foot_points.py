@@ -120,7 +120,7 @@ def test_a_part_of_a_curve_is_not_the_curve():
         assert contact.gap == pytest.approx(1.0)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @settings(max_examples=25, deadline=None)
 @given(seed=st.integers(0, 2**32 - 1), e=st.floats(-0.9, 0.9), flipped=st.booleans())
 def test_other_speeds_change_nothing_but_residuals(seed, e, flipped):
@@ -184,7 +184,7 @@ def test_a_curve_that_crosses_itself_keeps_its_order():
     np.testing.assert_allclose(np.mod(found.along_b(s) - (s - 0.1 * np.sin(TURN * s)) + 0.5, 1), 0.5, atol=1e-13)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_thousands_of_spans():
     knots = np.linspace(0, 1, 4001)
     angle = TURN * knots
@@ -208,7 +208,7 @@ def test_parameters_of_feet():
     np.testing.assert_allclose(t, s, atol=1e-15)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_bases_go_on_from_feet():
     # A tube between two pipes, its own circle smooth, theirs not.
     low, high = cylinder(full_circle(4), heights=(-1, 0)), cylinder(full_circle(3), heights=(1, 2))

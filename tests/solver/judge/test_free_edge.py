@@ -38,7 +38,7 @@ def test_off_and_angle_are_what_they_are(step, rise):
     assert found.angle_degrees == pytest.approx(np.degrees(np.arctan(rise)), abs=1e-5)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @given(st.floats(0, 5))
 def test_what_folds_back_over_the_kept_part_turns_by_more_than_a_right_angle(rise):
     back = measure_face_contact(ramp(0.0, rise, (-1.0, 1.0)), DIAGONAL)

@@ -111,7 +111,7 @@ def test_rounding_of_derivatives_by_hand(degree, h):
     assert found["curvature_jump_relative"] == pytest.approx(one * second / 5e-4, rel=1e-12, abs=1e-20)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_what_rounding_does_is_allowed_and_hardly_more():
     # A smooth surface cut in two, far from the origin: the parts meet but for the rounding of their control points.
     worst = dict.fromkeys(MEASURES, 0.0)

@@ -49,7 +49,7 @@ def test_nothing_is_found_where_nothing_meets(surface):
     assert found.seen_from is None
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_seam_that_is_off_by_rounding():
     pipe = cylinder(12, 1.0, (0.0, 3.0))
     for off in (1e-15, 1e-12):
@@ -199,7 +199,7 @@ def test_units_and_offsets():
         assert all(m.point[0] - offset == pytest.approx(-0.2 * scale, rel=1e-5) for m in found)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_flat_ring_that_covers_itself():
     """Sheets in one plane have no edge that pierces the other; they meet all the same."""
     found = searched(revolved(line((1, 0), (2, 0)), 0, 450))
@@ -322,7 +322,7 @@ def test_other_samples_on_the_contact_are_false_hits():
     assert len(crossings(mesh, apart).first) > 10
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_closed_rims_with_seams_anywhere():
     rng = np.random.default_rng(2)
     a = Base(tube(rng, 8, noise=0.02), "u1")
@@ -334,7 +334,7 @@ def test_closed_rims_with_seams_anywhere():
     assert closed_directions(surface) == (False, True)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_tube_through_the_wall_of_a_closed_base():
     """Around a rim and away from it, bent over and in through the wall; parameters are the base's."""
     wall = revolved(line((1, -4), (1, 0)))
@@ -350,7 +350,7 @@ def test_a_tube_through_the_wall_of_a_closed_base():
         assert wall.evaluate(*([x] for x in meeting.other))[0] == pytest.approx(meeting.point, abs=1e-9)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_what_is_certified_is_not_searched():
     for surface in sheets(7, 4):
         found = measure_meets(surface)

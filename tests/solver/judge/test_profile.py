@@ -31,7 +31,7 @@ def profile_of(a, b, order=4):
     return measure_profile(a, b, measure_contact(a, b, order=order))
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @given(st.lists(st.floats(0, 3), min_size=2, max_size=5).filter(lambda h: max(h) > 1e-3))
 def test_the_mean_of_a_gap_is_its_integral(heights):
     # The mean of a Bezier function is that of its coefficients.
@@ -42,7 +42,7 @@ def test_the_mean_of_a_gap_is_its_integral(heights):
     np.testing.assert_allclose(profile.points[:, 1], profile.length, atol=1e-6)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @given(st.lists(st.floats(0, 3), min_size=3, max_size=5).filter(lambda h: max(h) > 1e-3))
 def test_the_profile_holds_the_worst_of_the_contact(heights):
     a, b = strips(heights)

@@ -258,7 +258,7 @@ def test_contacts_of_analytic_surfaces(edge):
         assert contact.rate_jump <= 1e-11
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @settings(max_examples=40, deadline=None)
 @given(seed=st.integers(0, 2**32 - 1), steep=st.floats(0.0, 2.0), edge=st.sampled_from(["u0", "u1", "v0", "v1"]))
 def test_rounding_of_quotients_stays_below_its_bound(seed, steep, edge):
@@ -389,7 +389,7 @@ def test_a_jump_of_curvature_is_known():
     assert turned.curvature_jump == pytest.approx(0.5, rel=1e-12)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_rational_patches_meet_nothing_or_are_found_to():
     quarter = cylinder(arcs([0.0, 1.2]))
     assert measure_meets(quarter).answer("itself") is False

@@ -102,7 +102,7 @@ def test_sections_without_length_are_refused():
         measure_turn(BSplineSurface(1, 1, k, k, [[[0, 0, 0], [0, 1, 0]], [[0, 0, 0], [0, 1, 0]]]))
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_hardly_changes_when_samples_double():
     for surface in [*sheets(7, 8), extruded(bent(0.05), 1.0), extruded(bent(0.3), 1.0, along="v")]:
         once, twice = (turn_on_samples(surface, fineness).degrees for fineness in (1, 2))

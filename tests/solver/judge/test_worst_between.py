@@ -77,7 +77,7 @@ def test_a_worst_place_at_a_knot_is_found():
     assert contact.angle_degrees == pytest.approx(45, abs=1e-6)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @settings(max_examples=60, deadline=None)
 @given(seed=st.integers(0, 2**32 - 1))
 def test_never_less_than_samples_and_hardly_less_than_the_worst(seed):

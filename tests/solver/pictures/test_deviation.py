@@ -56,7 +56,7 @@ def test_far_from_the_origin_nothing_is_lost(tmp_path):
     np.testing.assert_allclose(true_face(tmp_path / "a.json").distances(points), [1e-3, 2e-3, 3], atol=5e-9)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_pipe_around_a_pipe(tmp_path):
     write_surface(tmp_path / "pipe.json", cylinder(full_circle(4)))
     face = true_face(tmp_path / "pipe.json")
@@ -80,7 +80,7 @@ def pair(tmp_path):
     return tmp_path / "blend.step", tmp_path / "true.step"
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_show_says_and_colors_the_distance(pair, tmp_path):
     blend, true = pair
     out = tmp_path / "p.png"
@@ -105,7 +105,7 @@ def test_show_says_and_colors_the_distance(pair, tmp_path):
     assert "largest 0.5 mm" in done.stdout
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_the_file_of_the_true_face_stands_around(block, tmp_path):
     write_surface(tmp_path / "lid.step", plane([-2, -2, 5], [4, 0, 0], [0, 4, 0]), "mm")
     path, number = block

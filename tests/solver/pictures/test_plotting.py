@@ -62,7 +62,7 @@ def white(r, g, b):
     return (r > 250) & (g > 250) & (b > 250)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_bases_are_green_the_blend_red_on_white(tmp_path):
     path = tmp_path / "p.png"
     colors = BASE_COLOR, BLEND_COLOR, BASE_COLOR
@@ -81,7 +81,7 @@ def test_bases_are_green_the_blend_red_on_white(tmp_path):
     assert len(columns) > 0.85 * 320
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_every_control_curve_is_seen_in_its_own_color(tmp_path):
     path = tmp_path / "p.png"
     render([Drawn(semistructured(), BLEND_COLOR, control_points=True)], path, size=(800, 600))
@@ -189,7 +189,7 @@ def test_a_picture_that_cannot_be_made_leaves_the_old_one(tmp_path, monkeypatch)
     assert [p.name for p in tmp_path.iterdir()] == ["p.png"]
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_degenerate_surfaces_can_be_drawn(tmp_path):
     collapsed = wave().control_points.copy()
     collapsed[0] = collapsed[0, 0]
@@ -201,7 +201,7 @@ def test_degenerate_surfaces_can_be_drawn(tmp_path):
         render([line], tmp_path / "q.png", size=SIZE)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_show_without_a_display_says_nothing(tmp_path):
     """In a process of its own: VTK warns on standard error when it looks for a display."""
     write_surface(tmp_path / "a.json", wave())
@@ -271,7 +271,7 @@ def colored(path, color):
     return columns, rows
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_each_view_has_its_place_and_its_side(tmp_path):
     # A red wall at the left of a green floor: from the front, from above.
     floor = BSplineSurface(1, 1, K, K, [[[x, y, 0] for y in (0, 4.0)] for x in (0, 4.0)])
@@ -291,7 +291,7 @@ def test_each_view_has_its_place_and_its_side(tmp_path):
     assert ((columns >= 320) & (rows < 240)).mean() > 0.9
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_names_stand_where_faces_are_seen(tmp_path):
     near = BSplineSurface(1, 1, K, K, [[[x, y, 1.0] for y in (0, 4.0)] for x in (0, 4.0)])
     # Hidden in part, and wholly.
@@ -315,7 +315,7 @@ def test_names_stand_where_faces_are_seen(tmp_path):
     assert (np.abs(columns[:, None] - middles).min(axis=1) < 20).all()
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_edges_of_one_face_are_all_named(tmp_path):
     lines = natural_edges(flat())
     found = render(
@@ -329,7 +329,7 @@ def test_edges_of_one_face_are_all_named(tmp_path):
     assert (found.unseen, found.unnamed_edges) == (("a",), 4)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_edges_behind_their_own_face_are_not_named(tmp_path):
     # Of a whole cylinder about z that begins at x = 1: from the left the seam is behind the face that it closes.
     wall = revolve(BSplineCurve(1, K, [[1.0, 0, 0], [1, 0, 2]]), [0, 0, 0], [0, 0, 1])
@@ -340,7 +340,7 @@ def test_edges_behind_their_own_face_are_not_named(tmp_path):
     assert hidden == {"right": 0, "left": 2}
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_what_is_trimmed_away_is_not_drawn(tmp_path):
     half = np.array([[0.0, 0], [0.5, 0], [0.5, 1], [0, 1]])
     mesh = grid_within(flat(), [half], [False, False])

@@ -26,7 +26,7 @@ HYPERBOLA = polynomial(x2y2=1, x1y1=-2, x0y0=1)
 PARABOLA = polynomial(x2y0=1, x1y2=-2, x0y4=1)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize("box", [BOX, ADMISSIBLE])
 @pytest.mark.parametrize("table", [CIRCLE, HYPERBOLA, PARABOLA], ids=["circle", "hyperbola", "parabola"])
 @pytest.mark.parametrize("level", [0.0, 5.0])
@@ -39,7 +39,7 @@ def test_a_curve_of_equal_minima_is_proved(table, box, level):
     assert level - 1e-10 <= certificate.bound <= level
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_slight_tilt_of_a_circle_is_followed_to_its_lowest_point():
     # (x^2 + y^2 - 1)^2 + e x is least at y = 0, 4 x (x^2 - 1) = -e: x = -1 - e / 8 up to e^2.
     tilt = 1e-9
@@ -49,7 +49,7 @@ def test_a_slight_tilt_of_a_circle_is_followed_to_its_lowest_point():
     assert certificate.bound == pytest.approx(-tilt, abs=1e-13)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @examples(5)
 @given(st.lists(st.integers(-3, 3), min_size=5, max_size=5).filter(lambda h: h[2] and h[4]), st.integers(-3, 3))
 def test_squares_of_random_conics_are_proved(h, mixed):

@@ -46,7 +46,7 @@ def cuts(draw):
     return patch, np.clip(lo + (hi - lo) * np.array(fractions), lo, hi), direction, rng
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @settings(max_examples=60, deadline=None)
 @given(cuts())
 def test_both_parts_are_the_patch(cut):

@@ -47,7 +47,7 @@ def test_no_point_of_a_grid_is_nearer(seed):
         assert np.abs(np.linalg.norm(at - target, axis=1) - found.distance).max() <= 1e-9
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @settings(max_examples=25)
 @given(bspline_surfaces(most=2), points)
 def test_no_point_of_a_grid_is_nearer_whatever_the_knots(surface, target):
@@ -56,7 +56,7 @@ def test_no_point_of_a_grid_is_nearer_whatever_the_knots(surface, target):
     )
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @settings(max_examples=15)
 @given(semistructured_surfaces(degrees=(1, 3)), points)
 def test_semistructured_surfaces_too(surface, target):
@@ -65,7 +65,7 @@ def test_semistructured_surfaces_too(surface, target):
     )
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @settings(max_examples=25)
 @given(curves(), points, st.booleans(), st.integers(0, 2**32 - 1))
 def test_no_sample_of_a_curve_is_nearer(curve, target, rational, seed):
@@ -93,7 +93,7 @@ def test_open_cascade_finds_no_other_distance(seed):
         assert closest_point(surface, target).distance <= theirs.Value() + 1e-9
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @settings(max_examples=30)
 @given(points)
 def test_distances_to_a_sphere_a_torus_and_a_circle_are_known(target):

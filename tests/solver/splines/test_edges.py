@@ -143,7 +143,7 @@ def test_a_semistructured_surface_has_no_way_across_its_seam_in_u():
         cut_to_edge(pipe, "v0[0.75,1.25]")
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @laws
 @given(surfaces(), SEEDS, st.data())
 def test_what_is_cut_off_is_that_part_of_the_surface(surface, seed, data):

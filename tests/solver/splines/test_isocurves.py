@@ -36,7 +36,7 @@ def test_the_control_points_are_those_of_open_cascade(surface, where, name):
         assert np.ptp(curve.weights / weights) <= 1e-12 * (curve.weights / weights).max()
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @settings(max_examples=25)
 @given(semistructured_surfaces(), st.floats(0, 1), st.booleans())
 def test_curves_of_a_semistructured_surface_lie_on_it(surface, where, rational):

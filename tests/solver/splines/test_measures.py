@@ -43,7 +43,7 @@ def test_a_coarse_tolerance_is_stated_as_such_and_costs_less():
     assert abs(rough.value - fine.value) <= rough.error
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @settings(max_examples=15)
 @given(curves(degrees=(1, 4)))
 def test_lengths_agree_with_adaptive_quadrature(curve):
@@ -100,7 +100,7 @@ def test_a_cusp_and_a_fold_are_measured_too():
     assert abs(folded.value - 2 * length) <= folded.error <= 4e-12
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_fold_at_an_odd_place_ends_with_the_error_that_was_reached():
     # z(u) = u (u - 1/3 - v / 7) lies in a plane, folded along a slanted line.
     v = np.array([0, 1.0])
@@ -115,7 +115,7 @@ def test_a_fold_at_an_odd_place_ends_with_the_error_that_was_reached():
     assert abs(found.value - exact) <= found.error
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @settings(max_examples=15)
 @given(st.floats(-6, 6), st.floats(-3, 3))
 def test_units_and_parameters_do_not_matter(size, length):

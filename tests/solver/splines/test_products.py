@@ -39,7 +39,7 @@ def pairs(draw):
     return first, second, np.random.default_rng(draw(st.integers(0, 2**32 - 1)))
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @settings(max_examples=60, deadline=None)
 @given(pairs())
 def test_the_product_is_the_product(drawn):

@@ -100,7 +100,7 @@ def unchanged(changed, surface, seed, orders=ORDERS):
 # --- evaluation -------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @laws
 @given(rational_surfaces(), SEEDS)
 def test_points_and_derivatives_are_those_of_scipy(surface, seed):
@@ -112,7 +112,7 @@ def test_points_and_derivatives_are_those_of_scipy(surface, seed):
         agree(surface.evaluate_grid(u, v, du, dv), expected, surface, du, dv)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @settings(max_examples=15, deadline=None)
 @given(rational_surfaces(degrees=(1, 3), most=1), st.floats(0, 1), st.floats(0, 1))
 def test_points_and_derivatives_are_those_of_the_definition(surface, s, t):
@@ -132,7 +132,7 @@ def test_a_curve_and_its_derivatives_are_those_of_the_definition(curve, v):
         agree(curve.evaluate([v], order), exact, as_surface, 0, order)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @laws
 @given(rational_surfaces(degrees=(1, 4)), SEEDS)
 def test_conversion_gives_geomdl_the_same_surface(surface, seed):
@@ -168,7 +168,7 @@ def test_rows_of_one_space_keep_their_numbers_in_both_directions():
 # --- what weights may not matter for ----------------------------------------------------------------------------
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @laws
 @given(semistructured_surfaces(), SEEDS, st.sampled_from([1.0, 0.3, 7e5]))
 def test_equal_weights_are_none(surface, seed, weight):
@@ -176,7 +176,7 @@ def test_equal_weights_are_none(surface, seed, weight):
     unchanged(replace(surface, control_curves=rows), surface, seed)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @laws
 @given(rational_surfaces(degrees=(1, 4)), SEEDS, st.floats(0.2, 5), st.floats(0.2, 5))
 def test_a_common_factor_of_all_rows_is_none(surface, seed, at_start, at_end):
@@ -213,7 +213,7 @@ SAME_SURFACE = {
 }
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize("operation", SAME_SURFACE.values(), ids=SAME_SURFACE.keys())
 @settings(max_examples=20, deadline=None)
 @given(surface=rational_surfaces(degrees=(1, 4)), seed=SEEDS)
@@ -222,7 +222,7 @@ def test_an_operation_changes_no_point_and_no_derivative(operation, surface, see
         unchanged(piece, surface, seed)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @laws
 @given(rational_surfaces(degrees=(1, 4)), SEEDS)
 def test_reversal_mapping_and_affine_maps(surface, seed):
@@ -241,7 +241,7 @@ def test_reversal_mapping_and_affine_maps(surface, seed):
     assert (by_scipy(surface, u, v) <= high + 1e-14).all()
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @laws
 @given(rational_curves(degrees=(1, 5)), st.floats(0.1, 0.9), SEEDS)
 def test_operations_on_a_curve_change_no_point(curve, at, seed):
@@ -414,7 +414,7 @@ def test_the_stated_distance_is_never_too_small_and_not_far_too_large(curve, see
     assert deviation_bound([curve.degree], curve.homogeneous, curve.homogeneous) == 0
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @laws
 @given(rational_curves(degrees=(1, 4), most=0), rational_curves(degrees=(1, 4), most=0), SEEDS)
 def test_merged_knots_of_rational_rows_say_how_far_points_moved(one, other, seed):

@@ -62,7 +62,7 @@ def attempt(call):
         return None
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @settings(max_examples=60)
 @given(curves(degrees=(2, 5)), st.booleans(), seeds)
 def test_the_deviation_of_curves_is_never_exceeded(curve, rational, seed):
@@ -97,7 +97,7 @@ def test_the_bound_is_near_the_deviation():
     assert np.median(ratios) <= 2
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_the_bound_of_surfaces_is_near_the_deviation():
     rng = np.random.default_rng(7)
     ratios = []
@@ -113,7 +113,7 @@ def test_the_bound_of_surfaces_is_near_the_deviation():
     assert max(ratios) <= 3
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @settings(max_examples=30)
 @given(bspline_surfaces(degrees=(2, 4), most=2), st.booleans())
 def test_the_deviation_of_surfaces_is_never_exceeded(surface, semi):
@@ -133,7 +133,7 @@ def test_the_deviation_of_surfaces_is_never_exceeded(surface, semi):
             assert farthest(grid(surface), grid(found.surface)) <= found.error
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @settings(max_examples=30)
 @given(curves(degrees=(1, 5)), st.booleans(), seeds)
 def test_what_was_inserted_or_raised_comes_back(curve, rational, seed):
@@ -151,7 +151,7 @@ def test_what_was_inserted_or_raised_comes_back(curve, rational, seed):
     assert lower.error <= 1e-11
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @settings(max_examples=20)
 @given(semistructured_surfaces(degrees=(1, 3)))
 def test_rows_lose_their_own_knots_and_degrees(surface):

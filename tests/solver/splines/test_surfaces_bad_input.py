@@ -120,7 +120,7 @@ JUNK = st.recursive(
 )
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @settings(max_examples=200, deadline=None)
 @given(st.sampled_from(["degree_u", "knots_u", "control_points", "weights"]), JUNK)
 def test_junk_is_refused_or_makes_a_surface_but_never_breaks(field, junk):

@@ -47,7 +47,7 @@ def sample(surface, seed=0, count=15):
 # --- conversion -------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @laws
 @given(semistructured_surfaces(), SEEDS)
 def test_conversion_changes_no_point_and_no_derivative(surface, seed):
@@ -121,7 +121,7 @@ def test_a_tolerance_must_be_a_fraction(tolerance):
 # --- derivatives ------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @laws
 @given(semistructured_surfaces(), SEEDS, st.integers(0, 2), st.integers(0, 2))
 def test_derivatives_are_those_of_the_referee_or_truly_jump(surface, seed, du, dv):
@@ -242,7 +242,7 @@ def test_a_rational_surface_has_no_derivative_surface():
 # --- one curve alone --------------------------------------------------------------------------------------------
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @laws
 @given(semistructured_surfaces(), SEEDS, st.data())
 def test_a_knot_in_one_curve_changes_no_point_and_no_other_curve(surface, seed, data):
@@ -256,7 +256,7 @@ def test_a_knot_in_one_curve_changes_no_point_and_no_other_curve(surface, seed, 
     assert np.abs(surface_points(finer, u, v) - surface_points(surface, u, v)).max() <= limit
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @laws
 @given(semistructured_surfaces(), SEEDS, st.data())
 def test_continuity_is_lowered_exactly_and_raised_again(surface, seed, data):

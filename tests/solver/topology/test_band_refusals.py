@@ -59,7 +59,7 @@ def test_a_band_without_its_second_row_misses_the_curvature_across():
     assert seen.curvature_jump_relative > 0.9
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_reversed_direction_is_seen_by_no_figure_of_contact():
     """Why the direction has a test of its own."""
     face = free_form(np.random.default_rng(1), 5, 6)
@@ -93,7 +93,7 @@ def test_the_limit_of_a_jump_from_both_sides(jump, count):
     assert len(band_along(bent_face(jump), ACROSS)) == count
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_one_band_over_a_jump_misses_its_limits(monkeypatch):
     monkeypatch.setattr(curve_pieces, "JUMP", np.inf)
     with pytest.raises(BandError, match=r"the face's curvature jumps by 2\d %.*split the edge at 0\.\d+"):
@@ -111,7 +111,7 @@ def test_a_position_tolerance_alone_is_not_enough():
     assert fit.largest("angle_degrees") > 0.01
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_curve_into_a_pole_keeps_away_from_it():
     curve = cubic((0.1, 0.2), (0.15, 0.5), (0.2, 0.8), (0.25, 1.0))
     for run in (curve, reverse_curve(curve)):
@@ -132,7 +132,7 @@ def band_error_along(face, curve):
         raise BandError(refusal(fit, "the curve", np.zeros(3), 0.0))
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_curve_into_the_tip_of_a_cone_is_refused():
     with pytest.raises(BandError, match="edge e7: the face has no normal at the end of it"):
         band_along(cone(), cubic((0.1, 0.5), (0.15, 0.4), (0.2, 0.1), (0.25, 0.0)), name="edge e7")
@@ -149,7 +149,7 @@ def test_a_corner_is_where_the_curve_is_cut(degrees, count):
         assert "a corner of" in bands[0].cut_at_end
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_corner_in_one_band_misses_its_limits(monkeypatch):
     monkeypatch.setattr(curve_pieces, "CORNER_DEGREES", 90.0)
     face = free_form(np.random.default_rng(1), 5, 6)
@@ -197,7 +197,7 @@ def test_polylines_are_made_smooth_first(pieces_, closed):
     assert band.points <= 1.5 * direct.points
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_noise_within_the_tolerance_is_made_smooth():
     rng = np.random.default_rng(3)
     face = free_form(rng, 5, 6)
@@ -211,7 +211,7 @@ def test_noise_within_the_tolerance_is_made_smooth():
         band_along(face, curve)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_rate_that_jumps_refuses_g3():
     face = free_form(np.random.default_rng(2), 3, 8, 0.5)
     band_along(face, WAVE)
@@ -221,7 +221,7 @@ def test_a_rate_that_jumps_refuses_g3():
         band_along(face, WAVE, continuity="G3")
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_rows_that_copy_the_face_where_it_is_only_c2_crease_the_blend():
     """Exact composition has multiple knots at crossings; a smooth band over the same curve has none, and no crease."""
     face = free_form(np.random.default_rng(6), 3, 7)
@@ -306,7 +306,7 @@ def test_a_wrong_row_is_seen():
     assert found.worst("angle_degrees")[0] > 0.1
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_an_edge_in_space_into_a_pole_is_followed():
     """No pcurve says where the foot in the pole is, and one that has no step does not stop the others."""
     t = np.linspace(0, 1, 201)

@@ -126,7 +126,7 @@ def test_the_direction_leads_into_the_part_that_is_kept(kind, keep):
     assert (np.sum(band.surface.evaluate(np.zeros(25), v, 1, 0) * inside, axis=1) > 0).all()
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_closed_curve_makes_a_smooth_rim():
     for seed in range(3):
         rng = np.random.default_rng(seed)
@@ -155,7 +155,7 @@ def test_all_limits_are_met_on_random_free_forms(curve, seed):
     assert seen.curvature <= 0.02
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_blend_to_a_band_has_the_error_of_the_band_and_no_crease():
     face = free_form(np.random.default_rng(5), 3, 8)
     (band,) = band_along(face, cubic((0.2, 0.45), (0.4, 0.3), (0.6, 0.6), (0.8, 0.5)))
@@ -174,7 +174,7 @@ def test_a_blend_to_a_band_has_the_error_of_the_band_and_no_crease():
     assert all(crease.angle_degrees < 2e-4 for crease in measure_creases(result.surface))
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_g3_blend_to_a_band_has_its_rate_on_the_true_face():
     face = free_form(np.random.default_rng(5), 5, 6)
     (band,) = band_along(face, cubic((0.2, 0.45), (0.4, 0.3), (0.6, 0.6), (0.8, 0.5)), continuity="G3")
@@ -197,7 +197,7 @@ def test_a_band_along_a_natural_edge_meets_its_jets():
     assert np.linalg.norm(points[:, None] - edge.evaluate(v), axis=2).min(axis=0).max() <= 1e-3 * band.length
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_rates_are_followed_where_the_face_has_them():
     rng = np.random.default_rng(3)
     face = free_form(rng, 5, 6)
@@ -213,7 +213,7 @@ def test_rates_are_followed_where_the_face_has_them():
     assert seen.rate_jump_relative <= 0.01
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_the_feet_of_an_edge_near_the_face_are_taken_and_a_pcurve_of_an_edge_that_is_not():
     face, ellipse = cylinder(), ellipse_on_cylinder()
     moved = transform_curve(ellipse, 1.0 + 1e-5)

@@ -106,7 +106,7 @@ def test_unsewn_faces_go_on_in_each_other():
     assert len(smooth_run(graph, relate(graph), 1).uses) == 4
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize("apart", [1e-6, 1e-5])
 def test_unsewn_faces_that_meet_within_a_gap_are_one_contact(tmp_path, apart):
     """Edges of 1e-7 tolerance that end further apart: who finds that they go on in each other blends them too."""
@@ -190,7 +190,7 @@ def test_an_oval_to_a_round_tube(ovals):
     assert len(faces_of_blend(result)) == 1
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_pieces_have_the_same_control_points_along_their_edge(boxes):
     a, b = resolve_edges([(boxes, "0:e1+1:e1+2:e1+3:e1"), (boxes, "4:e3+5:e3+6:e3+7:e3")])
     (result,) = blend_edges(a, b, **QUICK)
@@ -204,7 +204,7 @@ def test_pieces_have_the_same_control_points_along_their_edge(boxes):
     assert "fades" not in "".join(notes)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_corners_of_one_side_fade_out_and_are_said(boxes):
     a, b = resolve_edges([(boxes, "0:e1+1:e1+2:e1+3:e1"), (boxes, "8:e3*")])
     (result,) = blend_edges(a, b, **QUICK)
@@ -212,7 +212,7 @@ def test_corners_of_one_side_fade_out_and_are_said(boxes):
     assert len(faces_of_blend(result)) == 4
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_the_rim_of_a_plane_with_corners(boxes):
     """No line of its parameters leads into the face from a corner: strips of the plane do, half way between."""
     a, b = resolve_edges([(boxes, "16:e0..e3"), (boxes, "4:e3+5:e3+6:e3+7:e3")])
@@ -222,7 +222,7 @@ def test_the_rim_of_a_plane_with_corners(boxes):
     assert max(face.band.angle_degrees for face in result.chain_a.faces) <= 1e-9
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_ring_of_rounds_becomes_one_blend(rounded):
     """Eight lines and arcs of the top, eight walls below: extruded and revolved, with as few points as can be."""
     a, b = resolve_edges([(rounded, "7:e0*"), (rounded, "0:e1*")])
@@ -245,7 +245,7 @@ def test_edges_on_one_line_of_a_face_are_one_base(tmp_path):
     assert [base.edge for base in side[0].bases] == ["v0", "v0"]
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_curve_that_is_cut_where_its_face_bends_is_one_chain():
     """Of a free curve with two bands, whose face's curvature jumps: one blend to an edge of one piece."""
     bands = band_along(bent_face(0.07), cubic((-0.8, 0.2), (-0.3, 0.8), (0.3, 0.3), (0.8, 0.7)))

@@ -167,7 +167,7 @@ def test_unsewn_neighbours_are_found_by_their_place(tmp_path):
     assert done.stdout.count("not sewn") == 4
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_what_list_prints(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     written(BRepPrimAPI_MakeCylinder(2.0, 5.0).Shape().Reversed(), tmp_path / "c.brep")
@@ -235,7 +235,7 @@ def test_a_seam_is_named_by_its_side(tmp_path):
         resolve_edge(f"{path}#0", "near=2,0,2.5")
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.usefixtures("read_here")
 def test_points_in_the_middle_of_edges_find_them(tmp_path):
     """Every edge of every face of a rounded box by its middle, and by a point a hundredth of its length beside it."""
@@ -253,7 +253,7 @@ def test_points_in_the_middle_of_edges_find_them(tmp_path):
                 assert f"{edge.name}, " in found.said
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.usefixtures("read_here")
 def test_two_points_decide_which_face_lies_between(tmp_path):
     """An upright round of a box: its straight sides belong to it and to the walls."""

@@ -54,7 +54,7 @@ def test_the_area_of_each_face_is_the_kernels(drilled_file):
         assert area_of(face.surface, face.mesh) == pytest.approx(kernel_area(known), rel=5e-3)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_finer_triangles_come_nearer(drilled_file):
     kernel, _, (faces, _) = drilled_file
     for face, known in zip(faces, kernel, strict=True):
@@ -208,7 +208,7 @@ def test_a_loop_through_poles_turns_there():
     assert shoelace(_through_poles(loop, in_pole, 1, 1.0)) == pytest.approx(1.0)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_face_of_a_3dm_file_is_cut_along_its_edges(tmp_path):
     file = rhino3dm.File3dm()
     circle = rhino3dm.Circle(rhino3dm.Point3d(0, 0, 0), 2.0).ToNurbsCurve()
@@ -235,7 +235,7 @@ def test_a_part_without_a_face_that_can_be_used(tmp_path):
         read_drawn([str(tmp_path / "p.3dm")])
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_faces_of_real_files_have_the_kernels_area(shared):
     from semispline.solver.io.occ import read_occ
 
@@ -248,7 +248,7 @@ def test_faces_of_real_files_have_the_kernels_area(shared):
             assert area_of(face.surface, face.mesh) == pytest.approx(kernel_area(known.face), rel=0.05)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_the_mug_has_its_holes(shared):
     """Its wall has two sides on one surface, and the loop of its seam runs through two poles."""
     path = str(shared / "data" / "cad" / "v4_DinerMug.3dm")

@@ -218,7 +218,7 @@ def test_fillets_of_real_files(shared, name, count):
     assert len(real(shared / "data/cad" / name)[2].accepted) == count
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_why_faces_of_real_files_are_no_fillets(shared):
     def rules(name):
         return [refusal.rule for refusal in real(shared / "data/cad" / name)[2].refused.values()]

@@ -99,7 +99,7 @@ def split(spec):
     return path, int(number)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_blend_is_measured_on_the_true_face_and_lies_beyond_the_edge(cylinder):
     spec, entry, tube = cylinder
     a, b = resolve_edges([(spec, entry.name), (tube, "v0")])
@@ -135,7 +135,7 @@ def test_a_blend_is_measured_on_the_true_face_and_lies_beyond_the_edge(cylinder)
             assert classifier.State() == expected
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_reversed_direction_is_seen(cylinder):
     """The band of the other side of the edge, blended: contact figures are as good, and the blend folds back."""
     spec, entry, tube = cylinder
@@ -148,7 +148,7 @@ def test_a_reversed_direction_is_seen(cylinder):
         blend_bases(replace(base, curve=curve), other, BlendOptions(**QUICK))
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_limits_are_asked_for_and_kept(cylinder):
     spec, entry, tube = cylinder
     ends = resolve_edges([(spec, entry.name), (tube, "v0")])
@@ -157,7 +157,7 @@ def test_limits_are_asked_for_and_kept(cylinder):
     assert blend_edges(*ends, limits="cad", **QUICK)[0].band_a.limits == "cad"
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_side_may_be_any_and_each_order(cylinder):
     """The free edge as b; G1 at it, G3 at the other."""
     spec, entry, tube = cylinder
@@ -193,7 +193,7 @@ def test_a_corner_gives_two_blends(angular):
     assert alone.band_a.edge.startswith(f"{words[0][1]}, part of edge")
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_parts_that_do_not_correspond_are_refused_with_the_words_to_ask_for(angular, tmp_path):
     sheet = tmp_path / "sheet.json"
     write_surface(sheet, plane([6, 0, 3], [2, 0, 0], [0, 4, 0]))
@@ -284,7 +284,7 @@ def test_curves_come_in_the_unit_of_their_surfaces():
     assert (unknown.surface.domain, unknown.tolerance, unknown.millimetres) == (curve.surface.domain, 1e-3, 25.4)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_free_edge_of_a_3dm_file(tmp_path):
     """The discs of a cylinder are planes cut by circles; rhino3dm shows the edge in space alone."""
     file = rhino3dm.File3dm()
@@ -311,7 +311,7 @@ def test_a_free_edge_of_a_3dm_file(tmp_path):
         read_trim_curves(path, [(0, 9)])
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_contacts_along_a_free_edge_are_measured_without_a_band(cylinder, tmp_path):
     spec, entry, tube = cylinder
     a, b = resolve_edges([(spec, entry.name), (tube, "v0")])
@@ -336,7 +336,7 @@ def test_contacts_along_a_free_edge_are_measured_without_a_band(cylinder, tmp_pa
         measure_free_contact(far, a)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_both_faces_of_a_hole_meet_at_their_edge(cylinder):
     spec, entry, _ = cylinder
     path, face = split(spec)
@@ -357,7 +357,7 @@ def test_both_faces_of_a_hole_meet_at_their_edge(cylinder):
     assert found.profile.values["angle_degrees"] == pytest.approx(turn, abs=1e-3)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_what_cannot_be_met_says_why(tmp_path):
     """Between knot lines of a bicubic face a rate jumps, which a band for G3 cannot follow; one for G2 can."""
     face = polygon(to_geom(free_form(np.random.default_rng(5))), [(0.2, 0.2), (0.8, 0.3), (0.4, 0.8)])

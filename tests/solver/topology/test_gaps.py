@@ -49,7 +49,7 @@ def test_a_fillet_that_was_taken_out_is_found_as_a_gap(seed):
     assert [rank(shape, between, graph) for between in accepted.values()] == [1] * len(accepted)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_of_a_chain_one_taken_out_is_found_too():
     shape = rounded_box()
     graph = graph_of(shape)
@@ -126,7 +126,7 @@ def test_faces_that_disagree_on_what_is_outside_are_matched_and_measured():
     assert len(find_fillets(graph, relations).accepted) == 12
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_file_that_is_not_sewn_gives_what_its_solid_gives(tmp_path):
     path = tmp_path / "part.igs"
     writer = IGESControl_Writer("MM", 0)

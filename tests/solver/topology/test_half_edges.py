@@ -161,7 +161,7 @@ def test_curvature_across_is_negative_where_the_face_bends_away():
     assert hollow.across[rim] == pytest.approx(0.0)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_the_table_passes_from_one_process_to_another(tmp_path):
     path = written(cylinder(), tmp_path / "cylinder.brep")
     found, here = read_edges(path), graph(cylinder)

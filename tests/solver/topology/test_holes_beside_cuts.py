@@ -127,7 +127,7 @@ def test_a_line_is_made_finer_along_its_curve_but_not_over_its_corners():
     assert finer(square, square[2], np.zeros(2)).tolist() == square.tolist()
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.usefixtures("read_here")
 def test_a_drilled_hole_in_a_file(tmp_path):
     """The hole that was passed: of diameter 1, 6.35 away from an edge 40 long."""

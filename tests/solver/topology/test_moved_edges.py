@@ -65,7 +65,7 @@ def free_points(end):
     return Face(end.surface).jet(end.curve.pcurve.evaluate(along)[:, :2], 0)[0, 0]
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_rim_is_moved_into_both_faces(pin):
     a, b = moved_edges(specs(pin), (None, None), ("1.5", "2"))
     assert edge_points(a)[:, 2] == pytest.approx(6.5, abs=1e-12)
@@ -119,7 +119,7 @@ def test_a_parameter_and_one_contact_that_stays(pin):
     assert (a.edge, b.curve, b.edge) == ("v=3-", None, "e0")
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_slanted_face_is_cut_as_far_as_its_edges(tmp_path):
     """Across a wedge that is 10 wide below and 4 above, 6 high: one unit up it is 9 wide."""
     path = written(BRepPrimAPI_MakeWedge(10.0, 6.0, 8.0, 4.0).Shape(), tmp_path / "wedge.brep")
@@ -137,7 +137,7 @@ def test_a_slanted_face_is_cut_as_far_as_its_edges(tmp_path):
     assert sorted(widths) == pytest.approx([9.0, 9.0, 10.0, 10.0])
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_beside_a_corner_that_juts_into_the_face_a_contact_ends_where_its_edge_does(tmp_path):
     """On an L of arms 5 broad, the lines one inside of both edges at the inner corner run on into the other arm."""
     corner = BRepPrimAPI_MakeBox(gp_Pnt(5.0, 5.0, -1.0), 9.0, 9.0, 9.0).Shape()
@@ -152,7 +152,7 @@ def test_beside_a_corner_that_juts_into_the_face_a_contact_ends_where_its_edge_d
     assert np.array(sorted(found)) == pytest.approx(np.array([(5.0, 5.0)] * 4 + [(10.0, 10.0)] * 2))
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_distance_on_a_cone_is_one_along_its_lines(tmp_path):
     path = written(BRepPrimAPI_MakeCone(5.0, 2.0, 4.0).Shape(), tmp_path / "cone.brep")
     # Its lines fall by 3 on 4, and are 5 long.
@@ -190,7 +190,7 @@ def test_words_of_cuts_that_mean_nothing(word):
         parse_cut(word, "--cut-a")
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize("turns", [-1, 0, 1])
 def test_a_curve_that_is_taken_over_another_turn_is_moved_all_the_same(tmp_path, turns):
     path = written(slanted_pin(), tmp_path / "slanted.brep")
@@ -219,7 +219,7 @@ def test_a_curve_that_is_taken_over_another_turn_is_moved_all_the_same(tmp_path,
     assert (at[:, 1] < 8 + slope * x).all()
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_straight_edge_that_slants_in_a_plane_is_moved(tmp_path):
     """Below a prism over the triangle (0, 0), (10, 0), (3, 7), each side is moved into the triangle by one."""
     corners = np.array([[0.0, 0.0], [10.0, 0.0], [3.0, 7.0]])

@@ -1,12 +1,14 @@
 """Curves at a true distance inside of an edge: against plane geometry, and on surfaces that unroll."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from helpers.sweeps import examples
-from semispline import BSplineCurve, plane, revolve, transform
+from semispline import BSplineCurve, elevate_degree, plane, revolve, transform
 from semispline.solver.splines import EdgeName
 from semispline.solver.topology.cuts import Cut, moved_contact
 from semispline.solver.topology.face_jets import Face
@@ -53,7 +55,7 @@ def test_a_distance_in_a_plane(edge, axis, coordinate):
     assert points[:, axis] == pytest.approx(coordinate, abs=1e-13)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @examples(25)
 @given(st.floats(0.1, 9.0), st.floats(0.2, 6.0))
 def test_a_distance_along_and_round_a_cylinder(distance, radius):
@@ -69,7 +71,7 @@ def test_a_distance_along_and_round_a_cylinder(distance, radius):
     assert radius * turned == pytest.approx(quarter.distance, rel=1e-11)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_distance_on_a_sphere_is_an_arc():
     surface = ball(3.0)
     found = moved(surface, ("v", 0), 1.2)
@@ -88,7 +90,7 @@ def test_a_free_curve_in_a_plane_is_parallel():
     assert paths.point[-1][:, :2] == pytest.approx(at + 0.8 * normal, abs=1e-12)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @examples(25)
 @given(st.floats(-1.2, 1.2), st.floats(0.2, 3.0), st.sampled_from([1.0, -1.0]))
 def test_on_a_cylinder_paths_are_straight_lines_of_the_unrolled_sheet(slant, distance, sign):
@@ -110,7 +112,7 @@ def test_on_a_cylinder_paths_are_straight_lines_of_the_unrolled_sheet(slant, dis
     assert end[:, 2] - start[:, 2] == pytest.approx(np.full(5, sign * distance * np.cos(slant)), abs=1e-6)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_lengths_of_paths_are_true_on_a_wavy_surface():
     """Whatever the surface: each step is as long as it should be, and neighbours stay at one distance (Gauss)."""
     rng = np.random.default_rng(3)
@@ -153,9 +155,32 @@ def test_paths_into_a_circle_cross_in_its_middle(radius):
     assert focal_distance(outwards) == np.inf
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_cuts_do_not_depend_on_where_the_surface_lies():
     surface = ball()
     turned = transform(surface, np.array([[0, -1, 0], [1, 0, 0], [0, 0, 1.0]]) * 7, [100, -30, 5])
     one, other = moved(surface, ("v", 0), 1.2).name, moved(turned, ("v", 0), 8.4).name
     assert one.at == pytest.approx(other.at, rel=1e-12)
+
+
+def test_on_a_plane_that_is_even_paths_are_those_of_one_that_is_not():
+    even = plane([1, 2, 3], [4, 1, 0], [0.5, 3, 1])
+    assert Face(even).is_affine
+    # The same plane and parameters, as a surface that the paths are followed on.
+    followed = elevate_degree(even, 2, 2)
+    assert not Face(followed).is_affine
+    at = np.array([[0.1, 0.0], [0.5, 0.0], [0.8, 0.0]])
+    slope = np.tile([1.0, 0.0], (3, 1))
+    one, other = (paths_from(Face(surface), at, slope, 1.0, 0.7) for surface in (even, followed))
+    for name in ("at", "point", "ahead", "beside"):
+        np.testing.assert_allclose(getattr(one, name), getattr(other, name), rtol=0, atol=1e-13, err_msg=name)
+
+
+@pytest.mark.parametrize(("away", "affine"), [(0.0, True), (2e-15, True), (1e-13, False), (1e-3, False)])
+def test_what_counts_as_a_parallelogram(away, affine):
+    even = plane([0, 0, 0], [1, 0, 0], [0, 1, 0])
+    net = even.control_points.copy()
+    net[1, 1] += [away, away, 0]
+    assert Face(replace(even, control_points=net)).is_affine == affine
+    weighted = replace(even, weights=np.array([[1.0, 2.0], [1.0, 1.0]]))
+    assert not Face(weighted).is_affine

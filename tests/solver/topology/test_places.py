@@ -57,7 +57,7 @@ def test_places_of_a_box_with_rounds():
     assert chain.measures["length"] == pytest.approx(2 * (34 + 24) + 2 * 3.1416 * (3 + 1.5) / 2, rel=0.01)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_part_twice_gives_its_places_once():
     shift = gp_Trsf()
     shift.SetTranslation(gp_Vec(100, 0, 0))
@@ -176,7 +176,7 @@ def test_a_sharp_edge_is_cut_by_less_than_the_face_has():
         assert place.measures["clearance"] in (pytest.approx(2.0), pytest.approx(3.0))
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("shape", "reached"),
     [
@@ -209,7 +209,7 @@ def test_the_clearance_of_a_hole_does_not_end_at_a_seam(seam):
     assert clearance(graph, row) == pytest.approx(5 * np.pi - 5 * np.arcsin(0.2), abs=0.05)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_the_command_of_the_rim_of_a_tall_pin_stays_within_its_disc(tmp_path):
     place = find_places(written(BRepPrimAPI_MakeCylinder(3.0, 60.0).Shape(), tmp_path / "pin.brep")).found[0]
     words = shlex.split(place.commands[0])
@@ -218,7 +218,7 @@ def test_the_command_of_the_rim_of_a_tall_pin_stays_within_its_disc(tmp_path):
     assert 0.9 < distance <= 1.0
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_nothing_found_says_what_was_refused(tmp_path):
     path = written(BRepPrimAPI_MakeSphere(2.0).Shape(), tmp_path / "ball.brep")
     done = CliRunner().invoke(app, ["list", str(path), "--pairs"])
@@ -229,7 +229,7 @@ def test_nothing_found_says_what_was_refused(tmp_path):
     )
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_the_command_prints_and_writes_all_of_it(tmp_path):
     path, target = written(rounded_box(), tmp_path / "part.brep"), tmp_path / "places.json"
     done = CliRunner().invoke(app, ["list", str(path), "--pairs", "--json", str(target)])
@@ -251,7 +251,7 @@ def test_the_command_prints_and_writes_all_of_it(tmp_path):
     assert json.loads(alone.output)["places"] == record["places"]
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_faces_that_are_refused_say_why(shared):
     places = find_places(shared / "data/cad/demos_as1_pe_203.stp")
     assert set(places.refused.values()) == {"turns by 180 degrees: a round end"}
@@ -266,7 +266,7 @@ def test_other_formats_are_refused(tmp_path):
         find_places(path)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_file_without_faces_says_what_it_holds(tmp_path):
     from helpers.parts import edges_of_shape
 

@@ -95,7 +95,7 @@ def test_every_edge_of_a_closed_body_has_two_uses(shared, name, edges):
     assert not uses.naked.any()
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_fillets_of_a_real_file(shared):
     places = find_places(shared / "data/cad/v4_MechPartA.3dm")
     assert [(len(x.faces), 1 + len(x.repeats)) for x in places.of_kind("fillet")] == [(1, 4)] * 4
@@ -125,7 +125,7 @@ def test_edges_of_3dm_files_are_named(tmp_path):
     assert wall.tolerance == pytest.approx(1e-4 * read_edges(path).size)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_pole_of_a_3dm_file_is_a_point(tmp_path):
     face = list_edges(written(tmp_path / "ball.3dm", sphere()), 0)
     assert sorted(edge.kind for edge in face.edges) == ["point", "point", "whole", "whole"]

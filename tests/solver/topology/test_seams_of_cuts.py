@@ -178,7 +178,7 @@ def test_by_a_parameter_over_the_seam():
         moved_contact(surface, edge, Cut(direction="u", parameter=1.9 * last), outline, 1e-9, "c", "e0")
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize("turns", first_ones(1, [0.1, 0.6, 0.95]))
 @pytest.mark.parametrize("at", [0.2, 0.9])
 def test_round_the_tube_of_a_torus(turns, at):

@@ -104,7 +104,7 @@ def test_straight_and_revolved_stretches_take_away_what_they_should(tmp_path):
     assert area * 2 * math.pi * (r - d / 3) < taken < area * 2 * math.pi * r
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_an_open_chain_ends_on_faces(tmp_path):
     shape = box_with_fillet(4.0)
     found = rounded_there(shape, at_top, (1.0, 2.0), tmp_path)
@@ -279,7 +279,7 @@ def test_an_arc_fillet_is_told_from_a_smooth_one(tmp_path):
         assert x.contact.gap <= 1e-9
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize("make", [lambda: cylinder(8, 20), lambda: cut(box(40, 40, 10), cylinder(8, 10, (20, 20, 0)))])
 def test_contacts_along_circles_of_flat_faces_are_no_bands(make, tmp_path):
     found = rounded_there(make(), lambda points: np.linalg.norm(points[0] - points[-1]) < 1e-6, 2.0, tmp_path)

@@ -46,7 +46,7 @@ def test_faces_of_a_part_without_such_vertices_have_none():
     assert side_vertices(graph, relate(graph)) == []
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_vertices_of_real_files_are_classed(shared):
     """Seven lie between two faces beyond, as counted in another way; three of these go on smoothly."""
     counts = Counter()
@@ -55,7 +55,7 @@ def test_vertices_of_real_files_are_classed(shared):
     assert counts == {"smooth": 3, "creased": 2, "corner": 2, "same face": 2}
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_all_that_go_on_blend_in_contact_with_each_face(shared):
     """The file has gaps of 1e-5 and side edges as far apart: limits of checkers, and said by how much was moved."""
     path = shared / "data/cad/occt_shell1.brep"

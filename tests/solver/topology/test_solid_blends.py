@@ -56,7 +56,7 @@ def test_fillets_of_models_are_replaced(name, tmp_path):
     assert found.gate.largest_tolerance <= (1e-6 * 60 if "round end" in name else 1.1e-7)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_second_replacement_changes_nothing(tmp_path):
     path = written(box_with_fillet(5.0), tmp_path / "part.brep")
     number = fillet_of(box_with_fillet(5.0))
@@ -66,7 +66,7 @@ def test_a_second_replacement_changes_nothing(tmp_path):
     assert second.gate.volume[1] == pytest.approx(first.gate.volume[1], rel=1e-12)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_place_turn_scale_and_format_change_nothing(tmp_path):
     shape = box_with_fillet(5.0)
     number = fillet_of(shape)
@@ -83,7 +83,7 @@ def test_place_turn_scale_and_format_change_nothing(tmp_path):
         assert change == pytest.approx(plain.volume[1] - plain.volume[0], rel=1e-5)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_edges_named_either_way_give_the_same_solid(tmp_path):
     shape = box_with_fillet(5.0)
     path, number = written(shape, tmp_path / "part.brep"), fillet_of(shape)
@@ -120,7 +120,7 @@ def test_units_names_colours_and_layers_stay(unit, tmp_path):
     assert labels_of(tmp_path / "out.step") == before
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_part_of_an_assembly_is_changed_wherever_it_stands(tmp_path):
     shape = box_with_fillet(5.0)
     there = gp_Trsf()
@@ -148,7 +148,7 @@ def test_a_part_of_an_assembly_is_changed_wherever_it_stands(tmp_path):
         assert np.linalg.norm(np.array(edge.at) - point.Coord()) <= own.length
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_rounded_part_before_the_one_that_was_named_grows_too(tmp_path):
     there = gp_Trsf()
     there.SetTranslation(gp_Vec(100, 0, 0))
@@ -161,7 +161,7 @@ def test_a_rounded_part_before_the_one_that_was_named_grows_too(tmp_path):
     assert all((graph.uses.points[graph.uses.of_face(n)][..., 0] > 99).all() for n in (*found.touched, *found.faces))
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_shell_stays_as_open_as_it_was(tmp_path):
     shape = box_with_fillet(5.0)
     number = fillet_of(shape)
@@ -189,7 +189,7 @@ def test_what_goes_on_is_refused_with_its_neighbours(tmp_path):
     assert not (tmp_path / "out.step").exists()
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_middle_row_ends_on_a_slanted_end_too(tmp_path):
     shape = slanted(4.0, [0.5, 0.0, 1.0])
     path = written(shape, tmp_path / "part.brep")
@@ -197,7 +197,7 @@ def test_a_middle_row_ends_on_a_slanted_end_too(tmp_path):
     assert found.gate.largest_tolerance <= 1.1e-7
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_what_the_gate_stops_is_not_written(tmp_path, monkeypatch):
     shape = box_with_fillet(5.0)
     path, out = written(shape, tmp_path / "part.brep"), tmp_path / "out.step"
@@ -233,7 +233,7 @@ def test_files_without_solids_are_refused(tmp_path):
         replace_face(path, 2, path)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_the_command_gives_the_solid_back(tmp_path):
     shape = box_with_fillet(5.0)
     path, out, report = written(shape, tmp_path / "part.brep"), tmp_path / "out.step", tmp_path / "report.json"
@@ -261,7 +261,7 @@ def test_other_formats_get_the_surface_and_are_told_so(tmp_path):
     assert "no solid can come back in .3dm" in done.output
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_who_is_killed_by_the_limits_leaves_nothing(tmp_path, monkeypatch):
     """The process that operates gets too little memory."""
     shape = box_with_fillet(5.0)
@@ -280,7 +280,7 @@ def test_who_is_killed_by_the_limits_leaves_nothing(tmp_path, monkeypatch):
     assert (path.read_bytes(), sorted(tmp_path.iterdir())) == before
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize("scale", [1e-3, 1e3])
 def test_scale_changes_nothing(scale, tmp_path):
     shape, small = box_with_fillet(5.0), gp_Trsf()

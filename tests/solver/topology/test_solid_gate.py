@@ -78,7 +78,7 @@ def test_a_right_solid_beside_a_hole_passes():
     assert found.is_sound, found.reason
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_v_may_run_either_way():
     shape = box_with_fillet(5.0)
     one, other = (report_of(shape, s) for s in (corner_blend(), reverse_v(corner_blend())))
@@ -250,7 +250,7 @@ def turned_by(surface, angle):
     return transform(surface, np.array([[c, -s, 0], [s, c, 0], [0, 0, 1.0]]))
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_right_rim_passes():
     shape = pin(4.0)
     number, contacts = rim(shape)
@@ -259,7 +259,7 @@ def test_a_right_rim_passes():
     assert found.is_sound, found.reason
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize("turns", [1e-2, 1e-3, 1e-5])
 def test_a_rim_whose_seam_is_off_is_stopped(turns):
     """Open CASCADE calls it valid, with a tolerance of half a unit."""
@@ -270,7 +270,7 @@ def test_a_rim_whose_seam_is_off_is_stopped(turns):
     assert "tolerance" in gate(shape, after, change).reason
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_face_that_was_not_to_be_changed_is_looked_at():
     shape = box_with_fillet(5.0)
     after, change = placed(shape, corner_blend())

@@ -288,7 +288,7 @@ def test_a_measured_gap_allows_three_times_as_much():
         assert found.is_sound if share < 3 else "of the new face needs a tolerance" in found.reason
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_contact_is_held_to_a_thousandth_of_a_millimetre():
     """1e-5 of the edge is 4e-4 here: less than 0.001 in millimetres, more than 0.001 mm in inches."""
     shape, after, change = off_its_contact(1e-4)
@@ -347,7 +347,7 @@ def test_tolerances_elsewhere(which, was, share, read_back, is_sound):
     assert found.is_sound if is_sound else said in found.reason, found.reason
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_faces_that_were_not_named_are_compared():
     """By their areas: the lid of a pin whose rim was rounded has the same middle."""
     shape, after, change = right()
@@ -425,7 +425,7 @@ def test_what_crossed_before_may_go_on_doing_so():
     assert found.is_sound, found.reason
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize("share", first_ones(1, [0.8, 1.25]))
 def test_an_end_on_a_curved_face_may_be_off_by_so_much(share, tmp_path, monkeypatch, read_here):
     shape = MODELS["round end r=3.0"]()
@@ -467,7 +467,7 @@ def two_bars():
     return shape, tuple(caps), surface
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_joined_bars():
     shape, caps, surface = two_bars()
     after, change = joined(copy_of(shape)[0], caps, [surface])

@@ -57,7 +57,7 @@ def normals_beside(root, new):
     return max(found)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("continuity", "arcs", "split", "pieces"),
     first_rows(1, [("G2", 4, "corners", 1), ("G3", 6, "corners", 1), ("G4", 8, "corners", 1), ("G2", 5, "joints", 13)]),
@@ -103,7 +103,7 @@ def test_other_profiles(make, at, pieces, tmp_path):
     assert found.gate.largest_tolerance <= 1.1e-7
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize(("arcs", "continuity"), first_rows(1, [((4, 6), "G2"), ((8, 8), "G3"), ((4, 4), "G2")]))
 def test_an_ellipse_joined_to_a_circle(arcs, continuity, tmp_path):
     """Vertices that face each other do so: the seam of the blend ends in them, and cuts off no sliver."""
@@ -118,7 +118,7 @@ def test_an_ellipse_joined_to_a_circle(arcs, continuity, tmp_path):
     assert all(normals_beside(root, n) < 2e-5 for n in found.faces)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize("turn", first_ones(1, [0.003, -0.003]))
 def test_a_seam_beside_a_vertex_cuts_off_a_short_edge(turn, tmp_path):
     a, b = bar(ellipse_wire(12, 7, 10, 4), -10), bar(round_wire(6, 30, 6, turn), 10)
@@ -135,7 +135,7 @@ def test_rounds_are_joined_to_the_known_volume(tmp_path):
     assert found.gate.volume_expected == pytest.approx(np.pi * 9 * 4, rel=5e-3)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_the_order_of_like_profiles_changes_nothing(tmp_path):
     specs = two(cylinder(3, 5), cylinder(2, 5, at=(0.5, 0, 9)), tmp_path, (5, 9))
     one, other = (join_faces(*x, tmp_path / "out.brep").gate for x in (specs, specs[::-1]))
@@ -143,7 +143,7 @@ def test_the_order_of_like_profiles_changes_nothing(tmp_path):
     assert other.volume[1] == pytest.approx(one.volume[1], rel=1e-5)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_two_faces_of_one_solid(tmp_path):
     """A handle: the solid keeps its one shell."""
     shape = fused(fused(box(30, 10, 5), box(5, 10, 40)), box(30, 10, 5, at=(0, 0, 35)))
@@ -154,7 +154,7 @@ def test_two_faces_of_one_solid(tmp_path):
     assert_one_valid_solid(open_parts(tmp_path / "out.brep").root, len(parts(shape, "FACE")) - 1)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_other_solids_of_a_file_stay(tmp_path):
     far = box(1, 1, 1, at=(50, 0, 20))
     shape = compound([far, oval(), tube(4), box(1, 1, 1, at=(60, 0, 20))])
@@ -231,7 +231,7 @@ def placed_at(*vector):
     return TopLoc_Location(trsf)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize("way", first_ones(1, ["two files", "one file", "assembly"]))
 def test_names_colours_and_layers_of_both_stay(way, tmp_path):
     a, b = oval(), tube(4)
@@ -285,7 +285,7 @@ def test_faces_that_are_no_ends_are_refused(make, at, said, tmp_path):
     assert not (tmp_path / "out.step").exists()
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_wrong_faces_are_refused(tmp_path):
     a, b = two(oval(), tube(4), tmp_path)
     with pytest.raises(EdgeError, match="expected another face"):
@@ -303,7 +303,7 @@ def test_wrong_faces_are_refused(tmp_path):
         join_faces(a, f"{loose}#{end_at(tube(4), 6)}", tmp_path / "out.step")
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_faces_that_look_the_same_way_are_refused(tmp_path):
     shape = fused(fused(box(30, 10, 5), box(6, 10, 20)), box(6, 10, 20, at=(24, 0, 0)))
     path = written(shape, tmp_path / "part.brep")
@@ -313,7 +313,7 @@ def test_faces_that_look_the_same_way_are_refused(tmp_path):
         join_faces(f"{path}#{high[0]}", f"{path}#{high[1]}", tmp_path / "out.step")
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_part_that_stands_twice_is_refused(tmp_path):
     from helpers.xcaf import write_assembly
 
@@ -338,7 +338,7 @@ def moved_rows(rows, columns, by):
 solid_joins_faces = solid_joins.faces_of_blend
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("rows", "columns", "by", "said"),
     first_rows(
@@ -362,7 +362,7 @@ def test_wrong_blends_are_stopped(rows, columns, by, said, tmp_path, monkeypatch
     assert out.read_text() == "what was there"
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_inputs_are_not_changed(tmp_path):
     specs = two(oval(), tube(6), tmp_path)
     before = [(tmp_path / name).read_bytes() for name in ("a.brep", "b.brep")]
@@ -372,7 +372,7 @@ def test_inputs_are_not_changed(tmp_path):
         join_faces(*specs, tmp_path / "out.3dm")
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_who_needs_too_long_is_ended_and_leaves_nothing(tmp_path, monkeypatch):
     """Thirteen faces take the gate some seconds."""
     specs, out = two(oval(), tube(5), tmp_path), tmp_path / "out.step"
@@ -404,7 +404,7 @@ def run(*words):
     return CliRunner().invoke(app, ["blend", *map(str, words)])
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_the_command_joins_two_files(tmp_path):
     a, b = two(oval(), tube(4), tmp_path)
     out, report = tmp_path / "out.step", tmp_path / "report.json"

@@ -96,7 +96,7 @@ def _all_edges(shape):
         yield int(graph.uses.face[row]), graph.uses.name(row), float(relations.length[row]), True
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_cuts_may_differ(tmp_path):
     path = written(box(20, 30, 40), tmp_path / "part.brep")
     face, edge, length, _ = BOX[0]
@@ -123,7 +123,7 @@ def test_edges_of_a_slanted_box(tmp_path):
         assert found.gate.largest_tolerance <= 1.1e-7
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_an_inner_edge_adds(tmp_path):
     shape = cut(box(20, 30, 40), box(12, 18, 40))
     path = written(shape, tmp_path / "part.brep")
@@ -173,7 +173,7 @@ def test_an_edge_that_goes_on_over_a_round_is_rounded_with_it(tmp_path):
     assert found.gate.faces == (7, 10)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_the_command_rounds_an_edge(tmp_path):
     path, out = written(box(20, 30, 40), tmp_path / "part.brep"), tmp_path / "out.step"
     done = CliRunner().invoke(app, ["blend", str(path), "--round", "0:e1", "--distance", "4", "-o", str(out)])
@@ -181,7 +181,7 @@ def test_the_command_rounds_an_edge(tmp_path):
     assert "one sound solid of 7 faces: 6 is the blend" in done.output
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_what_was_said_is_what_is_refused(tmp_path):
     path, out = written(box(20, 30, 40), tmp_path / "part.brep"), tmp_path / "out.step"
     words = ["blend", f"{path}#0", f"{path}#2", "--cut-a", "50", "--cut-b", "3", "-o", str(out)]

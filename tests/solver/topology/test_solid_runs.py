@@ -60,7 +60,7 @@ def is_valid(path):
     return BRepCheck_Analyzer(shape, True).IsValid() and len(parts(shape, "SOLID")) == 1
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize(("upright", "top"), first_rows(1, [(3.0, 1.5), (4.0, 1.0), (5.0, 4.0)]))
 def test_a_closed_rim_of_eight_fillets_is_replaced_together(upright, top, tmp_path):
     shape = rounded_box(upright, top)
@@ -95,7 +95,7 @@ def test_straight_parts_of_a_ring_are_extruded(tmp_path):
     assert changes[1] - changes[0] > 0.02
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_an_open_chain_ends_on_the_walls_at_its_ends(tmp_path):
     shape = stadium()
     graph, relations, _, groups = found_in(shape)
@@ -113,7 +113,7 @@ def test_an_open_chain_ends_on_the_walls_at_its_ends(tmp_path):
     assert again.gate.volume[1] == pytest.approx(found.gate.volume[1], rel=1e-9)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_an_open_chain_ends_on_slanted_walls_too(tmp_path):
     """Rows of rims whose joints answer each other are taken as they are, but not where they have to be bent."""
     shape = fillet(box(40, 30, 20), 6.0, lambda p, d: abs(d[2]) > 0.5 and p[0] < 1 and p[1] < 1)
@@ -188,7 +188,7 @@ def test_an_end_edge_is_kept_and_contact_says_so(continuity, tmp_path):
     assert found.blend.contact_a.angle_degrees <= 1e-6
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_kept_edge_at_the_pole_of_a_ball_is_measured(tmp_path):
     """A hair in space is much in the parameters there: the pcurve that is read leaves the face, the edge does not."""
     shape = fillet(box(40, 30, 20), 4.0, lambda p, _: np.sum(np.abs(p) < 1e-6) == 2)
@@ -203,7 +203,7 @@ def test_a_kept_edge_at_the_pole_of_a_ball_is_measured(tmp_path):
         assert max(x.contact.gap for x in contacts) <= 1e-6 * 40
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_crease_at_a_kept_edge_is_stopped(tmp_path, monkeypatch):
     """The end lies on the edge, and the row beside it leaves the tangent plane of the ball by one part in a hundred."""
     shape = three_edges()
@@ -230,7 +230,7 @@ def test_a_crease_at_a_kept_edge_is_stopped(tmp_path, monkeypatch):
     assert not out.exists()
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_contacts_beside_kept_ends_are_told_from_the_rest(tmp_path):
     shape = three_edges()
     _, _, accepted, _ = found_in(shape)
@@ -252,7 +252,7 @@ def test_contacts_beside_kept_ends_are_told_from_the_rest(tmp_path):
     assert done.output.count("beside a kept end: G1, the jump at (") == 2
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_beyond_the_stated_length_contact_is_what_was_asked(tmp_path):
     shape = three_edges()
     _, _, accepted, _ = found_in(shape)
@@ -291,7 +291,7 @@ def _jump(own, face):
     return found.curvature_jump_relative if found.gap <= 1e-6 else np.inf
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_rows_along_an_arc_in_pieces_end_on_the_wall_that_cuts_it(tmp_path):
     """Read as a conic, and run through by a circle of its own, the contact would leave the end faces in silence."""
     # The lines of a cone leave a plane beside its axis.
@@ -318,7 +318,7 @@ def test_borders_that_a_file_holds_apart_may_move_by_that(tmp_path):
     assert loose_area(wall) == pytest.approx(0.01 * 2 * np.pi * 8, rel=1e-3)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_ends_of_a_chain_are_kept_and_its_joints_are_not(tmp_path):
     shape = rounded_box()
     graph, relations, _, (ring,) = found_in(shape)
@@ -338,7 +338,7 @@ def test_ends_of_a_chain_are_kept_and_its_joints_are_not(tmp_path):
     assert max(end.crease_degrees for end in found.kept) <= 1e-4
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_what_is_no_run_is_refused(tmp_path):
     shape = rounded_box()
     graph, relations, accepted, (ring,) = found_in(shape)
@@ -362,7 +362,7 @@ def test_what_is_no_run_is_refused(tmp_path):
     assert not out.exists()
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_the_gate_stops_a_ring_whose_neighbours_do_not_meet(tmp_path, monkeypatch):
     shape = rounded_box()
     real = solid_blends.panels_of

@@ -46,7 +46,7 @@ def curves_of(shape, face, numbers):
     return item, made
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("kind", "turned"),
     # Turned, make test takes one face that is bent both ways, .ci/run all of them.
@@ -92,7 +92,7 @@ def check_direction(band, item):
             assert classifier.State() == expected
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_planes_of_a_box_are_exact():
     shape = drilled_part("plane")
     graph, uses = free_edges(shape)
@@ -105,7 +105,7 @@ def test_planes_of_a_box_are_exact():
             assert measure_face_contact(band.base, curve.surface, same_side=True).angle_degrees <= 1e-9
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_edges_are_read_by_a_process_of_its_own(tmp_path):
     shape = drilled_part("cylinder")
     path = written(shape, tmp_path / "part.brep")
@@ -150,7 +150,7 @@ def test_the_seam_of_a_closed_face_is_met_from_both_sides():
     assert directions[0] @ directions[1] < -0.99
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize("short", first_ones(1, [0.0, 4e-16, 1e-13, 1e-10]))
 def test_a_periodic_curve_that_is_a_rounding_short_of_a_turn_is_whole(short, tmp_path):
     """The kernel cuts such a curve at the wrong knot, and its last pieces are lost."""
