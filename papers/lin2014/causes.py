@@ -10,8 +10,8 @@ CAUSES = (
         "The second derivative at a clamped end",
         "It is a difference of first derivatives over two spans; printed is a plain second difference over one. From "
         "the appendix it goes into (3.1) and (3.2), which then depend on the scale of the base's parameter and on "
-        "knots inserted into the base, though neither changes the surface; with squares, if the scan lost them, on "
-        "inserted knots still.",
+        "knots inserted into the base, though neither changes the surface; with squares or other powers, "
+        "if the scan lost them, on inserted knots still.",
     ),
     Cause(
         "sign-of-p1",
